@@ -198,13 +198,21 @@ def plain_lines(content: Table) -> list[str]:
 
 
 def json_object(content: dict[str, Any]) -> None:
-    """One JSON object on standard output."""
-    written = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
+    """One JSON object on standard output; numbers, truth values and arrays of numpy count as Python's."""
+    written = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False, default=_of_numpy)
     try:
         written.encode(sys.stdout.encoding or "utf-8")
     except UnicodeEncodeError:  # JSON has codes of its own for letters that the console lacks
-        written = json.dumps(content, indent=2, allow_nan=False)
+        written = json.dumps(content, indent=2, allow_nan=False, default=_of_numpy)
     typer.echo("".join(ch if ch.isprintable() or ch == "\n" else json.dumps(ch)[1:-1] for ch in written))
+
+
+def _of_numpy(value: Any) -> Any:
+    """What numpy's own scalars and arrays hold, as Python has it."""
+    try:
+        return value.tolist()
+    except AttributeError:
+        raise TypeError(f"no JSON is known for {type(value).__name__}") from None
 
 
 def in_browser(address: str) -> None:

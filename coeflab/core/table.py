@@ -15,6 +15,7 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from coeflab.core.types import brief
+from coeflab.core.wording import Verbatim
 
 
 @brief
@@ -27,6 +28,7 @@ class Table:
     title : str
     headers : tuple of str
     rows : tuple of tuple of str
+        A zero has no sign: what rounding makes of a small negative number is 0.
     notes : tuple of str
     left : frozenset of int
         Columns that are set flush left; the others are numbers.
@@ -41,6 +43,10 @@ class Table:
     left: frozenset[int] = frozenset({0})
     spare: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        if any("-0" in cell for row in self.rows for cell in row):
+            object.__setattr__(self, "rows", tuple(tuple(map(_unsigned, row)) for row in self.rows))
+
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""
         sides = ["left" if i in self.left else "right" for i in range(len(self.headers))]
@@ -52,6 +58,11 @@ class Table:
         notes = "".join(f'<p style="font-size: 85%">{escape(note)}</p>' for note in self.notes)
         caption = f'<caption style="text-align: left; font-weight: bold">{escape(self.title)}</caption>'
         return f"<table>{caption}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>{notes}"
+
+
+def _unsigned(cell: str) -> str:
+    """A cell whose zeros have no sign, which rounding gives them; a user's own text stays."""
+    return cell if isinstance(cell, Verbatim) or "-0" not in cell else _NEGATIVE_ZERO.sub(r"\1", cell)
 
 
 class Line(NamedTuple):
@@ -69,6 +80,7 @@ class Line(NamedTuple):
 MARGIN = GAP = "  "
 COMFORT, SPARED = 20, 32  # letters below which text is not folded while a column can go; such a column goes before that
 LONGEST_WORD = 36  # in a cell; what is longer is broken
+_NEGATIVE_ZERO = re.compile(r"(?<![\w.\-/])-(0(?:\.0*)?(?:e[+-]?\d+)?)(?![\w.\-/])")
 _TOGETHER = re.compile(r"(?<=\d) (?=(?:%|deg|rad|mm?|kn?|kg|s|N)\b|%)|(?<=\+-) | (?=\+- )")
 
 

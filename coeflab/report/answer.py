@@ -242,9 +242,20 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
             else f"{_counted(len(valued))} of {_counted(len(rows))}"
         )
         first = f"{name}: {of} wanted coefficients found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
+        first += _open(valued)
         absent = absent or "no published evaluation of these data"
     whole = f"{first}; {absent}." if absent else f"{first}."
     return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
+
+
+def _open(valued: Sequence[AnswerRow]) -> str:
+    """Which values have an interval that contains zero: the data leave their sign open."""
+    names = [primed(r.symbol) for r in valued if r.u95 is not None and abs(r.value or 0.0) <= r.u95]
+    if not names:
+        return ""
+    return (
+        f", sign open of {listed(names)}" if len(names) <= MOST_ROWS // 2 else f", sign open of {_counted(len(names))}"
+    )
 
 
 def _verb(apart: Sequence[str]) -> str:

@@ -228,7 +228,10 @@ class ParameterThruster(Strict):
 
 
 class ParameterSurface(Strict):
-    """Limits of a control surface; its forces are the derivatives by ``dr``, ``ds`` or ``db``."""
+    """Limits of a control surface; its forces are derivatives or tables by ``dr``, ``ds`` or ``db``.
+
+    Their signs say what a positive angle does. Bodies have hinge [0, 1, 0], trailing edges down; notes say what differs.
+    """
 
     control: Annotated[Control, Means("dr rudder, ds stern planes, db bow planes")]
     limit: Annotated[Positive, Means("largest angle either way", "rad")]

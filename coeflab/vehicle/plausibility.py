@@ -41,6 +41,7 @@ CHANGED = 1e-6  # of the largest force: far above rounding, far below what any d
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
 SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
+PROBE = 0.05
 NAME = "plausibility"
 
 
@@ -154,11 +155,7 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     own = _own_terms(p)
     out = _signs(own, signs, p)
     if not own:
-        out.append(
-            _damping_check(
-                "damping", Severity.WARN, "none of X0', Xu, Yv, Zw, Kp, Mq, Nr", "at least one", "Nothing damps."
-            )
-        )
+        out += _by_tables(p)
     elif not any(c.severity is Severity.FAIL for c in out):
         out.append(_damping_check("damping", Severity.PASS, f"{len(own)} terms of a motion on itself", "below zero"))
     return [*out, *_rates(p, own), *_mirrored(p), *_ideal_products(p)]
@@ -166,6 +163,32 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
 
 def _damping_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
     return Check(NAME, subject, severity, statistic, rule, comment)
+
+
+def _by_tables(p: ParameterFile) -> list[Check]:
+    """What the fitted tables do against each motion alone, forward speed aside: its power at `PROBE` of speed and of U/L."""
+    nothing = _damping_check(
+        "damping", Severity.WARN, "none of X0', Xu, Yv, Zw, Kp, Mq, Nr", "at least one", "Nothing damps."
+    )
+    nu = np.zeros((12, 6))
+    nu[:, 0] = p.conditions.speed
+    unit = p.conditions.speed * np.where(np.arange(6) < 3, 1.0, 1.0 / p.scaling.length)
+    ways = np.array([1.0, -1.0])[:, None] * PROBE * unit
+    for i in range(1, 6):
+        nu[2 * i : 2 * i + 2, i] = ways[:, i]
+    force = force_of_tables(p, nu)
+    if force is None:
+        return [nothing]
+    power = [float(force[0, 0]), *(float(force[2 * i, i] - force[2 * i + 1, i]) for i in range(1, 6))]
+    damps = [f"{c} against {m}" for c, m, x in zip(COMPONENTS, MOTIONS, power, strict=True) if x < 0.0]
+    drives = [f"{c} with {m}" for c, m, x in zip(COMPONENTS, MOTIONS, power, strict=True) if x > 0.0]
+    out = []
+    if drives:
+        out.append(_damping_check("damping", Severity.WARN, f"tables: {', '.join(drives)}", "against the motion",
+                          "The tables drive what they should damp: is a sign wrong?"))  # fmt: skip
+    if damps:
+        out.append(_damping_check("damping", Severity.PASS, f"tables: {', '.join(damps)}", "against the motion"))
+    return out or [nothing]
 
 
 def _own_terms(p: ParameterFile) -> list[_Own]:

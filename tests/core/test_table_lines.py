@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.core.table import Table, as_printed, folded, percent, set_lines
+from coeflab.core.wording import Verbatim
 
 WORDS = st.lists(st.text("abcxyz_.", min_size=1, max_size=20), max_size=8).map(" ".join)
 TABLES = st.integers(1, 7).flatmap(
@@ -103,3 +104,9 @@ def test_a_share_has_no_more_digits_than_it_means(part: float, of: float, shown:
 def test_a_published_coefficient_has_the_digits_of_its_source(value: float | None, printed: str) -> None:
     """0.005200 stood beside two digits of uncertainty."""
     assert as_printed(value) == printed
+
+
+def test_a_zero_has_no_sign_but_in_a_users_own_text() -> None:
+    cells = ("-0", "-0.00 .. 0.3", "-0.0012", "-0e+00 deg", "2020-01-0", "run-0")
+    table = Table("T", tuple("abcdefg"), ((*cells, Verbatim("-0")),))
+    assert table.rows == (("0", "0.00 .. 0.3", "-0.0012", "0e+00 deg", "2020-01-0", "run-0", "-0"),)

@@ -186,6 +186,8 @@ def test_a_dive_mirrors_a_rise() -> None:
     for a, b in zip(dive.figures, rise.figures, strict=True):
         assert a.value == pytest.approx(b.value, rel=1e-6), a.name
     assert dive.trajectory.position[-1, 2] > 0.0 > rise.trajectory.position[-1, 2]
+    assert value(dive, "depth at the end") == pytest.approx(dive.trajectory.position[-1, 2])
+    assert "first passes zero" in next(f.definition for f in dive.figures if f.name == "time to level")
 
 
 def test_the_period_of_a_free_roll() -> None:

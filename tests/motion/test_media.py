@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -148,3 +149,17 @@ def test_medium_change_of_a_parameter_file() -> None:
     assert down.figures[1].value == pytest.approx(-np.sqrt(0.4 * 9.80665), rel=5e-3)
     with pytest.raises(InputError, match="no parameter file of the other medium"):
         planned(read_parameter_file("flyingfish_water"), "medium_change", {})
+
+
+@pytest.mark.parametrize(
+    ("first", "into", "start", "says"),
+    [
+        ("water", "air", "above", "--start below"), ("air", "water", "below", "--start above"),
+        ("water", "water", "below", "one of water, one of air"), ("air", "air", "above", "one of water, one of air"),
+    ],
+)  # fmt: skip
+def test_water_above_air_and_one_medium_twice_are_refused(first: str, into: str, start: str, says: str) -> None:
+    file = read_parameter_file(Path(f"flyingfish_{first}"))
+    with pytest.raises(InputError, match="times as dense as that above") as refused:
+        planned(file, "medium_change", {"into": f"flyingfish_{into}", "start": start})
+    assert says in str(refused.value)

@@ -274,3 +274,18 @@ def test_a_motion_that_fixed_steps_do_not_stand_is_said() -> None:
     for manoeuvre in ("turning_circle", "pull_out"):
         found = uncertainty(sound, replace(asked, manoeuvre=manoeuvre, options={}))
         assert not any("fixed steps" in s for s in found.statements)
+
+
+@pytest.mark.parametrize("offset", [False, True])
+def test_a_motion_that_never_occurs_earns_its_coefficients_no_recommendation(offset: bool) -> None:
+    """X0' and Xvv' come of one method and go together; on a straight coast-down there is no v for Xvv' to act on."""
+    values = LINEAR | {"X0": -4e-2, "Xvv": -1e-2} | ({"Y0": 1e-4} if offset else {})
+    u95 = {"X0'": 8e-3, "Xvv'": 2e-3} | ({"Y0'": 5e-5} if offset else {})
+    file = with_uncertainty(with_mass(parameters(values), np.zeros(3)), u95, {("X0'", "Xvv'"): 0.9})
+    found = uncertainty(
+        file, Question("stop", {"astern": 0.0, "remaining": 0.8}, members=40, free=("u", "v", "r"), kernel="numpy")
+    )
+    share = dict(found.importances[found.names.index("stopping time")].known)
+    assert share["X0'"] > 0.8
+    assert ("Xvv'" in share) == offset
+    assert any("without effect on this motion: " in s and "Xvv'" in s for s in found.statements) != offset

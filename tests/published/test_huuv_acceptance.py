@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
+from coeflab.cli import as_json, show
 from coeflab.motion.tune.tuning import OPEN
 from coeflab.published.huuv.acceptance import acceptance
 from coeflab.published.huuv.model import read_huuv
@@ -148,3 +151,9 @@ def test_figure_18_stands_below_17_and_no_point_is_drawn_that_is_not_printed(fou
     for name in ("huuv_fig12_13_16", "huuv_fig15"):
         assert all("printed" not in s.name for p in dict(found.figures)[name].panels for s in p.series)
         assert "Assumed" in dict(found.figures)[name].caption
+
+
+@SLOW
+def test_json_of_every_table(found: Acceptance, capsys: pytest.CaptureFixture[str]) -> None:
+    show.json_object(as_json.acceptance(found))
+    assert json.loads(capsys.readouterr().out)["passed"] is True

@@ -149,11 +149,26 @@ def test_steady_motions_and_the_same_in_time(five: FiveDof, file: ParameterFile)
 def test_bow_planes_change_the_depth_of_a_vehicle_that_has_no_others(file: ParameterFile) -> None:
     found = simulate(file, "depth_change", {})
     assert found.vehicle.free == ("u", "w", "q")
-    assert any("first bow planes +10 deg, to dive" in said for said in found.manoeuvre.statements)
+    said = " ".join(found.manoeuvre.statements)
+    assert "first bow planes +10 deg, to dive" in said
+    assert "whose positive db turns the bow down" in said
     value = {f.name: f.value for f in found.figures}
     assert value["time to execute"] == pytest.approx(1.036, rel=1e-3)
     assert value["overshoot of depth"] == pytest.approx(0.07133, rel=1e-3)
     assert found.trajectory.position[:, 2].max() > 0.1
+
+
+def test_the_file_says_that_its_elevators_turn_against_the_rule_of_bodies(file: ParameterFile) -> None:
+    alone = {
+        m.response: sum(
+            t.value * np.radians(30.0) ** t.factors[0].power for t in m.terms if {f.variable for f in t.factors} == {"db"}
+        )
+        for m in file.models if "db" in {v.name for v in m.variables}
+    }  # fmt: skip
+    assert (alone["C_L"], alone["C_m"]) == pytest.approx((-0.074, -0.021), abs=5e-4)
+    [said] = [note for note in file.provenance.notes if note.startswith("Sense of db")]
+    assert "trailing edge up" in said
+    assert "turns the bow down" in said
 
 
 def test_the_geometrys_masses_change_the_turns_and_the_turns_tell_only_differences(five: FiveDof) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
+from coeflab.cli import as_json, show
 from coeflab.core.provenance import WORKS
 from coeflab.motion.trim.operating_point import Outcome
 from coeflab.published.flyingfish.acceptance import acceptance
@@ -162,3 +165,9 @@ def test_figures_that_are_not_made_are_named_with_a_reason(made: Acceptance) -> 
     said = " ".join(made.statements)
     for number in ("1 (structure)", "2 (tilting mechanism)", "4 (bench)", "6 and 7"):
         assert number in said
+
+
+@pytest.mark.slow
+def test_json_of_every_table(made: Acceptance, capsys: pytest.CaptureFixture[str]) -> None:
+    show.json_object(as_json.acceptance(made))
+    assert json.loads(capsys.readouterr().out)["passed"] is True

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
+from coeflab.cli import as_json, show
 from coeflab.motion.simulation import simulate
 from coeflab.published.thauv.acceptance import acceptance
 from coeflab.report.acceptance import Acceptance, ComparedTable
@@ -191,3 +194,8 @@ def test_simulators_hold_the_whole_force_of_a_dive_and_lose_the_thrusters_alone(
 
 def test_the_same_twice(thauv: Acceptance) -> None:
     assert acceptance() == thauv
+
+
+def test_json_of_every_table(thauv: Acceptance, capsys: pytest.CaptureFixture[str]) -> None:
+    show.json_object(as_json.acceptance(thauv))
+    assert json.loads(capsys.readouterr().out)["passed"] is True

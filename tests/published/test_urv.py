@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
+from coeflab.cli import as_json, show
 from coeflab.published.urv import acceptance as urv
 from coeflab.published.urv import tasks, theory
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 
 
 @pytest.fixture(scope="module")
@@ -99,3 +102,10 @@ def test_hamel_sees_a_changed_mass(monkeypatch: pytest.MonkeyPatch) -> None:
     mass = theory.kane.mass_matrix
     monkeypatch.setattr(theory.kane, "mass_matrix", lambda c, q: 1.05 * mass(c, q))
     assert theory.hamel_bias(chain, theory.Q, speeds) == pytest.approx(1.05 * before)
+
+
+def test_json_of_every_table(
+    tables: dict[str, ComparedTable], moving: dict[str, ComparedTable], capsys: pytest.CaptureFixture[str]
+) -> None:
+    show.json_object(as_json.acceptance(Acceptance("urv", "", (*tables.values(), *moving.values()), (), (), ())))
+    assert json.loads(capsys.readouterr().out)["passed"] is True

@@ -234,6 +234,27 @@ def test_a_forest_says_what_lies_outside():
     assert forest_figure((replace(far, published=(None,)),), ("experiment",), "experiment") is None
 
 
+@pytest.mark.parametrize(("value", "way"), [(-0.1, "><"), (-9e-3, "")])
+def test_a_bar_cut_at_the_frame_has_an_arrow(value: float, way: str):
+    half = {"><": 0.35, "": 1e-3}[way]
+    made = forest_figure((AnswerRow("Yv", value, half),), (), "")
+    assert ("goes on beyond the frame" in made.caption) == bool(way)
+    plain = forest_figure((AnswerRow("Yv", value, half / 1e4),), (), "")
+    assert (made.svg.count("<use ") - plain.svg.count("<use ")) == len(way)
+
+
+def test_a_value_whose_interval_contains_zero_has_an_open_sign():
+    study = small_study(FULL)
+    fit = study.fits[0]
+    wide = tuple(replace(c, u95=2.0 * abs(c.value)) if c.symbol == "Nv" else c for c in fit.coefficients.coefficients)
+    open_ = replace(study, fits=(replace(fit, coefficients=replace(fit.coefficients, coefficients=wide)),))
+    said = answer(open_, drawn=False).sentence
+    assert (
+        said
+        == "Study tow: two of three wanted coefficients found, each with U95, sign open of Nv'; no rotating-arm data."
+    )
+
+
 def test_without_published_values_the_forest_is_over_ours():
     (panel,) = answer(small_study(FULL)).forest.panels
     assert panel.series[0].x == (1.0, 1.0)

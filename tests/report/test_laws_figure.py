@@ -42,3 +42,22 @@ def test_a_curve_is_what_was_given() -> None:
 
 def test_equal_input_gives_equal_bytes() -> None:
     assert made() == made()
+
+
+@pytest.mark.parametrize(("name", "falls"), [("depth  [m]", True), ("down  [m]", True), ("north  [m]", False)])
+def test_down_points_down_on_the_page(name: str, falls: bool) -> None:
+    dive = Trace("dive", np.array([0.0, 1.0]), np.array([-1.0, 2.0]), 0)
+    [panel] = laws_figure("d", "Dive", "", "", [Plot(name, "time  [s]", (dive,))]).panels
+    assert (panel.up[0] > panel.up[1]) == falls
+
+
+@pytest.mark.parametrize(("east", "north"), [(3.0, 3.0), (40.0, 3.0), (3.0, 40.0)])
+def test_a_track_from_above_has_one_scale(east: float, north: float) -> None:
+    track = Trace("track", np.array([0.0, east]), np.array([0.0, north]), 0)
+    [panel] = laws_figure(
+        "t", "Track", "", "", [Plot("north  [m]", "east  [m]", (track,), 190.0, is_equal=True)]
+    ).panels
+    (_, _, wide, tall), (x0, x1), (y0, y1) = panel.frame, panel.across, panel.up
+    assert wide / (x1 - x0) == pytest.approx(tall / (y1 - y0), rel=1e-3)
+    assert x0 < 0.0 < east < x1
+    assert y0 < 0.0 < north < y1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -73,3 +74,13 @@ def test_depth_over_time_grows_downward_too() -> None:
 def test_the_planes_that_are_drawn(east: float, down: float, planes: list[str]) -> None:
     titles = [f.title for f in motion_figures(moved(east, down), "m", LENGTH) if f.title.startswith("Track")]
     assert titles == [f"Track in the {p} plane" for p in planes]
+
+
+def test_a_legend_of_many_tilts_is_whole() -> None:
+    """Three angles and four tilts are four rows: the upper two were cut off."""
+    still = moved(0.0, 30.0)
+    tilts = {f"rotor{i}.tilt": np.linspace(0.0, 1.0 + i, len(still.time)) for i in range(1, 8)}
+    figure = next(f for f in history_figures(replace(still, controls=tilts), "m") if f.title.startswith("Attitude"))
+    placed = [float(y) for y in re.findall(r'<text [^>]*y="(-?[\d.]+)"[^>]*>rotor\d, tilt', figure.svg)]
+    assert len(placed) == 7
+    assert min(placed) > 8.75

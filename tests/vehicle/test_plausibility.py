@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.core.files import shipped
 from coeflab.core.table import Severity
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.plausibility import plausibility, stated_matrix
 from tests.formats import of_second_order as second
@@ -153,3 +154,19 @@ def test_a_table_that_is_said_to_lack_the_munk_moment_but_has_it() -> None:
         assert "models of N" not in found(tabled(slope))
     assert "models of N" not in found(floating())
     assert "models of N" not in found(huuv_file(read_huuv()))
+
+
+@pytest.mark.parametrize("name", ["huuv", "huuv_5dof"])
+def test_tables_damp_where_no_derivative_does(name: str) -> None:
+    file = read_parameter_file(shipped("cfd_data") / name / f"{name}.parameters.json")
+    [told] = [c for c in plausibility(file) if c.subject == "damping"]
+    assert told.severity is Severity.PASS
+    assert {"X against u", "Y against v", "N against r"} <= set(told.statistic.removeprefix("tables: ").split(", "))
+    assert ("M against q" in told.statistic) == (name == "huuv_5dof")
+    drag = [m for m in file.models if m.response == "C_S"]
+    turned = [
+        m.model_copy(update={"terms": tuple(t.model_copy(update={"value": -t.value}) for t in m.terms)}) for m in drag
+    ]
+    driven = found(file.model_copy(update={"models": tuple(turned)}), Severity.WARN)
+    assert driven["damping"].startswith("The tables drive")
+    assert found(file.model_copy(update={"models": ()}), Severity.WARN)["damping"] == "Nothing damps."

@@ -79,6 +79,18 @@ def test_a_flipped_sign_is_found(suboff: Study, name: str, symbol: str, severity
         assert f"with the other sign, {symbol}' = {stated.value:.4g}" in " ".join(c.comment for c in found)
 
 
+@pytest.mark.parametrize(("half", "severity"), [(2.0, "note"), (0.5, "fail"), (None, "warn")])
+def test_a_sign_that_the_data_leave_open_is_a_note(suboff: Study, half: float | None, severity: str) -> None:
+    fit = suboff.fits[0]
+    slope = next(c for c in fit.coefficients.coefficients if c.symbol == "Yv")
+    assert slope.value is not None
+    turned = replace(slope, value=-slope.value, u95=None if half is None else half * abs(slope.value))
+    alone = replace(fit, coefficients=replace(fit.coefficients, coefficients=(turned,)))
+    [found] = signs(replace(suboff, fits=(alone,), parameter_files={}, missing=()))
+    assert found.severity.value == severity
+    assert ("leave the sign open" in found.comment) == (severity == "note")
+
+
 @pytest.mark.parametrize("symbol", ["Yr", "Nv"])
 def test_what_a_wide_slope_leaves_open_is_not_doubted(suboff: Study, symbol: str) -> None:
     """Yv' of the bare hull is known to 81 %: within that the force of either sign acts on the body. A narrow one tells."""

@@ -180,6 +180,17 @@ def test_shares_of_the_turn_name_the_estimates(steered: Study) -> None:
     assert "Nr' estimate" in figure.description
 
 
+def test_shares_above_the_whole_are_explained_below_their_table(steered: Study) -> None:
+    assert steered.shape is not None
+    (made,) = steered.parameter_files.values()
+    for known, told in (((("Xu|u|'", 1.0), ("Yv'", 0.56)), True), ((("Yv'", 0.56),), False)):
+        each = [
+            replace(c, importances=tuple(replace(i, known=known) for i in c.importances)) for c in steered.shape.carried
+        ]
+        notes = estimates_table(made, each, few=True).notes
+        assert any("numbers of one method go together" in n for n in notes) == told
+
+
 def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     first = answer(steered)
     assert len(first.sentence) <= 160

@@ -54,7 +54,8 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     known = {v for t in vehicle.law.terms for v in t.variables}
     planes = "db" if "db" in known and "ds" not in known else "ds"
     angle = within_limit(vehicle, planes, o.planes, f"{NAME}.planes")
-    order = sign * angle * turning_sense(vehicle, planes, "q", float(nu[0]))
+    sense = turning_sense(vehicle, planes, "q", float(nu[0]))
+    order = sign * angle * sense
     orders, said = propulsion(vehicle, float(nu[0]))
     level = max(5.0 * vehicle.length / float(nu[0]), 1.0)
     phases = (
@@ -62,7 +63,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         Phase("reversed", {planes: -order}, o.longest, Until("pitch", o.way == "dive", 0.0)),
         Phase("amidships", {planes: 0.0}, level),
     )
-    first = f"first {SURFACES[planes]} {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file"
+    first = f"first {SURFACES[planes]} {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file, whose positive {planes} turns the bow {'up' if sense > 0.0 else 'down'}"
     return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, first))
 
 
@@ -88,7 +89,11 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
             None if deepest is None or execute is None else abs(deepest[1] - value_at(t, depth, execute)), "m",
             None if deepest is None else deepest[0], "from the reversal of the planes to the extreme of depth",
         ),
-        ("time to level", level, "s", level, "until pitch is back to zero"),
+        ("time to level", level, "s", level, "until pitch first passes zero; it may pass it again"),
+        (
+            "depth at the end", float((depth[-1] - depth[0]) * (1.0 if down else -1.0)), "m", float(t[-1]),
+            f"after {t[-1]:.4g} s, from the start, {'down' if down else 'up'}; planes amidships from time to level, nothing keeps it",
+        ),
     )  # fmt: skip
     return tuple(
         judged(

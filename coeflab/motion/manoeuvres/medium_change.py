@@ -23,6 +23,7 @@ summary = "through the surface between two media, each with its parameter file: 
 citations = ("tj_flyingfish", "fossen2011")
 plane = "vertical"
 NAME = "medium_change"
+DENSER = 10.0  # at least, the medium below over the medium above: water over air, never one water over another
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +67,14 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     Raises
     ------
     InputError
-        No other parameter file, or commands that a medium's thrusters do not have.
+        No other parameter file, two media whose densities are not those of a liquid below a gas, or commands that a medium's
+        thrusters do not have.
     """
     o = parse_options(Options, options, NAME)
     if not o.into:
         raise InputError("no parameter file of the other medium", "--into FILE", column=f"{NAME}.into")
     other = vehicle_of(read_parameter_file(Path(o.into)), vehicle.free)
+    _require_liquid_below(vehicle, other, o.start)
     sign = -1.0 if o.start == "below" else 1.0
     surface = sign * o.depth
     each = (thruster_orders(vehicle, o.commands), thruster_orders(other, o.then))
@@ -88,6 +91,23 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     )
     return Manoeuvre(
         NAME, tuple(phases), velocity, from_euler(0.0, o.pitch, 0.0), each[0], said, (other,), surface
+    )  # fmt: skip
+
+
+def _require_liquid_below(vehicle: Vehicle, other: Vehicle, start: str) -> None:
+    below, above = (vehicle, other) if start == "below" else (other, vehicle)
+    if below.density >= DENSER * above.density:
+        return
+    turned = above.density >= DENSER * below.density
+    found = (
+        f"{below.density:.4g} kg/m^3 of {below.name} below the surface, {above.density:.4g} of {above.name} above it"
+    )
+    way = "above" if start == "below" else "below"
+    raise InputError(
+        found, f"the medium below at least {DENSER:g} times as dense as that above",
+        column=f"{NAME}.start" if turned else f"{NAME}.into",
+        advice=f"{vehicle.name} is the medium of the start: --start {way}." if turned else
+        "Take the parameter file of the other medium: one of water, one of air.",
     )  # fmt: skip
 
 

@@ -293,7 +293,9 @@ def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], 
     return out
 
 
-def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -> frozenset[str]:
+def unfelt(
+    vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str], resting: Collection[str] = ()
+) -> frozenset[str]:
     """Symbols that cannot change the motion: of held motions, of controls that are never moved, of terms that are not in the law.
 
     Parameters
@@ -303,14 +305,18 @@ def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -
     symbols : sequence of str
     ordered : collection of str
         Controls that the manoeuvre moves.
+    resting : collection of str
+        Free motions that do not occur, whatever the draw: v and r of a straight run.
     """
     terms = {t.in_file: t for t in vehicle.law.terms}
-    still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered})
+    still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered}) | {*resting}
     out = set()
     for s in symbols:
         at = entry_of(s)
         if at is not None:
-            felt = vehicle.water.used == MEASURED and all(MOTIONS[i] in vehicle.free for i in at)
+            felt = vehicle.water.used == MEASURED and all(
+                MOTIONS[i] in vehicle.free and MOTIONS[i] not in resting for i in at
+            )
         else:
             felt = s in terms and _acts(terms[s], vehicle, still)
         if not felt:

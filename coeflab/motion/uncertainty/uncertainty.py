@@ -26,11 +26,12 @@ from coeflab.core.machine import compiles, cores, one_thread, stage
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.fits.uncertainty.propagation import HIGH, LOW
+from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import in_current, undetermined_at_once
 from coeflab.motion.manoeuvre import Figure, Manoeuvre
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.marching import KERNELS, chosen_step, march_by_tolerance
-from coeflab.motion.trajectory import Ended
+from coeflab.motion.trajectory import Ended, Trajectory
 from coeflab.motion.uncertainty.batches import Batch, Setup, Store, carried_out, figures_of, prepared, run_batch
 from coeflab.motion.uncertainty.draws import Uncertain, drawn, drawn_stability, unfelt
 from coeflab.motion.uncertainty.sobol import (
@@ -328,6 +329,7 @@ class Carried:
 BATCH, LEAST_BATCH, MEMORY = 100, 5, 128 << 20
 STATE_BYTES = 14 * 8
 CHUNK = 2000  # members whose eigenvalues are taken at once, for memory's sake
+TRIED = 5  # draws until one has a plan
 SEEN = 0.005  # of the variance: less shows as 0 % in whole per cent
 # Of a figure, fixed steps against the adaptive integrator: far below any interval that is worth its members.
 STEPPED = 1e-3
@@ -371,12 +373,13 @@ def uncertainty(
     _, body, varied = prepared(setup)
     members = varied.members(question.members, question.seed)
     setup = replace(setup, record=min(plan.duration / 100.0, 0.1 * body.length / body.speed))
-    exact, how = _at_the_file(setup, plan)
+    exact, how, still_at_file = _at_the_file(setup, plan)
     if all(f.value is None for f in exact):
         return _stability_alone(
             parameters, question, body, varied, members, undetermined_at_once(body, plan, exact) or _reasons(exact)
         )
-    still = unfelt(body, varied.symbols, _ordered(plan))
+    resting = _resting(setup, still_at_file, members)
+    still = unfelt(body, varied.symbols, _ordered(plan), resting)
     felt = frozenset() if any(question.current) else still
     sampled = sobol_design(varied, question.members, question.seed, felt) if question.sobol else None
     every = np.vstack([members, *(sampled.to_run if sampled else ())])
@@ -434,11 +437,39 @@ def _step(setup: Setup, plan: Manoeuvre, every: Array) -> float:
     )
 
 
-def _at_the_file(setup: Setup, plan: Manoeuvre) -> tuple[tuple[Figure, ...], str]:
-    """Figures at the values of the file by the adaptive integrator, and how its motion ended."""
+def _at_the_file(setup: Setup, plan: Manoeuvre) -> tuple[tuple[Figure, ...], str, frozenset[str]]:
+    """Figures at the values of the file by the adaptive integrator, how its motion ended, and free motions that stayed zero."""
     _, body, _ = prepared(setup)
     motion = march_by_tolerance(body, plan, setup.record, current=np.array(setup.current)).trajectory()
-    return tuple(MANOEUVRES.load(setup.manoeuvre).figures(motion, body, dict(setup.options))), motion.ended.value
+    return (
+        tuple(MANOEUVRES.load(setup.manoeuvre).figures(motion, body, dict(setup.options))),
+        motion.ended.value,
+        _zeros(body, motion),
+    )
+
+
+def _zeros(body: Vehicle, motion: Trajectory) -> frozenset[str]:
+    nu = np.asarray(motion.velocity)
+    return frozenset(m for i, m in enumerate(MOTIONS) if m in body.free and not np.any(nu[:, i]))
+
+
+def _resting(setup: Setup, zeros: frozenset[str], members: Array) -> frozenset[str]:
+    """Of motions that stay zero at the values of the file those that a draw of all coefficients leaves at zero, too.
+
+    A draw deviates in every coefficient, so that what could start such a motion does. Empty where no draw has a plan.
+    """
+    if not zeros:
+        return zeros
+    parameters, body, varied = prepared(setup)
+    plugin, current = MANOEUVRES.load(setup.manoeuvre), np.array(setup.current)
+    for rows in members[:TRIED, None]:
+        member = drawn(body, parameters, varied.symbols, rows, setup.tables).member(0)
+        try:
+            plan = plugin.plan(member, dict(setup.options))
+        except InputError:
+            continue
+        return zeros & _zeros(member, march_by_tolerance(member, plan, setup.record, current=current).trajectory())
+    return frozenset()
 
 
 def _reasons(figures: tuple[Figure, ...]) -> str:

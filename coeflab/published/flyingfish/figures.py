@@ -248,7 +248,7 @@ def _curves(found: Mapping[int, Trajectory]) -> Figure:
         "Motions 9 and 10 of Table 1 from the trims by the corrected equation 40, held: one turn in 72 s on 5.73 m, and two turns of 18 s "
         "on 1.432 m, 1.08 m down each (our picture for Fig. 10, which prints no number of its tracks).",
         "A large circle and a small one seen from above, and depth over time: none, and steadily down.",
-        (Plot("north  [m]", "east  [m]", both, 190.0), Plot("depth  [m]", "time  [s]", depth, 80.0)),
+        (Plot("north  [m]", "east  [m]", both, 190.0, is_equal=True), Plot("depth  [m]", "time  [s]", depth, 80.0)),
     )  # fmt: skip
 
 

@@ -183,7 +183,7 @@ def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
         f"{ASSUMED} Above, those of the synthetic elevator table, over delta - alpha; by the area of both, {five.constants['area']:g} m^2, "
         f"the moment also by {five.constants['length']:g} m, about the axis of rotation. A positive angle turns the leading edge down. "
         f"Below, no figure of the paper: from {five.level.chosen['speed']:g} m/s, both thrusters at 60 %, simulated with the parameter "
-        "file huuv_5dof.parameters.json."
+        "file huuv_5dof.parameters.json; depth grows downward."
     )
     return laws_figure(
         "huuv-fig15", "Fig. 15: the elevators, and a start with them deflected", caption,

@@ -24,6 +24,9 @@ NOTES = (
     "the horizontal laws over the paper's factor of 2, assumed; the paper prints no number of Figs. 12-16.",
     "Elevators: db, both together, laws over delta - alpha of a synthetic table; the file takes V^2 where equations 15-17 have "
     "V_xz^2 = V^2 cos^2(beta).",
+    "Sense of db: as in the paper, over delta - alpha, a positive angle turns the leading edge down and the trailing edge up, so that "
+    "+30 deg at alpha = 0 lifts less and turns the bow down. That is against coeflab's rule for planes on a body, hinge [0, 1, 0], "
+    "positive with trailing edges down; the sign is the paper's and is kept.",
     "Weight 19 kg printed; buoyancy, z_CG and moments of inertia assumed. Roll is not described: p stays zero.",
 )
 MASSES = {

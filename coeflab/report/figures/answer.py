@@ -205,6 +205,12 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
     caption = "Bars: U95 of ours." + (f" The line is {compared}." if compared else "")
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
+    ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
+    caption += (
+        " A bar with an arrow goes on beyond the frame."
+        if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1]
+        else ""
+    )
     return Figure("answer-forest", svg, title, caption, said, (panel,))
 
 
@@ -235,6 +241,10 @@ def _ours(
         tagged(strokes(axes, (low, top), (high, high), color=COLOURS["a"], linewidth=2.2, zorder=2), "ours")
         inside = (at >= across[0]) & (at <= across[1])
         tagged(axes.plot(at[inside], high[inside], linestyle="none", zorder=3, **look), "ours")
+        for cut, end, marker in ((at - half < across[0], across[0], "<"), (at + half > across[1], across[1], ">")):
+            if np.any(cut):
+                arrow = {**GOES_ON, "marker": marker, "color": COLOURS["a"]}
+                tagged(axes.plot(np.full(int(cut.sum()), end), high[cut], clip_on=False, **arrow), "ours")
     notes = [f"{primed(r.symbol)}: {plus_minus(r.value, r.u95, '±')}" for *_, r in mine]
     handle = tagged(Line2D([], [], linewidth=2.2, label="ours, U95", **look), "ours")
     return [handle], [points("ours", "ours", at, high, notes)]

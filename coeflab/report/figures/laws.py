@@ -12,11 +12,12 @@ from matplotlib.lines import Line2D
 
 from coeflab.core.types import Array, brief, locked
 from coeflab.report.document import Figure, Panel
-from coeflab.report.figures.panel import BOTTOM, GAP, LEGEND_ROW, drawing, legend, limits, panel
+from coeflab.report.figures.panel import BOTTOM, GAP, LEFT, LEGEND_ROW, RIGHT, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, Style, curve, numbers, points, tagged
 from coeflab.report.figures.svg import COLOURS, settings, svg_text
 
 SCALED = 26.0
+DOWNWARDS = ("depth", "down")
 PLAIN = Style(COLOURS["ink"], "-", "o")
 
 
@@ -72,7 +73,7 @@ class Plot:
     Attributes
     ----------
     name_up, name_across : str
-        Labels, ``name  [unit]``.
+        Labels, ``name  [unit]``. What is called depth or down grows downwards on the page.
     traces : tuple of Trace
     height : float
         Points.
@@ -80,6 +81,8 @@ class Plot:
         Half-width of a band about zero.
     is_scaled : bool
         Whether the axis across has texts; otherwise the panel below carries them.
+    is_equal : bool
+        One scale on both axes: a track seen from above.
     """
 
     name_up: str
@@ -88,6 +91,7 @@ class Plot:
     height: float = 110.0
     allowed: float | None = None
     is_scaled: bool = True
+    is_equal: bool = False
 
 
 def laws_figure(anchor: str, title: str, caption: str, description: str, plots: Sequence[Plot]) -> Figure:
@@ -110,8 +114,9 @@ def laws_figure(anchor: str, title: str, caption: str, description: str, plots: 
         bottom, panels = BOTTOM + body, []
         for plot, room in zip(plots, rooms, strict=True):
             bottom -= plot.height
+            across, up = _frame(plot)
             axes = panel(
-                figure, bottom, plot.height, across=_across(plot), up=_up(plot), name_up=plot.name_up,
+                figure, bottom, plot.height, across=across, up=up, name_up=plot.name_up,
                 name_across=plot.name_across if plot.is_scaled else "", most_up=5 if plot.height > 90.0 else 3,
             )  # fmt: skip
             panels.append(_drawn(axes, plot, keys))
@@ -120,6 +125,18 @@ def laws_figure(anchor: str, title: str, caption: str, description: str, plots: 
         legend(figure, handles, BOTTOM + body)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description, tuple(panels))
+
+
+def _frame(plot: Plot) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Both ranges; of what grows downwards the upright one is from below to above on the page."""
+    (x0, x1), (y0, y1) = _across(plot), _up(plot)
+    if plot.is_equal:
+        ratio = (WIDTH - LEFT - RIGHT) / plot.height
+        wide = max(x1 - x0, ratio * (y1 - y0))
+        (x0, x1), (y0, y1) = (
+            ((a + b - w) / 2.0, (a + b + w) / 2.0) for a, b, w in ((x0, x1, wide), (y0, y1, wide / ratio))
+        )
+    return (x0, x1), (y1, y0) if plot.name_up.split("  ")[0] in DOWNWARDS else (y0, y1)
 
 
 def _across(plot: Plot) -> tuple[float, float]:
@@ -132,7 +149,7 @@ def _up(plot: Plot) -> tuple[float, float]:
 
 
 def _drawn(axes: Axes, plot: Plot, keys: dict[str, str]) -> Panel:
-    low, high = axes.get_ylim()
+    low, high = sorted(axes.get_ylim())
     if plot.allowed is not None:
         axes.axhspan(-plot.allowed, plot.allowed, color=COLOURS["band"], alpha=0.25, linewidth=0, zorder=0.2)
     if low < 0.0 < high:

@@ -14,7 +14,7 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
-from coeflab.report.figures.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
+from coeflab.report.figures.panel import BOTTOM, LEFT, LEGEND_ROW, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.svg import COLOURS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
@@ -154,8 +154,8 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
     up = up[::-1] if "depth" in series else up
     description = f"{title} over {span[1] - span[0]:g} s: {', '.join(series)}."
     with settings():
-        figure = drawing(240.0)
-        top = 240.0 - 4.0 - 2 * 12.2 - 8.0
+        top = 240.0 - 4.0 - 2 * LEGEND_ROW - 8.0
+        figure = drawing(top + 12.0 + LEGEND_ROW * max(2, (len(series) + 1) // 2))
         axes = panel(figure, BOTTOM, top - BOTTOM, across=span, up=up, name_up=name_up, name_across="time  [s]")
         handles: list[Any] = []
         for i, (name, values) in enumerate(series.items()):

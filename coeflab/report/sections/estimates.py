@@ -37,6 +37,7 @@ ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
     "between methods. A computation or a measurement replaces each: coeflab merge."
 )
+TOGETHER = "share of its variance that goes if this number alone is known; numbers of one method go together: more than 100 % in all."
 SHARES = (
     "Shares of the variance that would go if that one number were known, over draws of all of them. The largest is the number that "
     "is worth the next computation or test. Estimates of one method go together, so that the shares may add up to more than one."
@@ -134,8 +135,10 @@ def estimates_table(
         *(("made of",) if parts is not None else ()),
     )
     left = frozenset({0, 4, *((len(heads) - 1,) if parts is not None else ())})
-    notes = (f"{rest} more; --wide shows all.",) if few and rest else ()
-    return Table(f"{parameters.name}: numbers and estimates", heads, rows, notes, left, ("made of",))
+    notes = [f"{rest} more; --wide shows all."] if few and rest else []
+    if main is not None and sum(shares.values()) > 1.0:
+        notes.append(f"of {main[0].figure.name}: {TOGETHER}")
+    return Table(f"{parameters.name}: numbers and estimates", heads, rows, tuple(notes), left, ("made of",))
 
 
 def _controls(c: Coefficient) -> bool:

@@ -43,20 +43,23 @@ def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:
         return None
     good = c.value < 0.0
     sure = c.u95 is not None and abs(c.value) > c.u95
-    severity = Severity.PASS if good else Severity.FAIL if sure else Severity.WARN
+    open_ = c.u95 is not None and not sure
+    severity = Severity.PASS if good else Severity.FAIL if sure else Severity.NOTE if open_ else Severity.WARN
     if good:
         comment = f"As expected: {NEGATIVE[symbol]}."
     elif c.status is Status.ESTIMATE:
         comment = (
             "An estimate of parts that oppose each other, or of parts that are not seen: `coeflab draw` shows what is."
         )
+    elif open_:
+        comment = f"{source}Its interval contains zero: the data leave the sign open."
     elif source:
         comment = f"{source}Check its axes and the convention of its sign; {NEGATIVE[symbol]}."
     else:
         comment = (
             "Check the declared axes and the sign of the angle; for Nr' and Mq' whether the force contains inertia."
         )
-    found = f"{primed(symbol)} = {c.value:.3g}"
+    found = f"{primed(symbol)} = {c.value:.3g}" + (f" +- {c.u95:.2g}" if open_ and not good else "")
     return Check("signs", f"{owner} {primed(symbol)}", severity, found, "below zero", comment)
 
 
