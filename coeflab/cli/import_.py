@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 
 MODEL = "manoeuvring_model"
+FINDINGS = 12  # lines of findings below the first slopes
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
 
 
@@ -86,7 +87,7 @@ def command(
 
     Shows one form: what each column is and what each setting would be, why, and what is open. On a terminal one line answers
     it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
-    first slopes. Nothing is taken that the form did not show.
+    first slopes with the checks that fail or warn. Nothing is taken that the form did not show. Exit code 1 when a check fails.
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
@@ -114,12 +115,14 @@ def command(
     if not sys.stdin.isatty():
         _listed("Check", draft.warned())
     _written(out, table)
-    _first_slopes(out)
+    failed = _first_slopes(out)
     others = [s for s in draft.sheets if s != said.options.get("sheet")]
     _listed(
         "The other sheets, with the answers of this one",
         [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
     )
+    if failed:
+        raise typer.Exit(1)
 
 
 def _named_after(file: Path) -> Path:
@@ -518,21 +521,24 @@ def _brief(note: str) -> str:
     return note.partition(". random:")[0] + "." * (". random:" in note)
 
 
-def _first_slopes(folder: Path) -> None:
+def _first_slopes(folder: Path) -> bool:
     """The main table of derivatives that the campaign gives, or in one line why it gives none, and the command for more.
 
-    Where no setting is swept while the others rest, the rows are fitted as one model.
+    Where no setting is swept while the others rest, the rows are fitted as one model. Below it what the checks find, as
+    `coeflab fit` says it; true where one fails.
     """
     from coeflab.cli.fit import DEFAULT, MAIN
+    from coeflab.core.table import Severity
     from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
     from coeflab.study.plan import table_at
     from coeflab.study.study import Plan
+    from coeflab.tables.campaign import FILE
     from coeflab.tables.reading import suited_fit
     from coeflab.workbench import run
 
     suited = suited_fit(folder)
-    study, why = None, ""
+    study, why, failed = None, "", False
     for fit in dict.fromkeys([suited, MODEL] if suited == DEFAULT else [suited]):
         plan = Plan(
             name=folder.name, title=folder.name, tables=(table_at(folder, (fit,), {fit: {}}),), wanted=MAIN if fit == DEFAULT else ()
@@ -563,4 +569,12 @@ def _first_slopes(folder: Path) -> None:
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
             left=frozenset({0}),
         ))  # fmt: skip
+        checks = [c for c in study.checks if c.name != "law at points"]  # as in `coeflab fit`
+        show.findings(checks, most=FINDINGS)
+        failed = any(c.severity is Severity.FAIL for c in checks)
+        if failed:
+            show.sentence(
+                f"The campaign is written, and a check fails. Correct its {FILE}, or import again with --force."
+            )
     show.command_line("Next", typed)
+    return failed

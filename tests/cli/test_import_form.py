@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from coeflab.cli import app, import_
+from coeflab.cli.import_ import _first_slopes
 from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -223,3 +225,35 @@ def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Pat
         (tmp_path / "campaign.toml").write_text(keys.format(said), encoding="utf-8")
         notes = [note for note in table_of(tmp_path).notes if note.startswith("warning: N and r have the same sign")]
         assert bool(notes) is warned
+
+
+DRIFTS = (-8, -6, -4, -2, 0, 2, 4, 6, 8)
+
+
+def swept(monkeypatch: pytest.MonkeyPatch, file: Path, *maps: str, speed: str = "2") -> Result:
+    """An import that prints its first slopes."""
+    monkeypatch.setattr(import_, "_first_slopes", _first_slopes)
+    said = {"axes.frame": "FRD", "axes.reference_point": "midship", "scaling.length": "4 LOA",
+            "conditions.density": "998.2", "conditions.speed": speed, "axes.beta": "v = -U sin(beta)",
+            "table.contains_inertia": "no"}  # fmt: skip
+    words = [a for k, v in said.items() for a in ("--set", f"{k}={v}")] + [a for m in maps for a in ("--map", m)]
+    return invoke("import", file, "--out", file.parent / "out", *words, "--accept")
+
+
+def test_below_the_first_slopes_stands_what_the_checks_find(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lost decimal comma of Y at 6 deg warns; Y of the other sign fails, the files stay and the exit code is 1."""
+    q, file = 0.5 * 998.2 * 4.0 * 16.0, tmp_path / "drift.csv"
+    for sign, code in ((1.0, 0), (-1.0, 1)):
+        sides = [f"{sign * 0.03 * q * np.radians(b):.2f}" for b in DRIFTS]
+        sides[7] = sides[7].replace(".", "")
+        file.write_text("beta [deg],Y [N]\n" + "".join(f"{b},{y}\n" for b, y in zip(DRIFTS, sides, strict=True)))
+        done = swept(monkeypatch, file)
+        said = flat(done.output.partition("First slopes")[2])
+        assert done.exit_code == code, done.output
+        assert "warn data gate, out/table.csv line 10: Y =" in said
+        assert ("fail signs, out Yv': Yv' = 0.03; expected below zero." in said) == bool(code)
+        assert ("The campaign is written, and a check fails." in said) == bool(code)
+        assert said.rpartition("Next: ")[2].startswith("coeflab fit")
+        assert max(map(len, done.output.partition("Next: ")[0].partition("First slopes")[2].splitlines())) <= 80
+        assert (tmp_path / "out" / "campaign.toml").exists()
+        shutil.rmtree(tmp_path / "out")
