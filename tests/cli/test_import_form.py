@@ -257,3 +257,18 @@ def test_below_the_first_slopes_stands_what_the_checks_find(tmp_path: Path, monk
         assert max(map(len, done.output.partition("Next: ")[0].partition("First slopes")[2].splitlines())) <= 80
         assert (tmp_path / "out" / "campaign.toml").exists()
         shutil.rmtree(tmp_path / "out")
+
+
+def test_a_fit_of_combined_settings_is_named_where_sweeps_are_too_short(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "arm.csv"
+    grid = [(b, r) for r in (0.2, 0.3, 0.4) for b in (-4, 0, 4, 8)]
+    file.write_text(
+        "beta [deg],r' [-],Y [N],N [Nm]\n" + "".join(f"{b},{r},{9 * b + r},{3 * b - 90 * r}\n" for b, r in grid)
+    )
+    done = swept(monkeypatch, file)
+    assert flat(done.output.replace("\\", "")).endswith("--fit manoeuvring_model"), done.output
+    assert "9 rows combine motions: --fit manoeuvring_model fits them as one model." in str(
+        invoke("fit", file.parent / "out").exception
+    )
