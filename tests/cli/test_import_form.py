@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from coeflab.cli import app, import_
 from coeflab.cli.import_ import _first_slopes
+from coeflab.study.checks import coverage
 from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -230,13 +231,13 @@ def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Pat
 DRIFTS = (-8, -6, -4, -2, 0, 2, 4, 6, 8)
 
 
-def swept(monkeypatch: pytest.MonkeyPatch, file: Path, *maps: str, speed: str = "2") -> Result:
+def swept(monkeypatch: pytest.MonkeyPatch, file: Path, **more: str) -> Result:
     """An import that prints its first slopes."""
     monkeypatch.setattr(import_, "_first_slopes", _first_slopes)
     said = {"axes.frame": "FRD", "axes.reference_point": "midship", "scaling.length": "4 LOA",
-            "conditions.density": "998.2", "conditions.speed": speed, "axes.beta": "v = -U sin(beta)",
-            "table.contains_inertia": "no"}  # fmt: skip
-    words = [a for k, v in said.items() for a in ("--set", f"{k}={v}")] + [a for m in maps for a in ("--map", m)]
+            "conditions.density": "998.2", "conditions.speed": "2", "axes.beta": "v = -U sin(beta)",
+            "table.contains_inertia": "no"} | more  # fmt: skip
+    words = [a for k, v in said.items() for a in ("--set", f"{k}={v}")]
     return invoke("import", file, "--out", file.parent / "out", *words, "--accept")
 
 
@@ -272,3 +273,38 @@ def test_a_fit_of_combined_settings_is_named_where_sweeps_are_too_short(
     assert "9 rows combine motions: --fit manoeuvring_model fits them as one model." in str(
         invoke("fit", file.parent / "out").exception
     )
+
+
+@pytest.mark.parametrize(("moment", "frame", "warned"), [("M", '["aft", "up", "port"]', True), ("M", "FRD", False)])
+def test_a_moment_that_goes_to_the_other_plane_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str, frame: str, warned: bool
+) -> None:
+    """CM about the y axis of a mesh with y up is N of the body: Mw' was lost without a word."""
+    file, force = tmp_path / "mesh.csv", "Y" if warned else "Z"
+    file.write_text(f"alpha [deg],{force} [N],{moment} [Nm]\n" + "".join(f"{a},{-9 * a},{6 * a}\n" for a in DRIFTS))
+    done = swept(monkeypatch, file, **{"axes.frame": frame, "axes.alpha": "w = +U sin(alpha)"})
+    said = flat(done.output)
+    mapped = (
+        "If it is the moment of pitch, map its column as N or -N; if it is M as the axes say, the file has no M of the"
+    )
+    assert (mapped in said) == warned, done.output
+    assert (
+        "warn coverage, out/mesh.csv N: N follows w, and there is no M" in said.replace("table.csv", "mesh.csv")
+    ) == warned
+
+
+def test_a_yaw_moment_named_for_pitch_is_said() -> None:
+    """v and M of the axes of a body vary, N is absent; with alpha beside beta nothing can be said."""
+    x = np.linspace(-0.1, 0.1, 5)
+    table = SimpleNamespace(
+        name="t", speed=np.full(5, 2.0), scaling=SimpleNamespace(length=4.0), forces={"M": 3.0 * x},
+        motion={"u": np.full(5, 2.0), "v": x, "w": 0.0 * x, "p": 0.0 * x, "q": 0.0 * x, "r": 0.0 * x},
+    )  # fmt: skip
+    found = coverage._moment_of_the_other_plane(table)
+    assert found is not None
+    assert found.statistic == "M follows v, and there is no N"
+    table.motion["w"] = x[::-1]
+    assert coverage._moment_of_the_other_plane(table) is None
+    table.motion["w"] = 0.0 * x
+    table.forces["M"] = np.full(5, 0.3)
+    assert coverage._moment_of_the_other_plane(table) is None
