@@ -334,10 +334,23 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.settings import doubtful_setting
+        from coeflab.tables.settings import POINT_OF, doubtful_setting
 
         sizes = [f"warning, {k}: {why}" for k in self.settings if (why := doubtful_setting(self.raw, self.settings, k))]
+        sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
         return [*sizes, *(e.text for e in self.found.shows if e.text.startswith("warning"))]
+
+    def _beyond_ends(self) -> str:
+        """Where the reference point is off the body."""
+        from coeflab.core.units import quantity
+        from coeflab.law.scaling import beyond_ends
+        from coeflab.tables.settings import POINT_OF
+
+        point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
+        if point is None or datum is None:
+            return ""
+        size = None if length is None else quantity(length.value, "length")
+        return beyond_ends(str(datum.value), quantity(point.value[0], "length"), size)
 
 
 def _line(key: str, value: str, why: str, about: str) -> Line:

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from coeflab.cli import app, import_
 from coeflab.cli.import_ import _first_slopes
+from coeflab.law.scaling import beyond_ends
 from coeflab.study.checks import coverage
 from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
@@ -308,3 +309,23 @@ def test_a_yaw_moment_named_for_pitch_is_said() -> None:
     table.motion["w"] = 0.0 * x
     table.forces["M"] = np.full(5, 0.3)
     assert coverage._moment_of_the_other_plane(table) is None
+
+
+def test_a_point_ahead_of_the_nose_is_said_in_the_form_and_by_the_checks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """1.10 from nose: x counts forward."""
+    file = tmp_path / "drift.csv"
+    file.write_text("beta [deg],Y [N]\n" + "".join(f"{b},{9 * b}\n" for b in DRIFTS))
+    said = flat(swept(monkeypatch, file, **{"axes.reference_point": "1.10 from nose"}).output)
+    form, _, slopes = said.partition("First slopes")
+    assert "warning, axes.reference_point: 1.10 m ahead of the nose; aft is negative" in form
+    assert "warn conditions, out reference point: nose +1.10 m; expected a point of the body. 1.10 m ahead" in slopes
+    assert [beyond_ends(d, x, 4.0) for d, x in (("nose", -4.3), ("midship", 2.1), ("cg", 9.0), ("tail", 0.0))] == [
+        ""
+    ] * 4
+    assert beyond_ends("nose", -5.0, 4.0) == "1.00 m behind the tail; forward is positive"
+    assert beyond_ends("midship", 3.0, 4.0) == "1.00 m ahead of the nose; aft is negative"
+    assert beyond_ends("tail", 5.0, 4.0) == "1.00 m ahead of the nose; aft is negative"
+    assert (beyond_ends("nose", -9.0), beyond_ends("midship", 9.0)) == ("", "")
+    assert beyond_ends("nose", 0.2) == "0.20 m ahead of the nose; aft is negative"
