@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 
 MODEL = "manoeuvring_model"
+FINDINGS = 12  # lines of findings below the first slopes
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
 
 
@@ -86,7 +87,7 @@ def command(
 
     Shows one form: what each column is and what each setting would be, why, and what is open. On a terminal one line answers
     it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
-    first slopes. Nothing is taken that the form did not show.
+    first slopes with the checks that fail or warn. Nothing is taken that the form did not show. Exit code 1 when a check fails.
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
@@ -114,12 +115,14 @@ def command(
     if not sys.stdin.isatty():
         _listed("Check", draft.warned())
     _written(out, table)
-    _first_slopes(out)
+    failed = _first_slopes(out)
     others = [s for s in draft.sheets if s != said.options.get("sheet")]
     _listed(
         "The other sheets, with the answers of this one",
         [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
     )
+    if failed:
+        raise typer.Exit(1)
 
 
 def _named_after(file: Path) -> Path:
@@ -338,10 +341,23 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.settings import doubtful_setting
+        from coeflab.tables.settings import POINT_OF, doubtful_setting
 
         sizes = [f"warning, {k}: {why}" for k in self.settings if (why := doubtful_setting(self.raw, self.settings, k))]
+        sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
         return [*sizes, *(e.text for e in self.found.shows if e.text.startswith("warning"))]
+
+    def _beyond_ends(self) -> str:
+        """Where the reference point is off the body."""
+        from coeflab.core.units import quantity
+        from coeflab.law.scaling import beyond_ends
+        from coeflab.tables.settings import POINT_OF
+
+        point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
+        if point is None or datum is None:
+            return ""
+        size = None if length is None else quantity(length.value, "length")
+        return beyond_ends(str(datum.value), quantity(point.value[0], "length"), size)
 
 
 def _line(key: str, value: str, why: str, about: str) -> Line:
@@ -525,21 +541,24 @@ def _brief(note: str) -> str:
     return note.partition(". random:")[0] + "." * (". random:" in note)
 
 
-def _first_slopes(folder: Path) -> None:
+def _first_slopes(folder: Path) -> bool:
     """The main table of derivatives that the campaign gives, or in one line why it gives none, and the command for more.
 
-    Where no setting is swept while the others rest, the rows are fitted as one model.
+    Where no setting is swept while the others rest, the rows are fitted as one model. Below it what the checks find, as
+    `coeflab fit` says it; true where one fails.
     """
     from coeflab.cli.fit import DEFAULT, MAIN
+    from coeflab.core.table import Severity
     from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
     from coeflab.study.plan import table_at
     from coeflab.study.study import Plan
+    from coeflab.tables.campaign import FILE
     from coeflab.tables.reading import suited_fit
     from coeflab.workbench import run
 
     suited = suited_fit(folder)
-    study, why = None, ""
+    study, why, failed = None, "", False
     for fit in dict.fromkeys([suited, MODEL] if suited == DEFAULT else [suited]):
         plan = Plan(
             name=folder.name, title=folder.name, tables=(table_at(folder, (fit,), {fit: {}}),), wanted=MAIN if fit == DEFAULT else ()
@@ -570,4 +589,12 @@ def _first_slopes(folder: Path) -> None:
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
             left=frozenset({0}),
         ))  # fmt: skip
+        checks = [c for c in study.checks if c.name != "law at points"]  # as in `coeflab fit`
+        show.findings(checks, most=FINDINGS)
+        failed = any(c.severity is Severity.FAIL for c in checks)
+        if failed:
+            show.sentence(
+                f"The campaign is written, and a check fails. Correct its {FILE}, or import again with --force."
+            )
     show.command_line("Next", typed)
+    return failed

@@ -53,8 +53,8 @@ def sentence(line: str) -> None:
         text(line)
 
 
-def marked(word: str, line: str) -> None:
-    """A word such as ``warn``, coloured on a terminal, and behind it a sentence that hangs below itself."""
+def marked(word: str, line: str) -> int:
+    """A word such as ``warn``, coloured on a terminal, and behind it a sentence that hangs below itself; how many lines."""
     from coeflab.core.table import folded
 
     behind = " " * max(6, len(word) + 2)
@@ -62,6 +62,7 @@ def marked(word: str, line: str) -> None:
     typer.echo(typer.style(word, **ANSI.get(word, {})) + first[len(word) :])
     for one in others:
         typer.echo(one)
+    return 1 + len(others)
 
 
 def path(place: object, more: str = "") -> None:
@@ -308,8 +309,11 @@ def written(folder: Path, names: Sequence[str], changed: int) -> None:
         path(folder, f"{len(names) - len(first)} more; --wide names them")
 
 
-def findings(found: Sequence[Check], *, notes: bool = False) -> None:
-    """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted."""
+def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> None:
+    """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted.
+
+    With ``most`` no finding begins below that many lines, failures first; what is left out is counted.
+    """
     from coeflab.core.table import Severity
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
@@ -319,17 +323,27 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
         for c in found:
             if c.severity is severity:
                 groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
+    printed = left = 0
     for (severity, name, rule, comment), same in groups.items():
+        if most and printed >= most:
+            left += len(same)
+            continue
         about = name.replace("_", " ")
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
+            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
             continue
-        marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
-        for c in same:
+        printed += marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
+        shown = same[: max(most - printed, 1)] if most else same
+        for c in shown:
             text(f"        {c.subject}: {c.statistic}")
-    hint = {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes else {}
+        printed, left = printed + len(shown), left + len(same) - len(shown)
+    if left:
+        text(f"        and {left} more, which `coeflab fit` shows")
+    hint = (
+        {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes and not most else {}
+    )
     text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
 
 

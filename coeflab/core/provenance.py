@@ -209,6 +209,9 @@ WORKS: dict[str, str] = {
     "townsin1990": "R. L. Townsin, S. K. Dey, The correlation of roughness drag with surface characteristics, RINA International "
     "Workshop on Marine Roughness and Drag, 1990; in ITTC, recommended procedure 7.5-02-02-02.",
     "hoerner1965": "S. F. Hoerner, Fluid-Dynamic Drag, published by the author, 1965.",
+    "schlichting1979": "H. Schlichting, Boundary-Layer Theory, 7th edition, McGraw-Hill, 1979.",
+    "jones1946": "R. T. Jones, Properties of Low-Aspect-Ratio Pointed Wings at Speeds Below and Above the Speed of Sound, "
+    "NACA Report 835, 1946.",
     "gillmer1982": "T. C. Gillmer, B. Johnson, Introduction to Naval Architecture, Naval Institute Press, 1982.",
     "allen1951": "H. J. Allen, E. W. Perkins, A study of effects of viscosity on flow over slender inclined bodies of revolution, "
     "NACA Report 1048, 1951.",

@@ -64,6 +64,42 @@ def doubtful_size(key: str, number: float, in_air: bool = False) -> str:
     return ""
 
 
+ENDS = {
+    "nose": (0.0, 1.0),
+    "bow": (0.0, 1.0),
+    "midship": (0.5, 0.5),
+    "centre": (0.5, 0.5),
+    "tail": (1.0, 0.0),
+    "stern": (1.0, 0.0),
+}
+LONGER = 1.1  # a body over the length of its primes, where that is between perpendiculars
+
+
+def beyond_ends(datum: str, x: float, length: float | None = None) -> str:
+    """How far a point is ahead of the nose or behind the tail; empty where it is neither, or the datum is at no known place.
+
+    Parameters
+    ----------
+    datum : str
+        Id of the point that x counts from.
+    x : float
+        m, forward.
+    length : float, optional
+        Of the primes, m; without it, or of a doubtful one, only a point ahead of the nose, from the nose, or behind the tail, from the tail, is seen.
+    """
+    if datum not in ENDS:
+        return ""
+    length = None if length is not None and doubtful_size("scaling.length", length) else length
+    ahead, behind = ENDS[datum]
+    size = np.inf if length is None else LONGER * length
+    front, back = x - (ahead * size if ahead else 0.0), -x - (behind * size if behind else 0.0)
+    if front > 0.0:
+        return f"{front + (LONGER - 1.0) * ahead * (length or 0.0):.2f} m ahead of the nose; aft is negative"
+    if back > 0.0:
+        return f"{back + (LONGER - 1.0) * behind * (length or 0.0):.2f} m behind the tail; forward is positive"
+    return ""
+
+
 @dataclass(frozen=True, slots=True)
 class Conditions(takes.Declaration):
     """Conditions of the dimensional values.

@@ -17,6 +17,8 @@ TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; 
 TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
          ("q", False): "lowers the bow", ("r", True): "turns the bow to starboard", ("r", False): "turns the bow to port"}  # fmt: skip
 OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment that a rate moves first
+PLANES = {"pitch": (("alpha", "w", "q"), "M"), "yaw": (("beta", "v", "r"), "N")}  # motions of the body, moment
+OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 
@@ -72,6 +74,40 @@ def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evid
                 against=rate, instead=instead,
             )  # fmt: skip
             break
+
+
+def _moment_of_the_other_plane(data: Mapping[str, Array], frame: Axes) -> Iterator[Evidence]:
+    """A moment that varies with the motions of one plane, turned into the other plane, while this one has no moment."""
+    moving = {
+        plane: next((s for s in settings if _moves(data, s, frame)), "") for plane, (settings, _) in PLANES.items()
+    }
+    for plane, (_, own) in PLANES.items():
+        other = PLANES[OTHER_PLANE[plane]][1]
+        setting = moving[plane]
+        values = _frd(data, other, frame)
+        if not setting or moving[OTHER_PLANE[plane]] or _frd(data, own, frame) is not None or values is None:
+            continue
+        if not trend(values, data, _named(setting, frame)):
+            continue
+        now, meant = (COMPONENTS[3 + int(np.argmax(np.abs(frame.rotation["KMN".index(c)])))] for c in (other, own))
+        about = f"{now} is about the {'xyz'['KMN'.index(now)]} axis of these axes: {other} of the body"
+        yield Evidence(
+            f"warning: {setting} varies, and {plane} has no moment: {about}, which no {setting} makes. If it is the moment of "
+            f"{plane}, map its column as {meant} or -{meant}; if it is {now} as the axes say, the file has no {own} of the body"
+        )
+
+
+def _named(setting: str, frame: Axes) -> str:
+    """The name that a motion of the body has in the axes of the file; an angle keeps its own."""
+    group = next((g for g in (LINEAR, ANGULAR) if setting in g), "")
+    return group[int(np.argmax(np.abs(frame.rotation[group.index(setting)])))] if group else setting
+
+
+def _moves(data: Mapping[str, Array], setting: str, frame: Axes) -> bool:
+    """Whether a motion of the body, in FRD, or an angle takes more than one value."""
+    values = data.get(_named(setting, frame), np.empty(0))
+    values = values[np.isfinite(values)]
+    return bool(values.size and np.ptp(values) > 0.0)
 
 
 def _varies(data: Mapping[str, Array], component: str, rate: str, frame: Axes) -> bool:
@@ -134,6 +170,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         up = float(frame.rotation[2][2]) if frame else 0.0
         turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
         out += [Evidence(turn if up else f"r {TURN}")]
+    out += _moment_of_the_other_plane(data, frame) if frame else []
     out += _levers(data, {one.said.name: one.said for one in columns}, frame)
     if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
         out.append(Evidence("warning: drag is below zero in every row: that is thrust, or -drag is meant"))

@@ -32,7 +32,7 @@ from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
 from coeflab.study.study import Plan, PlannedJoint, Study
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import read_tables
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
@@ -73,6 +73,7 @@ __all__ = ["checked", "read_body", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
 FEWEST = 3
+COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once
 
 
 @one_thread()
@@ -235,7 +236,7 @@ def _fitted(
             return plugin.fit(some, by, options)
 
     fit = once(tables, scaling)
-    _refuse_starved(fit)
+    _refuse_starved(fit, tables)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
     if all(t.source.kind == "estimate" for t in tables):
@@ -264,18 +265,27 @@ def _refuse_unsuited(name: str, tables: Sequence[ForceTable]) -> None:
         raise InputError(f"{name} over {what}", f"fits of those: {few}", file=odd.name, column="fits")
 
 
-def _refuse_starved(fit: FitResult) -> None:
+def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
     """Refuse a sweep in which no force component has more points than the simplest form has parameters."""
     sweeps = [s for s in fit.sweeps if s.parity == "odd" and s.variable in MOTIONS]
     for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
         points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))
         if points < FEWEST:
+            combined = next((_combined(t) for t in tables if t.name == table), 0)
+            joined = f"{combined} rows combine motions: --fit {COMBINES} fits them as one model. Or run"
             raise InputError(
                 f"{points} usable points of the sweep over {variable}'",
                 f"at least {FEWEST} for an intercept, a slope and an error",
                 file=table,
-                advice="Run more settings, or leave the table out of the plan.",
+                advice=f"{joined if combined >= FEWEST else 'Run'} more settings, or leave the table out of the plan.",
             )
+
+
+def _combined(table: ForceTable) -> int:
+    """Rows in which more than one of v, w, p, q, r is not at rest."""
+    sizes = [np.abs(table.motion[m]) for m in MOTIONS[1:]]
+    moving = [size > AT_REST * float(np.max(size, initial=0.0)) for size in sizes]
+    return int(np.sum(np.sum(moving, axis=0) > 1))
 
 
 def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,9 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from coeflab.cli import app, import_
+from coeflab.cli.import_ import _first_slopes
+from coeflab.law.scaling import beyond_ends
+from coeflab.study.checks import coverage
 from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -265,3 +269,105 @@ def test_two_commands_suffice_where_forces_contain_inertia(tmp_path: Path) -> No
     done = invoke("import", file, "--out", tmp_path / "out", *sets(**said), *both, "--accept")
     assert done.exit_code == 0, done.output
     assert "# if true" not in done.output
+
+
+DRIFTS = (-8, -6, -4, -2, 0, 2, 4, 6, 8)
+
+
+def swept(monkeypatch: pytest.MonkeyPatch, file: Path, **more: str) -> Result:
+    """An import that prints its first slopes."""
+    monkeypatch.setattr(import_, "_first_slopes", _first_slopes)
+    said = {"axes.frame": "FRD", "axes.reference_point": "midship", "scaling.length": "4 LOA",
+            "conditions.density": "998.2", "conditions.speed": "2", "axes.beta": "v = -U sin(beta)",
+            "table.contains_inertia": "no"} | more  # fmt: skip
+    words = [a for k, v in said.items() for a in ("--set", f"{k}={v}")]
+    return invoke("import", file, "--out", file.parent / "out", *words, "--accept")
+
+
+def test_below_the_first_slopes_stands_what_the_checks_find(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lost decimal comma of Y at 6 deg warns; Y of the other sign fails, the files stay and the exit code is 1."""
+    q, file = 0.5 * 998.2 * 4.0 * 16.0, tmp_path / "drift.csv"
+    for sign, code in ((1.0, 0), (-1.0, 1)):
+        sides = [f"{sign * 0.03 * q * np.radians(b):.2f}" for b in DRIFTS]
+        sides[7] = sides[7].replace(".", "")
+        file.write_text("beta [deg],Y [N]\n" + "".join(f"{b},{y}\n" for b, y in zip(DRIFTS, sides, strict=True)))
+        done = swept(monkeypatch, file)
+        said = flat(done.output.partition("First slopes")[2])
+        assert done.exit_code == code, done.output
+        assert "warn data gate, out/table.csv line 10: Y =" in said
+        assert ("fail signs, out Yv': Yv' = 0.03; expected below zero." in said) == bool(code)
+        assert ("The campaign is written, and a check fails." in said) == bool(code)
+        assert said.rpartition("Next: ")[2].startswith("coeflab fit")
+        assert max(map(len, done.output.partition("Next: ")[0].partition("First slopes")[2].splitlines())) <= 80
+        assert (tmp_path / "out" / "campaign.toml").exists()
+        shutil.rmtree(tmp_path / "out")
+
+
+def test_a_fit_of_combined_settings_is_named_where_sweeps_are_too_short(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "arm.csv"
+    grid = [(b, r) for r in (0.2, 0.3, 0.4) for b in (-4, 0, 4, 8)]
+    file.write_text(
+        "beta [deg],r' [-],Y [N],N [Nm]\n" + "".join(f"{b},{r},{9 * b + r},{3 * b - 90 * r}\n" for b, r in grid)
+    )
+    done = swept(monkeypatch, file)
+    assert flat(done.output.replace("\\", "")).endswith("--fit manoeuvring_model"), done.output
+    assert "9 rows combine motions: --fit manoeuvring_model fits them as one model." in str(
+        invoke("fit", file.parent / "out").exception
+    )
+
+
+@pytest.mark.parametrize(("moment", "frame", "warned"), [("M", '["aft", "up", "port"]', True), ("M", "FRD", False)])
+def test_a_moment_that_goes_to_the_other_plane_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str, frame: str, warned: bool
+) -> None:
+    """CM about the y axis of a mesh with y up is N of the body: Mw' was lost without a word."""
+    file, force = tmp_path / "mesh.csv", "Y" if warned else "Z"
+    file.write_text(f"alpha [deg],{force} [N],{moment} [Nm]\n" + "".join(f"{a},{-9 * a},{6 * a}\n" for a in DRIFTS))
+    done = swept(monkeypatch, file, **{"axes.frame": frame, "axes.alpha": "w = +U sin(alpha)"})
+    said = flat(done.output)
+    mapped = (
+        "If it is the moment of pitch, map its column as N or -N; if it is M as the axes say, the file has no M of the"
+    )
+    assert (mapped in said) == warned, done.output
+    assert (
+        "warn coverage, out/mesh.csv N: N follows w, and there is no M" in said.replace("table.csv", "mesh.csv")
+    ) == warned
+
+
+def test_a_yaw_moment_named_for_pitch_is_said() -> None:
+    """v and M of the axes of a body vary, N is absent; with alpha beside beta nothing can be said."""
+    x = np.linspace(-0.1, 0.1, 5)
+    table = SimpleNamespace(
+        name="t", speed=np.full(5, 2.0), scaling=SimpleNamespace(length=4.0), forces={"M": 3.0 * x},
+        motion={"u": np.full(5, 2.0), "v": x, "w": 0.0 * x, "p": 0.0 * x, "q": 0.0 * x, "r": 0.0 * x},
+    )  # fmt: skip
+    found = coverage._moment_of_the_other_plane(table)
+    assert found is not None
+    assert found.statistic == "M follows v, and there is no N"
+    table.motion["w"] = x[::-1]
+    assert coverage._moment_of_the_other_plane(table) is None
+    table.motion["w"] = 0.0 * x
+    table.forces["M"] = np.full(5, 0.3)
+    assert coverage._moment_of_the_other_plane(table) is None
+
+
+def test_a_point_ahead_of_the_nose_is_said_in_the_form_and_by_the_checks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """1.10 from nose: x counts forward."""
+    file = tmp_path / "drift.csv"
+    file.write_text("beta [deg],Y [N]\n" + "".join(f"{b},{9 * b}\n" for b in DRIFTS))
+    said = flat(swept(monkeypatch, file, **{"axes.reference_point": "1.10 from nose"}).output)
+    form, _, slopes = said.partition("First slopes")
+    assert "warning, axes.reference_point: 1.10 m ahead of the nose; aft is negative" in form
+    assert "warn conditions, out reference point: nose +1.10 m; expected a point of the body. 1.10 m ahead" in slopes
+    assert [beyond_ends(d, x, 4.0) for d, x in (("nose", -4.3), ("midship", 2.1), ("cg", 9.0), ("tail", 0.0))] == [
+        ""
+    ] * 4
+    assert beyond_ends("nose", -5.0, 4.0) == "1.00 m behind the tail; forward is positive"
+    assert beyond_ends("midship", 3.0, 4.0) == "1.00 m ahead of the nose; aft is negative"
+    assert beyond_ends("tail", 5.0, 4.0) == "1.00 m ahead of the nose; aft is negative"
+    assert (beyond_ends("nose", -9.0), beyond_ends("midship", 9.0)) == ("", "")
+    assert beyond_ends("nose", 0.2) == "0.20 m ahead of the nose; aft is negative"

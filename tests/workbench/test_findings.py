@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,8 @@ from coeflab.core.table import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.formats.export import lost_by_all
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.study.checks import sizes
 from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
@@ -183,3 +185,36 @@ def test_replicates_fail_equally_rarely_whatever_their_number(k: int) -> None:
     false = np.mean([bool(replicates(with_replicates(k, rng), 1)) for _ in range(1000)])
     assert 0.001 <= false <= 0.02
     assert np.mean([bool(replicates(with_replicates(k, rng, off=10.0), 1)) for _ in range(50)]) > 0.9
+
+
+def test_slopes_of_a_size_that_no_body_has_are_warned_of() -> None:
+    """kN for N, N for kN, ten times the speed; the least friction is that of a plate, by hand at Re = 1e7."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    assert not [c for c in own.checks if c.name == "sizes"]
+
+    def found(**factors: float) -> list[str]:
+        changed = [
+            replace(c, value=c.value * f, u95=c.u95 * f) for c in own.coefficients if (f := factors.get(c.symbol))
+        ]
+        checks = sizes.check(replace(own, fits=(), missing=tuple(changed)))
+        assert all(c.severity is Severity.WARN for c in checks)
+        return [f"{c.statistic}; {c.comment}" for c in checks]
+
+    (large,) = found(Yv=1e4, Nv=1000.0, X0=1000.0)
+    assert large.startswith("Yv' = -38 (2), Nv' = -13 (1); Are forces in N declared as kN")
+    assert "the speed 3.34389 m/s too low" in large
+    (small,) = found(Yv=0.001, Nv=0.001, X0=0.001)
+    assert small.startswith("X0' = -1.1e-06 (0.00035), Yv' = -3.8e-06 (0.00017); Are forces in kN declared as N")
+    assert [f.partition(" =")[0] for f in found(Yv=1.0, X0=0.01)] == ["X0'"]
+    at = Conditions(density=1000.0, speed=2.0, viscosity=1e-6)
+    by_hand = np.pi / 20.0 * (0.075 / 25.0 - 8700.0 / 1e7)
+    assert sizes.least_friction(at, Scaling(5.0, "L")) == pytest.approx(by_hand, rel=1e-12)
+    assert sizes.least_friction(replace(at, speed=0.02), Scaling(5.0, "L")) == pytest.approx(
+        np.pi / 20.0 * 1.328 / 1e5**0.5, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize("campaign", ["tank_spheroid", "thauv_case_03_synthetic", "flyingfish_water_synthetic"])
+def test_shipped_campaigns_have_sizes_of_bodies(campaign: str) -> None:
+    fit = "manoeuvring_model" if campaign.startswith("flyingfish") else "slope_at_origin"
+    assert not [c for c in study(campaign, fit).checks if c.name == "sizes"]

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from coeflab.core.table import Check, Severity
-from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, doubtful_size, speaks_of_air
+from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import TAKEN_OUT
 
-summary = "density of water, Reynolds number against speed, length and viscosity, inertia of a model that turns"
+summary = "density, Reynolds number of speed, length and viscosity, reference point, inertia of a model that turns"
 citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
@@ -80,6 +80,10 @@ def _found(t: ForceTable) -> Iterator[Check]:
     at = t.conditions
     yield from _water(t.campaign, at.density, at.density)
     yield from _sizes(t)
+    point = t.reference_point if t.measured_about is None else t.measured_about
+    if why := beyond_ends(t.datum.id, float(point[0]), t.scaling.length):
+        yield Check("conditions", f"{t.campaign} reference point", Severity.WARN, f"{t.datum.id} {point[0]:+.2f} m",
+                    "a point of the body", f"{why[:1].upper()}{why[1:]}.")  # fmt: skip
     if at.viscosity is not None and at.reynolds is not None:
         own = at.speed * t.scaling.length / at.viscosity
         good = abs(own / at.reynolds - 1.0) <= REYNOLDS

@@ -15,8 +15,10 @@ from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
+from coeflab.tables.evidence import trend
+from coeflab.tables.force_table import AT_REST, ForceTable
 
-summary = "points, sides, distance of the first angle, sign, replicates"
+summary = "points, sides, distance of the first angle, sign, replicates, a moment of the other plane"
 citations = ("roddy1990",)
 
 FEW = 7
@@ -133,9 +135,28 @@ def replicates(s: Sweep, groups: int) -> list[Check]:
     return out
 
 
+def _moment_of_the_other_plane(t: ForceTable) -> Check | None:
+    """A moment that varies with motions of one plane alone, named for the other plane, while this plane has none."""
+    largest = float(np.max(t.speed, initial=0.0))
+    unit = {"v": largest, "w": largest, "q": largest / t.scaling.length, "r": largest / t.scaling.length}
+    moves = {m: bool(t.motion[m].size and np.ptp(t.motion[m]) > AT_REST * one) for m, one in unit.items()}
+    for own, other, motions, still in (("M", "N", "wq", "vr"), ("N", "M", "vr", "wq")):
+        moving = next((m for m in motions if moves[m]), "")
+        if not moving or any(moves[m] for m in still) or own in t.forces or other not in t.forces:
+            continue
+        if trend(t.forces[other], t.motion, moving):
+            return Check(
+                "coverage", f"{t.name} {other}", Severity.WARN, f"{other} follows {moving}, and there is no {own}",
+                f"{own}, the moment of that plane",
+                f"{other} of the body does not depend on {moving}: is its column {own}, about another axis of the file? "
+                f"Map it as the moment about that axis, with its sign.",
+            )  # fmt: skip
+    return None
+
+
 def check(study: Study) -> Sequence[Check]:
-    """Findings on every sweep."""
-    out: list[Check] = []
+    """Findings on every sweep, and on every table whose only moment is that of the other plane."""
+    out = [c for t in study.tables if (c := _moment_of_the_other_plane(t)) is not None]
     for f in study.fits:
         groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:

@@ -1,0 +1,83 @@
+"""Sizes of primed slopes that no body has: a wrong unit of force or speed, or a length that is not the body's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from coeflab.bodies.hull_flow import friction_line
+from coeflab.core.table import Check, Severity
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import primed
+from coeflab.study.study import Study
+
+summary = "primed slopes and X0' between friction of a slender body and a bluff plate of side L"
+citations = ("ittc1957", "schlichting1979", "hoerner1965", "jones1946")
+
+LARGEST = {"X0": 1.2, **dict.fromkeys(("Yv", "Zw"), 2.0), **dict.fromkeys(("Nv", "Mw", "Yr", "Zq", "Nr", "Mq"), 1.0)}
+SLENDER = 20.0  # lengths of a body over its diameter: torpedoes and gliders have 6 to 15
+WATER = 0.8e-6  # m^2/s, at 30 deg C: the thinnest that tests are run in, where the campaign states none
+OF_FRICTION = {"X0": 1.0, "Yv": 0.5, "Zw": 0.5}
+NOBODYS = ("1 m", "unit length")  # lengths that are no body's
+
+
+def least_friction(conditions: Conditions, scaling: Scaling) -> float:
+    """Friction of a bare cylinder of 20 diameters by its side surface, of 1/2 rho U^2 L^2.
+
+    C_F is that of a plate laminar to Re = 3e6, the longest that a smooth model is: ITTC 1957 less 8700/Re (Prandtl and
+    Schlichting), at least Blasius' 1.328 / sqrt(Re). Any fin, any roughness, any form drag adds to it.
+
+    Parameters
+    ----------
+    conditions : Conditions
+    scaling : Scaling
+    """
+    reynolds = conditions.reynolds_on(scaling.length) or conditions.speed * scaling.length / WATER
+    turbulent = friction_line(reynolds) - 8700.0 / reynolds
+    return float(np.pi / SLENDER * max(1.328 / np.sqrt(reynolds), turbulent))
+
+
+def check(study: Study) -> Sequence[Check]:
+    """Findings on slopes too large or too small for any body; none on the others.
+
+    Too large is beyond what a square plate of side L gives: broadside its drag (Hoerner, 1.17), edge on the lift slope pi/2 of
+    aspect ratio 1 (Jones) with friction and separation on top, rounded up to 2; moments and rates have half of L as their
+    lever. Too small is less than friction of the most slender body, with U95 to spare: a side velocity turns at least half of
+    the drag into a side force. Moments have no smallest size, as tail fins can balance them.
+    """
+    out: list[Check] = []
+    for campaign, table in {t.campaign: t for t in study.tables}.items():
+        scaling = study.plan.scaling or table.scaling
+        if any(name in scaling.length_name for name in NOBODYS):
+            continue
+        fitted = [c for c in study.coefficients if c.campaign == campaign and c.origin == "fit" and c.law == "motion"]
+        own = {c.symbol.removesuffix("'"): c for c in reversed(fitted)}
+        least = least_friction(table.conditions, scaling)
+        large = {c: most for s, most in LARGEST.items() if (c := own.get(s)) and _at_least(c) > most}
+        small = {c: p * least for s, p in OF_FRICTION.items() if (c := own.get(s)) and _at_most(c) < p * least}
+        length = f"{scaling.length_name} = {scaling.length:g} m"
+        speed = f"{table.conditions.speed:g} m/s"
+        if large:
+            out.append(_found(campaign, large, f"at most the number behind each, of a square plate of side {scaling.length_name}", (
+                f"Are forces in N declared as kN, is the speed {speed} too low, or {length} shorter than the body?")))  # fmt: skip
+        if small:
+            out.append(_found(campaign, small, "at least the number behind each, friction of a cylinder of 20 diameters", (
+                f"Are forces in kN declared as N, is the speed {speed} in kn or km/h, or {length} longer than the body?")))  # fmt: skip
+    return out
+
+
+def _at_least(c: Coefficient) -> float:
+    """The smallest size that the interval leaves."""
+    return 0.0 if c.value is None else abs(c.value) - (c.u95 or 0.0)
+
+
+def _at_most(c: Coefficient) -> float:
+    """The largest size that the interval leaves; without limit where nothing is known of it."""
+    return np.inf if c.value is None or c.u95 is None else abs(c.value) + c.u95
+
+
+def _found(campaign: str, sizes: Mapping[Coefficient, float], rule: str, comment: str) -> Check:
+    found = ", ".join(f"{primed(c.symbol)} = {c.value:.2g} ({limit:.2g})" for c, limit in sizes.items())
+    return Check("sizes", campaign, Severity.WARN, found, rule, comment)
