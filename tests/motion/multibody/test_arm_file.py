@@ -126,7 +126,7 @@ def test_thrusters_that_lose_a_direction_are_named(tmp_path: Path) -> None:
     chain = read_chain(file)
     assert chain.assumed[-1] == "The thrusters make no heave, no roll, no pitch."
     assert chain.statements[-1] == chain.assumed[-1]
-    assert len(puma().assumed) == 1
+    assert len(puma().assumed) == 2
 
 
 def test_voltage_thrusters_and_their_limits(tmp_path: Path) -> None:
@@ -190,3 +190,18 @@ def test_a_cylinder_lies_along_its_own_axis(tmp_path: Path) -> None:
         strip = link.strips[0]
         assert abs(part.rotation[:, 0] @ turn @ strip.axis) == pytest.approx(1.0)
         np.testing.assert_allclose(part.centre, origin + turn @ (strip.start + strip.end) / 2.0)
+
+
+def test_a_displaced_volume_other_than_the_hull_s_is_said(tmp_path: Path) -> None:
+    """4/3 pi 1.0 0.4 0.4 = 0.6702 m^3."""
+    assert puma().assumed[1] == (
+        "The vehicle displaces 0.1 m^3, 100 kg, its mass over the density; its ellipsoid holds 0.6702 m^3, 670.2 kg of "
+        "water; added mass is that of the whole ellipsoid."
+    )
+    assert puma().assumed[1] in puma().statements
+    file = tmp_path / "body.toml"
+    stated = 'mass = "100 kg"\nvolume = "{} m^3"'
+    file.write_text(TEXT.replace('mass = "100 kg"', stated.format(0.05)))
+    assert "displaces 0.05 m^3, 50 kg, as stated; its ellipsoid holds 0.6702 m^3" in read_chain(file).assumed[1]
+    file.write_text(TEXT.replace('mass = "100 kg"', stated.format(0.67)))
+    assert len(read_chain(file).assumed) == 1
