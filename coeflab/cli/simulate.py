@@ -154,15 +154,23 @@ def arm_at(file: Path) -> Path | None:
 
 def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
     """The phases of a vehicle with an arm."""
+    from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.motion.multibody.arm_file import read_arm
+    from coeflab.core.text.toml import read_toml
+    from coeflab.motion.multibody.arm_file import BODY, read_arm
     from coeflab.motion.simulators import SIMULATORS
     from coeflab.motion.trajectory import Ended
     from coeflab.report.tables.motion import arm_phases, columns, motion_csv, motion_parquet
 
     chain, manoeuvre = read_arm(body)
-    with SIMULATORS.guarded("arm"):
-        moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
+    try:
+        with SIMULATORS.guarded("arm"):
+            moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
+    except InputError as why:
+        if why.file is not None or why.column is None or not why.column.startswith("phase["):
+            raise
+        toml = read_toml(body / BODY if body.is_dir() else body)
+        raise toml.fail(why.column, why.found, why.expected, why.advice) from None
     table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
     content = (
         {} if out is None else {f"{manoeuvre.name}.{to}": table, **_arm_pictures(body, chain, manoeuvre.name, moved)}

@@ -52,3 +52,25 @@ def test_options_of_an_arm_and_keys_of_its_phases(coeflab: Run) -> None:
     for what in ("tolerance", "[[phase]] lasts", "[[phase]] joints", "[start] rates", "docs/files.md"):
         assert what in said
     assert "rudder" not in said
+
+
+def test_a_place_out_of_reach_is_said_from_the_datum_with_its_line(coeflab: Run, tmp_path: Path) -> None:
+    text = SHIPPED.read_text().partition("[[phase]]")[0]
+    for old, new in (
+        ("centre_of_mass = [0.0, 0.0, 0.0]", "centre_of_mass = [0.1, 0.0, 0.0]"),
+        ("\ncentre = [0.0, 0.0, 0.0]", "\ncentre = [0.1, 0.0, 0.0]"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    text += '[[phase]]\nname = "far"\nlasts = 2\nend = [5.0, 0.0, -0.2]\n'
+    (tmp_path / "body.toml").write_text(text)
+    done = coeflab("simulate", "body.toml", "--out", "moved")
+    said = flat(done.stderr)
+    assert done.returncode == 2
+    assert (
+        f'body.toml, line {len(text.splitlines())}, "phase[0].end": found [5, 0, -0.2]: on the straight line from'
+        in said
+    )
+    assert "no joint positions put it there" in said
+    assert "from the datum" in said
+    assert not (tmp_path / "moved").exists()

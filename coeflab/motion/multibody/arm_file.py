@@ -86,6 +86,7 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
         gravity=file.arm.gravity,
         statements=(*assumed, *(f"{key}: {said}" for key, said in file.basis.items())),
         assumed=tuple(assumed),
+        datum=-origin,
     )
     return chain, _motion(file, chain)
 
@@ -97,13 +98,13 @@ def _motion(file: File, chain: Chain) -> Manoeuvre:
     for one in file.phase:
         orders = {"vehicle.held": float(one.vehicle == "held")}
         orders |= dict(zip(joints, file.positions(one), strict=False))
-        orders |= {f"{name}.torque": value for name, value in zip(joints, one.torque, strict=False)}
-        orders |= {t.name: value for t, value in zip(chain.thrusters, one.commands, strict=False)}
+        orders |= {f"{name}.torque": value for name, value in zip(joints, file.torques(one), strict=False)}
+        orders |= {t.name: value for t, value in zip(chain.thrusters, file.commands(one), strict=False)}
         if one.end is not None:
             place = one.end - file.vehicle.centre_of_mass
             orders |= {f"end.{axis}": float(value) for axis, value in zip("xyz", place, strict=True)}
         phases.append(Phase(one.name, orders, one.lasts))
-    started = {f"{name}.rate": value for name, value in zip(joints, file.start.rates, strict=False)}
+    started = {f"{name}.rate": value for name, value in zip(joints, file.rates(), strict=False)}
     made = tuple(phases) or (Phase("free motion", {"vehicle.held": 0.0}, FREE),)
     return Manoeuvre("arm_motion", made, np.array(file.start.velocity), orders=started)
 

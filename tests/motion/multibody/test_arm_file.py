@@ -13,12 +13,13 @@ from coeflab.bodies.shape import Parts
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.arm_file import is_arm, read_chain
+from coeflab.motion.multibody.arm_file import is_arm, read_arm, read_chain
 from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
 from tests.motion.multibody.chains import dry, puma
 
 FILE = shipped("geometry") / "urv_puma" / "body.toml"
 TEXT = FILE.read_text()
+NEGATIVE = np.diag([1.0, 2.0, -3.0, 0.1, 0.1, 0.1]).tolist()
 
 
 def refused(folder: Path, old: str, new: str) -> InputError:
@@ -53,6 +54,11 @@ def refused(folder: Path, old: str, new: str) -> InputError:
         ('name = "upper_arm"', 'name = "shoulder"', "link", "one name for each"),
         ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["40 deg"]', "phase[0].joints", "3, one for each"),
         ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["4 m", 0, 0]', "phase[0].joints", "angle"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = [0, 0, "300 deg"]', "phase[0].joints", "-45 to 225 deg, the limits of joint forearm"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'torque = ["1 m", 0, 0]', "phase[0].torque", "moment"),
+        ("[[0.403567, 0.0, 0.0]", "[[0.403567, 0.1, 0.0]", "link[1].inertia_matrix", "the same numbers on both sides of the diagonal"),
+        ('mass = "12.96 kg"', f'mass = "12.96 kg"\nadded_mass = {NEGATIVE}', "link[0].added_mass", "smallest eigenvalue -3"),
+        ('mass = "100 kg"', f'mass = "100 kg"\nadded_mass = {NEGATIVE}', "vehicle.added_mass", "smallest eigenvalue -3"),
         ("end = [0.75", "torque = [1.0, 0.0, 0.0]\nend = [0.75", "phase[2].torque", "one of joints, end and torque"),
         ('"link.mass" = "printed', '"link.mass" = "guessed', "basis.link.mass", "printed, derived"),
     ],
@@ -205,3 +211,23 @@ def test_a_displaced_volume_other_than_the_hull_s_is_said(tmp_path: Path) -> Non
     assert "displaces 0.05 m^3, 50 kg, as stated; its ellipsoid holds 0.6702 m^3" in read_chain(file).assumed[1]
     file.write_text(TEXT.replace('mass = "100 kg"', stated.format(0.67)))
     assert len(read_chain(file).assumed) == 1
+
+
+def test_units_of_rates_torques_and_commands(tmp_path: Path) -> None:
+    """Bare numbers are SI, as before."""
+    file = tmp_path / "body.toml"
+    start = '[start]\nvelocity = ["1 kn", 0, 0, 0, 0, "9 deg/s"]\nrates = ["18 deg/s", 0.5, "0 rad/s"]\n'
+    eight = ["2 N*m", 3, *["0"] * 6]
+    phase = f'[[phase]]\nname = "p"\nlasts = 1\ntorque = ["1000 N*mm", 2, "0 N*m"]\ncommands = {eight}\n'.replace(
+        '"0"', "0"
+    )
+    file.write_text(
+        TEXT.partition("[[phase]]")[0].replace("'", '"') + phase.replace("'", '"').replace('"0"', "0") + start
+    )
+    motion = read_arm(file)[1]
+    np.testing.assert_allclose(motion.velocity, [1852.0 / 3600.0, 0, 0, 0, 0, np.pi / 20.0])
+    assert motion.orders["shoulder.rate"] == pytest.approx(np.pi / 10.0)
+    assert motion.orders["upper_arm.rate"] == 0.5
+    orders = motion.phases[0].orders
+    assert (orders["shoulder.torque"], orders["upper_arm.torque"]) == (1.0, 2.0)
+    assert (orders["fore_port"], orders["fore_starboard"]) == (2.0, 3.0)
