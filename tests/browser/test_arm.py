@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,18 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody.motion import at_rest
 from coeflab.published.urv.model import hull, wet
-from coeflab.report.figures.arm import FRAMES, ArmMotion, animation, frames_figure, hull_of, parts_at, poses_figure
+from coeflab.report.figures.arm import (
+    FRAMES,
+    ArmMotion,
+    animation,
+    frames_figure,
+    hull_of,
+    joint_plots,
+    parts_at,
+    path_figure,
+    poses_figure,
+)
+from coeflab.report.figures.svg import COLOURS
 
 
 @pytest.fixture(scope="module")
@@ -97,3 +109,27 @@ def test_pictures_name_what_they_show(motion: ArmMotion) -> None:
 def test_a_body_without_an_arm_has_no_hull_for_these_pictures() -> None:
     with pytest.raises(InputError, match="a vehicle with an arm"):
         hull_of(read_other(Path(str(shipped("geometry"))) / "suboff" / "body.toml"))
+
+
+@pytest.mark.parametrize(("size", "seen"), [(3.0, False), (0.01, True)])
+def test_a_link_inside_the_hull_is_not_painted_over_it(motion: ArmMotion, size: float, seen: bool) -> None:
+    hidden = ArmMotion(motion.chain, np.full(3, size), motion.time, motion.states)
+    assert (COLOURS["a"] in poses_figure(hidden, "poses", "title", "caption").svg) is seen
+
+
+def test_slides_have_panels_of_their_own(motion: ArmMotion) -> None:
+    turning = motion.chain.joints[0]
+    sliding = replace(turning, name="slide", kind="prismatic")
+    plots = joint_plots([turning, sliding], np.arange(2.0), np.full((2, 2), 0.1), np.full((2, 2), 7.0))
+    assert [p.name_up for p in plots] == ["angle  [deg]", "torque  [N m]", "travel  [mm]", "force  [N]"]
+    assert [[t.name for t in p.traces] for p in plots] == [["shoulder"], ["shoulder"], ["slide"], ["slide"]]
+    assert plots[2].traces[0].y[0] == pytest.approx(100.0)
+    assert [p.is_scaled for p in plots] == [False, False, False, True]
+
+
+def test_down_is_drawn_downward() -> None:
+    sinking = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 5.0]])
+    level, upright = path_figure(sinking, None, "path", "title", "caption").panels
+    assert (level.name_up, upright.name_up, upright.unit_up) == ("east", "down", "m")
+    assert level.up[0] < level.up[1]
+    assert upright.up == pytest.approx((5.4, -0.4))

@@ -80,6 +80,8 @@ class Plot:
         Half-width of a band about zero.
     is_scaled : bool
         Whether the axis across has texts; otherwise the panel below carries them.
+    falls : bool
+        Whether the upright axis grows downward, as a depth does.
     """
 
     name_up: str
@@ -88,6 +90,7 @@ class Plot:
     height: float = 110.0
     allowed: float | None = None
     is_scaled: bool = True
+    falls: bool = False
 
 
 def laws_figure(anchor: str, title: str, caption: str, description: str, plots: Sequence[Plot]) -> Figure:
@@ -128,11 +131,12 @@ def _across(plot: Plot) -> tuple[float, float]:
 
 def _up(plot: Plot) -> tuple[float, float]:
     seen = [t.y for t in plot.traces] + ([] if plot.allowed is None else [np.array([-plot.allowed, plot.allowed])])
-    return limits(np.concatenate(seen), 0.08) or (-1.0, 1.0)
+    low, high = limits(np.concatenate(seen), 0.08) or (-1.0, 1.0)
+    return (high, low) if plot.falls else (low, high)
 
 
 def _drawn(axes: Axes, plot: Plot, keys: dict[str, str]) -> Panel:
-    low, high = axes.get_ylim()
+    low, high = sorted(axes.get_ylim())
     if plot.allowed is not None:
         axes.axhspan(-plot.allowed, plot.allowed, color=COLOURS["band"], alpha=0.25, linewidth=0, zorder=0.2)
     if low < 0.0 < high:
