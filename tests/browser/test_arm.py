@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -99,7 +100,7 @@ def test_it_stands_still_where_less_motion_is_asked_for_and_axe_finds_nothing(
 
 def test_pictures_name_what_they_show(motion: ArmMotion) -> None:
     frames = frames_figure(motion, "frames", "caption")
-    for name in ("x0", "z0", "y1", "x3", "north", "east", "down"):
+    for name in ("x₀", "z₀", "y₁", "x₃", "c₀", "north", "east", "down"):
         assert f">{name}<" in frames.svg
     poses = poses_figure(motion, "poses", "title", "caption")
     assert poses.svg == poses_figure(motion, "poses", "title", "caption").svg
@@ -133,3 +134,13 @@ def test_down_is_drawn_downward() -> None:
     assert (level.name_up, upright.name_up, upright.unit_up) == ("east", "down", "m")
     assert level.up[0] < level.up[1]
     assert upright.up == pytest.approx((5.4, -0.4))
+
+
+def test_names_of_axes_do_not_overlap(motion: ArmMotion) -> None:
+    svg = frames_figure(motion, "frames", "caption").svg
+    places = re.findall(r"<text [^>]*?translate\(([\d.]+) ([\d.]+)\)[^>]*>[xyzc][₀-₉]<", svg)
+    places = places or re.findall(r'<text [^>]*?x="([\d.]+)" y="([\d.]+)"[^>]*>[xyzc][₀-₉]<', svg)
+    at = np.array(places, dtype=float)
+    assert len(at) > 8
+    apart = np.abs(at[:, None] - at[None])[np.triu_indices(len(at), 1)]
+    assert ((apart[:, 0] >= 8.0) | (apart[:, 1] >= 7.0)).all()

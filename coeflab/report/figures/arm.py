@@ -40,7 +40,7 @@ from coeflab.report.figures.body_scene import (
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.panel import WIDTH, drawing
 from coeflab.report.figures.series import STYLES
-from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text
+from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text, text_width
 
 TEMPLATE = Path(__file__).parents[1] / "formats" / "_html" / "arm.html"
 ALONG, AROUND = 10, 20  # facets of the hull that the page draws
@@ -48,6 +48,7 @@ FRAMES = 240  # at most, of a page
 MARGIN, TALLEST, HEAD = 16.0, 300.0, 20.0
 ARROW = 0.36  # m
 EFFORT = {True: "{}.torque [N m]", False: "{}.torque [N]"}
+LETTERS = 7.5  # size of the names of axes, points
 SLICES = 40  # of a cylinder that is seen in part
 
 
@@ -195,7 +196,7 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
     title = "Coordinate system of the model"
     description = (
         f"Vehicle, {chain.count} links and {chain.count + 1} frames, x, y and z of each as arrows; frame 0 where the arm is mounted; north, "
-        "east and down beside them; the vector c_0 from the vehicle's centre of mass to frame 0."
+        "east and down beside them; the vector c₀ from the vehicle's centre of mass to frame 0."
     )
     with settings():
         figure, axes = _paper(height)
@@ -203,12 +204,13 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
         move = np.array([middle - scale * flat[:, 0].min(), 1.5 * MARGIN - scale * flat[:, 1].min()])
         drawn = Sheet(axes, view, scale, move, float(np.ptp(corners, axis=0).max()))
         _pale(drawn, shape)
+        names: list[Array] = []
         for number, (origin, turn) in enumerate(frames):
-            _triad(drawn, origin, turn, tuple(f"{axis}{number}" for axis in "xyz"), "ink", reach[number])
-        _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW)
+            _triad(drawn, origin, turn, tuple(axis + _index(number) for axis in "xyz"), "ink", reach[number], names)
+        _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW, names)
         start, end = drawn.on_paper(np.zeros(3)), drawn.on_paper(chain.attachment)
         _arrow(drawn, start, end, "b")
-        axes.text(start[0] + 4.0, start[1] - 3.0, "c_0", color=COLOURS["b"], zorder=6)
+        _named(drawn, start, start - end, "c" + _index(0), "b", names)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description)
 
@@ -223,7 +225,13 @@ def _paper(height: float) -> tuple[Any, Any]:
     return figure, axes
 
 
-def _triad(drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float) -> None:
+def _index(number: int) -> str:
+    return str(number).translate(str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉"))
+
+
+def _triad(
+    drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float, taken: list[Array]
+) -> None:
     start = drawn.on_paper(origin)
     for name, axis in zip(names, np.asarray(turn).T, strict=True):
         tip = drawn.on_paper(origin + reach * axis)
@@ -231,10 +239,24 @@ def _triad(drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colou
         if float(np.linalg.norm(along)) < 6.0:  # toward the viewer
             continue
         _arrow(drawn, start, tip, colour)
-        beyond = tip + 8.0 * along / float(np.linalg.norm(along))
-        drawn.axes.text(
-            beyond[0], beyond[1], name, color=COLOURS[colour], ha="center", va="center", fontsize=7.5, zorder=6
-        )
+        _named(drawn, tip, along, name, colour, taken)
+
+
+def _named(drawn: Sheet, tip: Array, along: Array, name: str, colour: str, taken: list[Array]) -> None:
+    """A name beyond a tip, beside it or farther out where names stand already; its box (left, bottom, right, top) joins them."""
+    ahead = along / float(np.linalg.norm(along))
+    aside = np.array([-ahead[1], ahead[0]])
+    half = np.array([text_width(name, LETTERS) / 2.0 + 1.0, 0.5 * LETTERS])
+    boxes = []
+    for far in (8.0, 14.0, 20.0):
+        for out in (0.0, 9.0, -9.0, 16.0, -16.0):
+            at = tip + far * ahead + out * aside
+            boxes.append(np.concatenate([at - half, at + half]))
+    free = (box for box in boxes if not any(np.all(box[:2] < b[2:]) and np.all(b[:2] < box[2:]) for b in taken))
+    box = next(free, boxes[0])
+    taken.append(box)
+    x, y = (box[:2] + box[2:]) / 2.0
+    drawn.axes.text(x, y, name, color=COLOURS[colour], ha="center", va="center", fontsize=LETTERS, zorder=6)
 
 
 def _arrow(drawn: Sheet, start: Array, end: Array, colour: str) -> None:
