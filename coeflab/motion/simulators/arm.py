@@ -74,7 +74,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
     -------
     Trajectory
         Of the vehicle's centre of mass, its velocity through the water. ``controls`` holds, with their units, joint positions, rates
-        and torques, the force and moment on the vehicle by its thrusters or by what holds it, thrusts, and the end effector, NED.
+        and torques (forces of those that slide), the force and moment on the vehicle by its thrusters or by what holds it, thrusts, and the end effector, NED.
         ``outside`` flags joints that are quicker or stronger than their drives.
 
     Raises
@@ -177,7 +177,7 @@ def _trajectory(
         unit, effort = ("rad", "N m") if joint.turns else ("m", "N")
         columns[f"{joint.name} [{unit}]"] = q[:, k]
         columns[f"{joint.name}.rate [{unit}/s]"] = rates[:, k]
-        columns[f"{joint.name}.torque [{effort}]"] = torques[:, k]
+        columns[f"{joint.name}.{'torque' if joint.turns else 'force'} [{effort}]"] = torques[:, k]
         outside[f"{joint.name} quicker than its drive"] = np.abs(rates[:, k]) > joint.fastest
         outside[f"{joint.name} stronger than its drive"] = np.abs(torques[:, k]) > joint.strongest
     for k, name in enumerate(("X", "Y", "Z", "K", "M", "N")):

@@ -47,7 +47,7 @@ ALONG, AROUND = 10, 20  # facets of the hull that the page draws
 FRAMES = 240  # at most, of a page
 MARGIN, TALLEST, HEAD = 16.0, 300.0, 20.0
 ARROW = 0.36  # m
-EFFORT = {True: "{}.torque [N m]", False: "{}.torque [N]"}
+EFFORT = {True: "{}.torque [N m]", False: "{}.force [N]"}
 LETTERS = 7.5  # size of the names of axes, points
 SLICES = 40  # of a cylinder that is seen in part
 
