@@ -204,13 +204,17 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
         move = np.array([middle - scale * flat[:, 0].min(), 1.5 * MARGIN - scale * flat[:, 1].min()])
         drawn = Sheet(axes, view, scale, move, float(np.ptp(corners, axis=0).max()))
         _pale(drawn, shape)
-        names: list[Array] = []
+        taken: list[Array] = []
+        named = []
         for number, (origin, turn) in enumerate(frames):
-            _triad(drawn, origin, turn, tuple(axis + _index(number) for axis in "xyz"), "ink", reach[number], names)
-        _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW, names)
+            own = tuple(axis + _index(number) for axis in "xyz")
+            named += _triad(drawn, origin, turn, own, "ink", reach[number], taken)
+        named += _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW, taken)
         start, end = drawn.on_paper(np.zeros(3)), drawn.on_paper(chain.attachment)
         _arrow(drawn, start, end, "b")
-        _named(drawn, start, start - end, "c" + _index(0), "b", names)
+        named.append((start, start - end, "c" + _index(0), "b"))
+        for tip, along, name, colour in named:
+            _named(drawn, tip, along, name, colour, taken)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description)
 
@@ -231,7 +235,9 @@ def _index(number: int) -> str:
 
 def _triad(
     drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float, taken: list[Array]
-) -> None:
+) -> list[tuple[Array, Array, str, str]]:
+    """Draw three arrows, whose boxes join those taken; what is to be named: tip, direction, name, colour."""
+    out = []
     start = drawn.on_paper(origin)
     for name, axis in zip(names, np.asarray(turn).T, strict=True):
         tip = drawn.on_paper(origin + reach * axis)
@@ -239,11 +245,13 @@ def _triad(
         if float(np.linalg.norm(along)) < 6.0:  # toward the viewer
             continue
         _arrow(drawn, start, tip, colour)
-        _named(drawn, tip, along, name, colour, taken)
+        taken += [np.concatenate([p - 1.5, p + 1.5]) for p in np.linspace(start, tip, 12)]
+        out.append((tip, along, name, colour))
+    return out
 
 
 def _named(drawn: Sheet, tip: Array, along: Array, name: str, colour: str, taken: list[Array]) -> None:
-    """A name beyond a tip, beside it or farther out where names stand already; its box (left, bottom, right, top) joins them."""
+    """A name beyond a tip, beside it or farther out where names or arrows stand; its box (left, bottom, right, top) joins them."""
     ahead = along / float(np.linalg.norm(along))
     aside = np.array([-ahead[1], ahead[0]])
     half = np.array([text_width(name, LETTERS) / 2.0 + 1.0, 0.5 * LETTERS])
