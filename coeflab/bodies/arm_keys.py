@@ -15,9 +15,14 @@ from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY, with_unit
+from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import inertia_doubt
 from coeflab.law.transforms import about_axis, moved, rotation, turned
 
+INERTIA = (
+    "[[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]] about the centre of mass: the same numbers on both sides of the diagonal, "
+    "principal moments above zero, none above the sum of the other two"
+)
 FORMULAS = ("across", "ends", "none")
 DIMENSIONS = {"revolute": ("angle", "rate", "moment"), "prismatic": ("length", "speed", "force")}
 IN_LINK = "a point [x, y, z] in metres, in the link's own frame"
@@ -69,27 +74,50 @@ class JointRange(NamedTuple):
 
 def _require_inertia(mass: float, inertia: Array) -> None:
     if doubt := inertia_doubt(mass, np.zeros(3), inertia):
-        raise InputError(doubt, "the inertia of a body about its centre of mass", column="inertia_matrix")
+        raise InputError(doubt, INERTIA, column="inertia_matrix")
 
 
-def _numbers(value: Any, _file: Path) -> tuple[float, ...]:
-    if not isinstance(value, list):
-        raise InputError(shown(value), "a list of numbers")
-    return tuple(with_unit(v, "none") for v in value)
+def _require_added_mass(matrix: Array | None) -> None:
+    if matrix is not None and np.any(matrix) and not definiteness(matrix).holds:
+        smallest = float(np.linalg.eigvalsh((matrix + matrix.T) / 2.0)[0])
+        raise InputError(
+            f"an added mass of smallest eigenvalue {smallest:g}", "a symmetric matrix without negative eigenvalues",
+            column="added_mass", advice="Positive entries resist acceleration; the URV paper prints its entries negative.",
+        )  # fmt: skip
 
 
-def _listed(value: Any, _file: Path) -> tuple[Any, ...]:
-    if not isinstance(value, list) or not all(isinstance(v, (int, float, str)) for v in value):
-        raise InputError(shown(value), 'a list of positions, such as ["20 deg", 0]')
-    return tuple(value)
+def _one_each(what: str, units: str, example: str) -> takes.Takes:
+    """Values whose dimensions are those of joints or thrusters: read in SI by the file, which knows these."""
+    expected = f"a list of {what}, such as {example}"
+
+    def read(value: Any, _file: Path) -> tuple[Any, ...]:
+        if not isinstance(value, list) or any(
+            isinstance(v, bool) or not isinstance(v, (int, float, str)) for v in value
+        ):
+            raise InputError(shown(value), expected)
+        return tuple(value)
+
+    items = {"type": ["number", "string"], "unit": units}
+    return takes.Takes(f"a list of {what}", read, {"type": "array", "items": items})
 
 
-_NUMBER = {"type": ["number", "string"], "unit": "1"}
-Numbers = Annotated[tuple[float, ...], takes.Takes("a list of numbers", _numbers, {"type": "array", "items": _NUMBER})]
-Positions = Annotated[
-    tuple[Any, ...],
-    takes.Takes("a list of positions", _listed, {"type": "array", "items": {**_NUMBER, "unit": "rad or m"}}),
-]
+def _speeds(value: Any, _file: Path) -> tuple[float, ...]:
+    if not isinstance(value, list) or len(value) != 6:
+        raise InputError(shown(value), "six speeds, m/s and rad/s")
+    return tuple(with_unit(v, "speed" if i < 3 else "rate") for i, v in enumerate(value))
+
+
+Positions = Annotated[tuple[Any, ...], _one_each("positions", "rad or m", '["20 deg", 0]')]
+Paces = Annotated[tuple[Any, ...], _one_each("rates", "rad/s or m/s", '["5 deg/s", 0]')]
+Efforts = Annotated[tuple[Any, ...], _one_each("torques or forces", "N m or N", '["2 N*m", 0]')]
+Commands = Annotated[tuple[Any, ...], _one_each("commands", "N m, V or N", '["2 N*m", 0]')]
+_SIX_SPEEDS = {
+    "type": "array",
+    "items": {"type": ["number", "string"], "unit": "m/s or rad/s"},
+    "minItems": 6,
+    "maxItems": 6,
+}
+Speeds = Annotated[tuple[float, ...], takes.Takes("six speeds, m/s and rad/s", _speeds, _SIX_SPEEDS)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -207,6 +235,7 @@ class LinkKeys(takes.Declaration):
             if not value > 0.0:
                 raise InputError(f"{value:g}", "a value above zero", column=key)
         _require_inertia(self.mass, self.inertia_matrix)
+        _require_added_mass(self.added_mass)
 
     @property
     def _unit(self) -> str:
@@ -282,6 +311,7 @@ class VehicleKeys(takes.Declaration):
         if min(self.drag_area) < 0.0:
             raise InputError(shown(list(self.drag_area)), "three areas of zero or more", column="drag_area")
         _require_inertia(self.mass, self.inertia_matrix)
+        _require_added_mass(self.added_mass)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -412,12 +442,12 @@ class StartKeys(takes.Declaration):
     ----------
     velocity : (6,) tuple
         u v w p q r of the vehicle over ground, m/s and rad/s.
-    rates : list of float
-        Of the joints, rad/s or m/s; at rest unless given.
+    rates : list
+        Of the joints, rad/s or m/s where bare; at rest unless given.
     """
 
-    velocity: Annotated[tuple[float, ...], takes.numbers(6, "none", "six speeds, m/s and rad/s")] = (0.0,) * 6
-    rates: Numbers = ()
+    velocity: Speeds = (0.0,) * 6
+    rates: Paces = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -436,9 +466,9 @@ class ArmPhaseKeys(takes.Declaration):
         Positions that the joints reach at its end, from rest to rest, each with its unit.
     end : (3,) array
         Place that the end effector reaches at its end, on a straight line of the vehicle, [x, y, z], m, FRD, from the datum.
-    torque : list of float
-        Of the joints, N m or N, constant. Without joints, end and torque they turn freely.
-    commands : list of float
+    torque : list
+        Of the joints, N m or N where bare, constant. Without joints, end and torque they turn freely.
+    commands : list
         Of the thrusters, constant: N m by torque, V by voltage, N without a model; without it they stand still.
     """
 
@@ -447,8 +477,8 @@ class ArmPhaseKeys(takes.Declaration):
     vehicle: Annotated[str, takes.one_of("free", "held")] = "free"
     joints: Positions = ()
     end: takes.Point | None = None
-    torque: Numbers = ()
-    commands: Numbers = ()
+    torque: Efforts = ()
+    commands: Commands = ()
 
     def check(self) -> None:
         """One way to move the joints."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 TABLES = ("csv", "parquet")
+TAKEN_BY_ARM = {"file", "current", "record", "to", "out", "json"}
 
 
 def command(
@@ -60,28 +61,35 @@ def command(
     """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
-    See --help-options. A vehicle with an arm makes the phases of its body.toml; --record, --current, --method and --tolerance
-    count there. Exit code 1
-    where the motion could not be computed to its end, or where the file determines nothing of it; then nothing is written.
+    See --help-options. A vehicle with an arm makes the phases of its body.toml and takes --record, --current, --method and
+    --tolerance. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
+    was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written.
     """
     from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.parameter_file import read_parameter_file
 
+    body = arm_at(file)
     if help_options:
         from coeflab.cli.formats import explain
         from coeflab.motion.manoeuvres import MANOEUVRES
 
-        explain(MANOEUVRES, manoeuvre)
+        if body is None:
+            explain(MANOEUVRES, manoeuvre)
+        else:
+            _explain_arm()
         return
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
-    if (body := arm_at(file)) is not None:
-        refused = {"--free": free, "--hold": hold, "--tables": tables, "--step": step}
-        if strange := [key for key, value in refused.items() if value]:
-            raise InputError(f"{strange[0]} for a vehicle with an arm", "phases of its body.toml", column=strange[0])
-        of_arm = current_of(current) | ({"record": record} if record else {}) | dict(further(ctx.args))
+    if body is not None:
+        typed = _typed(ctx)
+        if strange := sorted(typed - TAKEN_BY_ARM):
+            raise InputError(
+                f"--{strange[0]} for a vehicle with an arm, which makes the [[phase]] tables of its body.toml",
+                "--record, --current, --to, --out, --json, or an option of --help-options", column=f"--{strange[0]}",
+            )  # fmt: skip
+        of_arm = current_of(current) | ({"record": record} if "record" in typed else {}) | dict(further(ctx.args))
         _arm(body, of_arm, to, out, json)
         return
     parameters = read_parameter_file(file)
@@ -108,6 +116,30 @@ def command(
         raise typer.Exit(1)
 
 
+def _typed(ctx: typer.Context) -> set[str]:
+    """Options that stand on the command line, whatever their value."""
+    sources = {name: ctx.get_parameter_source(name) for name in ctx.params}
+    return {name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"}
+
+
+def _explain_arm() -> None:
+    """Options of an arm's motion, and the keys of its phases."""
+    from coeflab.bodies.arm_keys import ArmPhaseKeys, StartKeys
+    from coeflab.cli.formats import explain
+    from coeflab.core.declarations import meanings, taken
+    from coeflab.core.table import Table
+    from coeflab.motion.simulators import SIMULATORS
+
+    explain(SIMULATORS, "arm")
+    rows = [
+        (f"{table}{key}", takes.words, meanings(kind)[key])
+        for table, kind in (("[[phase]] ", ArmPhaseKeys), ("[start] ", StartKeys))
+        for key, takes in taken(kind).items()
+    ]
+    notes = ("All keys of a body.toml of an arm: docs/files.md; a whole one: geometry/urv_puma.",)
+    show.table(Table("Motion in the body.toml", ("key", "takes", "meaning"), tuple(rows), notes, frozenset({0, 1, 2})))
+
+
 def arm_at(file: Path) -> Path | None:
     """The body.toml of a vehicle with an arm that a person means, by path or shipped name; None for anything else."""
     from coeflab.core.files import shipped, typed
@@ -122,15 +154,23 @@ def arm_at(file: Path) -> Path | None:
 
 def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
     """The phases of a vehicle with an arm."""
+    from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.motion.multibody.arm_file import read_arm
+    from coeflab.core.text.toml import read_toml
+    from coeflab.motion.multibody.arm_file import BODY, read_arm
     from coeflab.motion.simulators import SIMULATORS
     from coeflab.motion.trajectory import Ended
     from coeflab.report.tables.motion import arm_phases, columns, motion_csv, motion_parquet
 
     chain, manoeuvre = read_arm(body)
-    with SIMULATORS.guarded("arm"):
-        moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
+    try:
+        with SIMULATORS.guarded("arm"):
+            moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
+    except InputError as why:
+        if why.file is not None or why.column is None or not why.column.startswith("phase["):
+            raise
+        toml = read_toml(body / BODY if body.is_dir() else body)
+        raise toml.fail(why.column, why.found, why.expected, why.advice) from None
     table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
     content = (
         {} if out is None else {f"{manoeuvre.name}.{to}": table, **_arm_pictures(body, chain, manoeuvre.name, moved)}

@@ -149,7 +149,7 @@ def with_unit(value: Any, dimension: str) -> float:
     if dimension == "angle" and isinstance(value, (int, float)) and value and not isinstance(value, bool):
         raise InputError(
             f"{value!r}, an angle without a unit", 'a text with its unit, such as "20 deg"',
-            advice=f'Write "{value!r} deg", or "{value!r} rad", as it was read until now.' if math.isfinite(value) else "",
+            advice=f'Write "{value!r} deg" or "{value!r} rad".' if math.isfinite(value) else "",
         )  # fmt: skip
     return quantity(value, dimension)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,18 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody.motion import at_rest
 from coeflab.published.urv.model import hull, wet
-from coeflab.report.figures.arm import FRAMES, ArmMotion, animation, frames_figure, hull_of, parts_at, poses_figure
+from coeflab.report.figures.arm import (
+    FRAMES,
+    ArmMotion,
+    animation,
+    frames_figure,
+    hull_of,
+    joint_plots,
+    parts_at,
+    path_figure,
+    poses_figure,
+)
+from coeflab.report.figures.svg import COLOURS
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +100,7 @@ def test_it_stands_still_where_less_motion_is_asked_for_and_axe_finds_nothing(
 
 def test_pictures_name_what_they_show(motion: ArmMotion) -> None:
     frames = frames_figure(motion, "frames", "caption")
-    for name in ("x0", "z0", "y1", "x3", "north", "east", "down"):
+    for name in ("x₀", "z₀", "y₁", "x₃", "c₀", "north", "east", "down"):
         assert f">{name}<" in frames.svg
     poses = poses_figure(motion, "poses", "title", "caption")
     assert poses.svg == poses_figure(motion, "poses", "title", "caption").svg
@@ -97,3 +110,37 @@ def test_pictures_name_what_they_show(motion: ArmMotion) -> None:
 def test_a_body_without_an_arm_has_no_hull_for_these_pictures() -> None:
     with pytest.raises(InputError, match="a vehicle with an arm"):
         hull_of(read_other(Path(str(shipped("geometry"))) / "suboff" / "body.toml"))
+
+
+@pytest.mark.parametrize(("size", "seen"), [(3.0, False), (0.01, True)])
+def test_a_link_inside_the_hull_is_not_painted_over_it(motion: ArmMotion, size: float, seen: bool) -> None:
+    hidden = ArmMotion(motion.chain, np.full(3, size), motion.time, motion.states)
+    assert (COLOURS["a"] in poses_figure(hidden, "poses", "title", "caption").svg) is seen
+
+
+def test_slides_have_panels_of_their_own(motion: ArmMotion) -> None:
+    turning = motion.chain.joints[0]
+    sliding = replace(turning, name="slide", kind="prismatic")
+    plots = joint_plots([turning, sliding], np.arange(2.0), np.full((2, 2), 0.1), np.full((2, 2), 7.0))
+    assert [p.name_up for p in plots] == ["angle  [deg]", "torque  [N m]", "travel  [mm]", "force  [N]"]
+    assert [[t.name for t in p.traces] for p in plots] == [["shoulder"], ["shoulder"], ["slide"], ["slide"]]
+    assert plots[2].traces[0].y[0] == pytest.approx(100.0)
+    assert [p.is_scaled for p in plots] == [False, False, False, True]
+
+
+def test_down_is_drawn_downward() -> None:
+    sinking = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 5.0]])
+    level, upright = path_figure(sinking, None, "path", "title", "caption").panels
+    assert (level.name_up, upright.name_up, upright.unit_up) == ("east", "down", "m")
+    assert level.up[0] < level.up[1]
+    assert upright.up == pytest.approx((5.4, -0.4))
+
+
+def test_names_of_axes_do_not_overlap(motion: ArmMotion) -> None:
+    svg = frames_figure(motion, "frames", "caption").svg
+    places = re.findall(r"<text [^>]*?translate\(([\d.]+) ([\d.]+)\)[^>]*>[xyzc][₀-₉]<", svg)
+    places = places or re.findall(r'<text [^>]*?x="([\d.]+)" y="([\d.]+)"[^>]*>[xyzc][₀-₉]<', svg)
+    at = np.array(places, dtype=float)
+    assert len(at) > 8
+    apart = np.abs(at[:, None] - at[None])[np.triu_indices(len(at), 1)]
+    assert ((apart[:, 0] >= 8.0) | (apart[:, 1] >= 7.0)).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.report.figures.estimator import estimator_figure
-from coeflab.report.figures.panel import tick_texts, ticks
+from coeflab.report.figures.panel import drawing, limits, panel, tick_texts, ticks
 from coeflab.report.figures.series import on_axis
 from coeflab.report.figures.svg import COLOURS, power_of_ten
 from coeflab.report.figures.sweep import at_rest, sweep_figure
@@ -98,3 +98,20 @@ def test_axis_numbers():
     assert power_of_ten(float("nan")) == (1.0, "")
     assert tick_texts(ticks((-0.3, 1.1), 5)) == ["0.0", "0.5", "1.0"]
     assert tick_texts(np.array([-10.0, 0.0, 10.0])) == ["−10", "0", "10"]
+
+
+@pytest.mark.parametrize("value", [0.0, 5e-324, 1e-20, 0.08, -3.0, 1e6, 1e20])
+def test_a_constant_gets_an_axis_with_ticks(value: float) -> None:
+    """Also where it differs by rounding: an axis of 1e-16 m has no ticks."""
+    values = value * (1.0 + np.array([0.0, 2.2e-16, -1.1e-16]))
+    found = limits(values, 0.08)
+    assert found is not None
+    low, high = found
+    assert low < values.min() <= values.max() < high
+    assert len(ticks(found, 5)) >= 2
+    panel(drawing(), 40.0, 100.0, across=found, up=found, name_up="east  [m]", name_across="down  [m]")
+
+
+def test_a_small_change_about_a_large_value_is_shown() -> None:
+    low, high = limits(np.array([1e6, 1e6 + 1e-3]), 0.1) or (0.0, 0.0)
+    assert high - low == pytest.approx(1.2e-3, rel=1e-5)

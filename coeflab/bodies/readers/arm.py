@@ -6,8 +6,9 @@ As a body it stands still, with its joints at home. `coeflab.motion.multibody.ar
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -92,16 +93,50 @@ class File(BodyFile):
         for key, values, count, what in many:
             if values and len(values) != count:
                 raise InputError(f"{len(values)} values", f"{count}, one for each of the {what}", column=key)
+        read = [("start.rates", self.rates)]
         for i, phase in enumerate(self.phase):
+            read += [
+                (f"phase[{i}].joints", partial(self.positions, phase)),
+                (f"phase[{i}].torque", partial(self.torques, phase)),
+            ]
+            read.append((f"phase[{i}].commands", partial(self.commands, phase)))
+        for key, values_of in read:
             try:
-                self.positions(phase)
+                values_of()
             except InputError as why:
-                raise InputError(why.found, why.expected, column=f"phase[{i}].joints", advice=why.advice) from None
+                raise InputError(why.found, why.expected, column=key, advice=why.advice) from None
 
     def positions(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
-        """Joint positions that a phase goes to, rad and m."""
+        """Joint positions that a phase goes to, rad and m, within the joints' limits."""
+        found = self._of_joints(phase.joints, 0)
+        for link, value in zip(self.link, found, strict=False):
+            low, high = link.range[:2]
+            if not low <= value <= high:
+                factor, unit = (180.0 / np.pi, "deg") if link.joint == "revolute" else (1.0, "m")
+                raise InputError(
+                    f"{factor * value:.6g} {unit}",
+                    f"{factor * low:.6g} to {factor * high:.6g} {unit}, the limits of joint {link.name}",
+                )
+        return found
+
+    def torques(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+        """Torques and forces of the joints in a phase, N m and N."""
+        return self._of_joints(phase.torque, 2)
+
+    def rates(self) -> tuple[float, ...]:
+        """Rates of the joints at the start, rad/s and m/s."""
+        return self._of_joints(self.start.rates, 1)
+
+    def commands(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+        """Commands of the thrusters in a phase: N m by torque, V by voltage, N without a model."""
         return tuple(
-            with_unit(value, DIMENSIONS[link.joint][0]) for link, value in zip(self.link, phase.joints, strict=False)
+            _volts(value) if one.voltage is not None else with_unit(value, "force" if one.torque is None else "moment")
+            for one, value in zip(self.thruster, phase.commands, strict=False)
+        )
+
+    def _of_joints(self, values: tuple[Any, ...], which: int) -> tuple[float, ...]:
+        return tuple(
+            with_unit(value, DIMENSIONS[link.joint][which]) for link, value in zip(self.link, values, strict=False)
         )
 
     @property
@@ -139,6 +174,10 @@ class File(BodyFile):
         centre = np.sum([m * c for m, c, _ in bodies], axis=0) / whole
         inertia = np.sum([own + parallel_axis(m, c) for m, c, own in bodies], axis=0)
         return MassProperties(whole, whole * float(centre[0]), None, centre, inertia)
+
+
+def _volts(value: Any) -> float:
+    return with_unit(value.strip().removesuffix("V") if isinstance(value, str) else value, "none")
 
 
 def read(path: Path) -> Body:

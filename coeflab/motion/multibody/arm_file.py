@@ -26,6 +26,7 @@ from coeflab.motion.multibody.thrusters import (
 )
 
 BODY = "body.toml"
+ALIKE = 0.02  # of the hull's volume: no word about less
 FREE = 10.0  # s of free motion where no phase is given
 
 
@@ -69,6 +70,7 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
     if file.vehicle.volume is None:
         neutral.insert(0, "vehicle")
     assumed = [f"Displaced mass equals mass, as no volume is stated: {', '.join(neutral)}."] if neutral else []
+    assumed += _hull_against_displaced(file.vehicle, rho)
     thrusters = tuple(_thruster(one, origin) for one in file.thruster)
     if thrusters and (lost := lost_directions(thruster_matrix(thrusters))):
         assumed.append(f"The thrusters make no {', no '.join(lost)}.")
@@ -84,6 +86,7 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
         gravity=file.arm.gravity,
         statements=(*assumed, *(f"{key}: {said}" for key, said in file.basis.items())),
         assumed=tuple(assumed),
+        datum=-origin,
     )
     return chain, _motion(file, chain)
 
@@ -95,13 +98,13 @@ def _motion(file: File, chain: Chain) -> Manoeuvre:
     for one in file.phase:
         orders = {"vehicle.held": float(one.vehicle == "held")}
         orders |= dict(zip(joints, file.positions(one), strict=False))
-        orders |= {f"{name}.torque": value for name, value in zip(joints, one.torque, strict=False)}
-        orders |= {t.name: value for t, value in zip(chain.thrusters, one.commands, strict=False)}
+        orders |= {f"{name}.torque": value for name, value in zip(joints, file.torques(one), strict=False)}
+        orders |= {t.name: value for t, value in zip(chain.thrusters, file.commands(one), strict=False)}
         if one.end is not None:
             place = one.end - file.vehicle.centre_of_mass
             orders |= {f"end.{axis}": float(value) for axis, value in zip("xyz", place, strict=True)}
         phases.append(Phase(one.name, orders, one.lasts))
-    started = {f"{name}.rate": value for name, value in zip(joints, file.start.rates, strict=False)}
+    started = {f"{name}.rate": value for name, value in zip(joints, file.rates(), strict=False)}
     made = tuple(phases) or (Phase("free motion", {"vehicle.held": 0.0}, FREE),)
     return Manoeuvre("arm_motion", made, np.array(file.start.velocity), orders=started)
 
@@ -115,6 +118,19 @@ def _base(name: str, keys: VehicleKeys, density: float) -> Base:
         name, keys.mass, keys.inertia_matrix, moved_water, volume, lifted - keys.centre_of_mass,
         np.array(keys.drag_area),
     )  # fmt: skip
+
+
+def _hull_against_displaced(keys: VehicleKeys, density: float) -> list[str]:
+    """What is to be said where the vehicle displaces another volume than its ellipsoid has."""
+    hull, displaced = 4.0 / 3.0 * np.pi * float(np.prod(keys.semi_axes)), _afloat(keys, density)[0]
+    if abs(hull - displaced) <= ALIKE * hull:
+        return []
+    how = "its mass over the density" if keys.volume is None else "as stated"
+    water = "" if keys.added_mass is not None else "; added mass is that of the whole ellipsoid"
+    return [
+        f"The vehicle displaces {displaced:.4g} m^3, {displaced * density:.4g} kg, {how}; its ellipsoid holds {hull:.4g} m^3, "
+        f"{hull * density:.4g} kg of water{water}."
+    ]
 
 
 def _link(keys: LinkKeys, density: float) -> Link:

@@ -202,7 +202,7 @@ def _lock(body: Link | Base) -> None:
     if not body.mass > 0.0:
         raise InputError(f"{body.mass:g} kg", "a mass above zero", column="mass")
     if doubt := inertia_doubt(body.mass, np.zeros(3), body.inertia):
-        raise InputError(doubt, "the inertia of a body about its centre of mass", column="inertia")
+        raise InputError(doubt, "a symmetric inertia about the centre of mass that a body can have", column="inertia")
     if np.any(body.added_mass) and not definiteness(body.added_mass).holds:
         smallest = float(np.linalg.eigvalsh((body.added_mass + body.added_mass.T) / 2.0)[0])
         raise InputError(
@@ -237,6 +237,8 @@ class Chain:
         What was assumed, and which numbers come from where.
     assumed : tuple of str
         Of these, what a motion has to say.
+    datum : (3,) array
+        What places that people state and read count from, m, FRD, from the vehicle's centre of mass.
     """
 
     name: str
@@ -250,9 +252,10 @@ class Chain:
     gravity: float = STANDARD_GRAVITY
     statements: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
+    datum: Array = field(default_factory=lambda: np.zeros(3))
 
     def __post_init__(self) -> None:
-        for name in ("attachment", "mount", "tool"):
+        for name in ("attachment", "mount", "tool", "datum"):
             object.__setattr__(self, name, locked(getattr(self, name)))
         if np.max(np.abs(self.mount.T @ self.mount - np.eye(3))) > 1e-9 or np.linalg.det(self.mount) < 0.0:
             raise InputError("axes that are not right-handed and of length one", "a rotation", column="mount")

@@ -35,6 +35,10 @@ FRAMES = (
     "centre of mass; K M N, N m, about it; then one for each joint, N m or N.",
     "Vectors stand along the vehicle's axes: x forward, y starboard, z down. SI units, radians.",
 )
+STAY = (
+    "Every parameter stands alone: where the density rho is changed, added masses and volumes stay as given. For another water change "
+    "them too, or derive again with its density in the body.toml."
+)
 
 
 @brief
@@ -105,6 +109,7 @@ def _head(form: ClosedForm, origin: Origin) -> list[str]:
         *(f"{name} ({form.length(name)}): {what}." for name, what in ARGUMENTS.items()),
         f"Joints: {joints}.",
         "Strips drag across their own axis, by Gauss's rule of 12 points along each.",
+        *([STAY] if form.parameters else []),
         *origin.statements,
     ]
     return [one_line(line) for line in said]
@@ -146,7 +151,12 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
     header += ["#endif", "", f"#define {name.upper()}_JOINTS {n}", f"#define {name.upper()}_SPEEDS {size}", ""]
     source = ["/*", *comments, "*/", f'#include "{name}.h"', "", "#include <math.h>", "#include <string.h>", ""]
     if form.parameters:
-        header += ["/* Numbers of the file; NAME_of_file holds them. */".replace("NAME", name), "typedef struct {"]
+        header += [
+            "/* Numbers of the file, as NAME_of_file holds them: the first argument of every function. */".replace(
+                "NAME", name
+            ),
+            "typedef struct {",
+        ]
         said = [one_line(p.said).replace("*/", "* /") for p in form.parameters]
         header += [f"    double {p.symbol.name}; /* {s}, {p.unit} */" for p, s in zip(form.parameters, said)]
         header += [f"}} {name}_parameters;", f"extern const {name}_parameters {name}_of_file;", ""]
@@ -242,7 +252,10 @@ def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
         ["Arguments are arrays of these lengths, or of columns: (length, many) gives results whose last axis is many."], "# "
     ), '"""Equations of motion of a vehicle with an arm, by Kane\'s method."""', "", "import math", "", "import numpy as np", ""]  # fmt: skip
     if form.parameters:
-        out += ["# Numbers of the file; every function takes such a dictionary in their place.", "PARAMETERS = {"]
+        out += [
+            "# Numbers of the file; every function takes such a dictionary as its last argument, of.",
+            "PARAMETERS = {",
+        ]
         out += [f'    "{p.symbol.name}": {p.value!r},  # {one_line(p.said)}, {p.unit}' for p in form.parameters]
         out += ["}", ""]
     if any(len(line.names) > 1 for f in form.functions for line in f.lines):
@@ -301,7 +314,11 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
     head = _comment(_head(form, origin), "% ")
     files = {}
     if form.parameters:
-        own = [f"function of = {name}_parameters()", *_comment(["Numbers of the file."], "% "), *head]
+        own = [
+            f"function of = {name}_parameters()",
+            *_comment(["Numbers of the file: the first argument of every function."], "% "),
+            *head,
+        ]
         own += [f"    of.{p.symbol.name} = {p.value!r}; % {one_line(p.said)}, {p.unit}" for p in form.parameters]
         files[f"{name}_parameters.m"] = "\n".join([*own, "end", ""])
     for function in form.functions:

@@ -389,15 +389,23 @@ def track_of_end(
         wanted = start + share * (to - start)
         here = _reached(chain, here, wanted)
         missed = float(np.linalg.norm(kane.pose(chain, here).end - wanted))
-        if missed > 1e3 * CLOSE or np.any(here < low) or np.any(here > high):
-            said = ", ".join(f"{v:.4g}" for v in wanted)
+        short = missed > 1e3 * CLOSE
+        if short or np.any(here < low) or np.any(here > high):
+            beyond = [j.name for j, q_j in zip(chain.joints, here, strict=True) if not j.low <= q_j <= j.high]
+            why = "no joint positions put it there" if short else f"{' and '.join(beyond)} would pass a limit"
             raise InputError(
-                f"an end effector on the way to [{', '.join(f'{v:.4g}' for v in to)}] that does not get to [{said}]",
-                "a straight line within reach and within the joints' limits, m, FRD from the vehicle's centre of mass",
-                column="end",
-            )
+                f"{_place(chain, to)}: on the straight line from {_place(chain, start)} the end effector does not get as far as "
+                f"{_place(chain, wanted)}, where {why}",
+                "a place that a straight line reaches within the joints' limits, [x, y, z], m, FRD, from the datum", column="end",
+                advice="Choose a nearer place, or go there by joints.",
+            )  # fmt: skip
         rows.append(here)
     return Track(begins, ends, np.array(rows))
+
+
+def _place(chain: Chain, point: Array) -> str:
+    """A point from the vehicle's centre of mass as people state it: from the datum."""
+    return f"[{', '.join(f'{v + 0.0:.4g}' for v in np.round(point - chain.datum, 9))}]"
 
 
 def _reached(chain: Chain, q: Array, wanted: Array) -> Array:

@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+LETTERS = "XYZKMN"
 WEAK = 1e-9
 BLADE = 0.7  # of the radius, where the blade is taken
 HALVINGS = 200
@@ -214,12 +215,21 @@ def lost_directions(matrix: Array) -> tuple[str, ...]:
     # Reduced to echelon form, so that a direction that is lost by itself stands by itself.
     rows = _echelon(lost.T)
     for row in rows:
-        named = [(value, name) for value, name in zip(row, DIRECTIONS, strict=True) if abs(value) > 1e-6]
-        if len(named) == 1:
-            out.append(named[0][1])
-        else:
-            out.append(" ".join(f"{value:+.3g} {name}" for value, name in named))
+        kept = [k for k in range(6) if abs(row[k]) > 1e-6]
+        out.append(DIRECTIONS[kept[0]] if len(kept) == 1 else _together(row, kept))
     return tuple(out)
+
+
+def _together(row: Array, kept: Sequence[int]) -> str:
+    """Directions that come together alone, row times (X, Y, Z, K, M, N) being zero: "sway apart from yaw (N = 0.5 m Y)"."""
+    *others, last = kept
+    terms = []
+    for k in others:
+        unit = " m" if k < 3 <= last else ""  # no moment stands before a force
+        terms.append(f"{-row[k] / row[last]:+.3g}{unit} {LETTERS[k]}")
+    said = " ".join(terms).removeprefix("+")
+    first, *rest = (DIRECTIONS[k] for k in kept)
+    return f"{first} apart from {' and '.join(rest)} ({LETTERS[last]} = {said})"
 
 
 def _echelon(rows: Array) -> Array:

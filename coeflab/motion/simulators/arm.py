@@ -74,7 +74,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
     -------
     Trajectory
         Of the vehicle's centre of mass, its velocity through the water. ``controls`` holds, with their units, joint positions, rates
-        and torques, the force and moment on the vehicle by its thrusters or by what holds it, thrusts, and the end effector, NED.
+        and torques (forces of those that slide), the force and moment on the vehicle by its thrusters or by what holds it, thrusts, and the end effector, NED.
         ``outside`` flags joints that are quicker or stronger than their drives.
 
     Raises
@@ -97,7 +97,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
     times, rows, controls, thrusts = [], [], [], []
     phase_of: list[int] = []
     for index, phase in enumerate(manoeuvre.phases):
-        drive = _drive(vehicle, phase, state, time)
+        drive = _drive(vehicle, phase, state, time, f"phase[{index}]")
         moving, acting = driven(vehicle, drive, flow)
         size = len(state) if drive.commands is not None else 13 + 2 * n
         found = march(
@@ -135,8 +135,8 @@ def _require_known(chain: Chain, manoeuvre: Manoeuvre) -> None:
             raise InputError(f"{phase.name} until {phase.until.quantity}", "a phase that ends by time", column="arm")
 
 
-def _drive(chain: Chain, phase: Phase, state: Array, begins: float) -> Drive:
-    """What acts in a phase that begins at a state."""
+def _drive(chain: Chain, phase: Phase, state: Array, begins: float, key: str) -> Drive:
+    """What acts in a phase that begins at a state; complaints name its key in a body.toml."""
     n = chain.count
     q, rates, ends = state[7 : 7 + n], state[13 + n : 13 + 2 * n], begins + phase.longest
     wanted = phase.orders
@@ -148,7 +148,7 @@ def _drive(chain: Chain, phase: Phase, state: Array, begins: float) -> Drive:
         elif "end.x" in wanted:
             track = track_of_end(chain, q, np.array([wanted[f"end.{axis}"] for axis in "xyz"]), begins, ends, rates)
     except InputError as why:
-        raise InputError(why.found, why.expected, column=f"{phase.name}.{why.column}", advice=why.advice) from None
+        raise InputError(why.found, why.expected, column=f"{key}.{why.column}", advice=why.advice) from None
     torque = np.array([wanted.get(f"{joint.name}.torque", 0.0) for joint in chain.joints])
     driving = any(t.name in wanted for t in chain.thrusters)
     commands = np.array([wanted.get(t.name, 0.0) for t in chain.thrusters]) if driving else None
@@ -177,7 +177,7 @@ def _trajectory(
         unit, effort = ("rad", "N m") if joint.turns else ("m", "N")
         columns[f"{joint.name} [{unit}]"] = q[:, k]
         columns[f"{joint.name}.rate [{unit}/s]"] = rates[:, k]
-        columns[f"{joint.name}.torque [{effort}]"] = torques[:, k]
+        columns[f"{joint.name}.{'torque' if joint.turns else 'force'} [{effort}]"] = torques[:, k]
         outside[f"{joint.name} quicker than its drive"] = np.abs(rates[:, k]) > joint.fastest
         outside[f"{joint.name} stronger than its drive"] = np.abs(torques[:, k]) > joint.strongest
     for k, name in enumerate(("X", "Y", "Z", "K", "M", "N")):

@@ -223,7 +223,7 @@ def figures() -> Iterator[tuple[str, Figure]]:
         frames_figure(
             ArmMotion(end.chain, model.hull(), kept.time[:1], kept.state[:1]),
             "urv-frames",
-            "Our picture of the paper's Figure 1: frame 0 on the vehicle at c_0 from its centre of mass, x forward, y left and z up; frames 1 "
+            "Our picture of the paper's Figure 1: frame 0 on the vehicle at c₀ from its centre of mass, x forward, y left and z up; frames 1 "
             "to 3 of the arm; north, east, down. Hull and links are the chosen spheroid and cylinders.",
         ),
     )

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.patches import PathPatch
+from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh import solids as silhouette
@@ -23,22 +24,32 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.chain import Chain
+from coeflab.motion.multibody.chain import Chain, Joint
 from coeflab.motion.multibody.control import ControlledRun
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
-from coeflab.report.figures.body_scene import box_facets, cylinder_facets, normals, part_facets
+from coeflab.report.figures.body_scene import (
+    COLOUR_OF,
+    box_facets,
+    cut_cylinder_facets,
+    cylinder_facets,
+    normals,
+    part_facets,
+)
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.panel import WIDTH, drawing
 from coeflab.report.figures.series import STYLES
-from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text
+from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text, text_width
 
 TEMPLATE = Path(__file__).parents[1] / "formats" / "_html" / "arm.html"
 ALONG, AROUND = 10, 20  # facets of the hull that the page draws
 FRAMES = 240  # at most, of a page
 MARGIN, TALLEST, HEAD = 16.0, 300.0, 20.0
 ARROW = 0.36  # m
+EFFORT = {True: "{}.torque [N m]", False: "{}.force [N]"}
+LETTERS = 7.5  # size of the names of axes, points
+SLICES = 40  # of a cylinder that is seen in part
 
 
 @brief
@@ -127,12 +138,36 @@ def poses_figure(motion: ArmMotion, anchor: str, title: str, caption: str) -> Fi
             left = MARGIN + k * (room + MARGIN)
             move = np.array([left - scale * flat[:, 0].min(), height - HEAD - MARGIN - scale * flat[:, 1].max()])
             drawn = Sheet(axes, OBLIQUE, scale, move, float(np.ptp(corners, axis=0).max()))
-            drawn.body(shape, None)
+            _in_place(drawn, shape)
             axes.plot(*drawn.on_paper(ends).T, color=COLOURS["ink"], linewidth=1.1, zorder=3)
             axes.plot(*drawn.on_paper(ends[row]), marker="o", markersize=3.2, color=COLOURS["ink"], zorder=4)
             axes.text(left, height - 12.0, f"{motion.time[row]:.3g} s", color=COLOURS["ink"])
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description)
+
+
+def _in_place(drawn: Sheet, shape: Parts) -> None:
+    """The hull, and of every cylinder what neither lies in it nor behind it; cylinders nearer to the viewer later."""
+    hull, *cylinders = shape.parts
+    toward = drawn.view.axes[2]
+    drawn.part(part_facets(hull), COLOUR_OF["ellipsoid"], False, True)
+    for part in sorted(cylinders, key=lambda p: round(float(p.centre @ toward), 9)):
+        form = part.form
+        if not isinstance(form, Cylinder):
+            continue
+        facets = cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
+        seen = facets[in_sight(facets.mean(axis=1), hull, toward)]
+        if len(seen):
+            drawn.part(seen, COLOUR_OF["cylinder"], False, False)
+
+
+def in_sight(points: Array, hull: Part, toward: Array) -> NDArray[np.bool_]:
+    """Which (n, 3) points a viewer sees past an ellipsoid: the ray toward the viewer does not leave it."""
+    axes = np.asarray(hull.form.axes) if isinstance(hull.form, Ellipsoid) else np.zeros(3)
+    start, ray = (points - hull.centre) @ hull.rotation / axes, toward @ hull.rotation / axes
+    a, b, c = ray @ ray, start @ ray, np.sum(start**2, axis=1) - 1.0
+    within = b * b - a * c
+    return np.asarray((within <= 0.0) | (np.sqrt(np.maximum(within, 0.0)) <= b))
 
 
 AZIMUTH, ELEVATION = np.radians(-62.0), np.radians(22.0)
@@ -161,7 +196,7 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
     title = "Coordinate system of the model"
     description = (
         f"Vehicle, {chain.count} links and {chain.count + 1} frames, x, y and z of each as arrows; frame 0 where the arm is mounted; north, "
-        "east and down beside them; the vector c_0 from the vehicle's centre of mass to frame 0."
+        "east and down beside them; the vector c₀ from the vehicle's centre of mass to frame 0."
     )
     with settings():
         figure, axes = _paper(height)
@@ -169,12 +204,17 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
         move = np.array([middle - scale * flat[:, 0].min(), 1.5 * MARGIN - scale * flat[:, 1].min()])
         drawn = Sheet(axes, view, scale, move, float(np.ptp(corners, axis=0).max()))
         _pale(drawn, shape)
+        taken: list[Array] = []
+        named = []
         for number, (origin, turn) in enumerate(frames):
-            _triad(drawn, origin, turn, tuple(f"{axis}{number}" for axis in "xyz"), "ink", reach[number])
-        _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW)
+            own = tuple(axis + _index(number) for axis in "xyz")
+            named += _triad(drawn, origin, turn, own, "ink", reach[number], taken)
+        named += _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW, taken)
         start, end = drawn.on_paper(np.zeros(3)), drawn.on_paper(chain.attachment)
         _arrow(drawn, start, end, "b")
-        axes.text(start[0] + 4.0, start[1] - 3.0, "c_0", color=COLOURS["b"], zorder=6)
+        named.append((start, start - end, "c" + _index(0), "b"))
+        for tip, along, name, colour in named:
+            _named(drawn, tip, along, name, colour, taken)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description)
 
@@ -189,7 +229,15 @@ def _paper(height: float) -> tuple[Any, Any]:
     return figure, axes
 
 
-def _triad(drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float) -> None:
+def _index(number: int) -> str:
+    return str(number).translate(str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉"))
+
+
+def _triad(
+    drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float, taken: list[Array]
+) -> list[tuple[Array, Array, str, str]]:
+    """Draw three arrows, whose boxes join those taken; what is to be named: tip, direction, name, colour."""
+    out = []
     start = drawn.on_paper(origin)
     for name, axis in zip(names, np.asarray(turn).T, strict=True):
         tip = drawn.on_paper(origin + reach * axis)
@@ -197,10 +245,26 @@ def _triad(drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colou
         if float(np.linalg.norm(along)) < 6.0:  # toward the viewer
             continue
         _arrow(drawn, start, tip, colour)
-        beyond = tip + 8.0 * along / float(np.linalg.norm(along))
-        drawn.axes.text(
-            beyond[0], beyond[1], name, color=COLOURS[colour], ha="center", va="center", fontsize=7.5, zorder=6
-        )
+        taken += [np.concatenate([p - 1.5, p + 1.5]) for p in np.linspace(start, tip, 12)]
+        out.append((tip, along, name, colour))
+    return out
+
+
+def _named(drawn: Sheet, tip: Array, along: Array, name: str, colour: str, taken: list[Array]) -> None:
+    """A name beyond a tip, beside it or farther out where names or arrows stand; its box (left, bottom, right, top) joins them."""
+    ahead = along / float(np.linalg.norm(along))
+    aside = np.array([-ahead[1], ahead[0]])
+    half = np.array([text_width(name, LETTERS) / 2.0 + 1.0, 0.5 * LETTERS])
+    boxes = []
+    for far in (8.0, 14.0, 20.0):
+        for out in (0.0, 9.0, -9.0, 16.0, -16.0):
+            at = tip + far * ahead + out * aside
+            boxes.append(np.concatenate([at - half, at + half]))
+    free = (box for box in boxes if not any(np.all(box[:2] < b[2:]) and np.all(b[:2] < box[2:]) for b in taken))
+    box = next(free, boxes[0])
+    taken.append(box)
+    x, y = (box[:2] + box[2:]) / 2.0
+    drawn.axes.text(x, y, name, color=COLOURS[colour], ha="center", va="center", fontsize=LETTERS, zorder=6)
 
 
 def _arrow(drawn: Sheet, start: Array, end: Array, colour: str) -> None:
@@ -235,24 +299,42 @@ def _corners(shape: Parts) -> Array:
 # ---- in time -------------------------------------------------------------------------------------------------------
 
 
+def joint_plots(
+    joints: Sequence[Joint], time: Array, positions: Array, efforts: Array, asked: Array | None = None
+) -> tuple[Plot, ...]:
+    """Positions and efforts (k, n) of joints: angles and torques, travels and forces, each kind in panels of its own.
+
+    Dots, one in eight rows, where a position was asked for.
+    """
+    plots = []
+    for turns, place, effort, scale in (
+        (True, "angle  [deg]", "torque  [N m]", 180.0 / np.pi),
+        (False, "travel  [mm]", "force  [N]", 1e3),
+    ):
+        own = [k for k, joint in enumerate(joints) if joint.turns is turns]
+        if not own:
+            continue
+        found = [Trace(joints[k].name, time, scale * positions[:, k], k % len(STYLES)) for k in own]
+        if asked is not None:
+            found += [
+                Trace("asked for", time[::8], scale * asked[::8, k], -1, "filled", (joints[k].name,) * len(time[::8]))
+                for k in own
+            ]
+        acting = [Trace(joints[k].name, time, efforts[:, k], k % len(STYLES)) for k in own]
+        plots += [
+            Plot(place, "time  [s]", tuple(found), 90.0, is_scaled=False),
+            Plot(effort, "time  [s]", tuple(acting), 90.0, is_scaled=False),
+        ]
+    return (*plots[:-1], replace(plots[-1], is_scaled=True)) if plots else ()
+
+
 def joints_figure(run: ControlledRun, anchor: str, title: str) -> Figure:
-    """Joint positions beside those asked for, and the torques of the drives."""
-    joints, t = run.chain.joints, run.time
-    scale = [(180.0 / np.pi if j.turns else 1e3) for j in joints]
-    unit = "deg, mm" if not all(j.turns for j in joints) else "deg"
-    found = [Trace(j.name, t, scale[k] * run.q[:, k], k % len(STYLES)) for k, j in enumerate(joints)]
-    asked = [
-        Trace("asked for", t[::8], scale[k] * run.wanted[::8, k], -1, "filled", tuple(j.name for _ in t[::8]))
-        for k, j in enumerate(joints)
-    ]
-    efforts = [Trace(j.name, t, run.torque[:, k], k % len(STYLES)) for k, j in enumerate(joints)]
+    """Joint positions beside those asked for, and the torques and forces of the drives."""
+    joints = run.chain.joints
+    plots = joint_plots(joints, run.time, run.q, run.torque, run.wanted)
     return laws_figure(
         anchor, title, "Joint positions, with dots where the track asks for them, and torques of the drives.",
-        f"Two panels over {t[-1]:.3g} s: positions and torques of {', '.join(j.name for j in joints)}.",
-        (
-            Plot(f"joint  [{unit}]", "time  [s]", (*found, *asked), is_scaled=False),
-            Plot("torque  [N m]", "time  [s]", tuple(efforts), 90.0),
-        ),
+        f"{len(plots)} panels over {run.time[-1]:.3g} s: positions and torques of {', '.join(j.name for j in joints)}.", plots,
     )  # fmt: skip
 
 
@@ -291,15 +373,19 @@ def thrust_figure(run: ControlledRun, anchor: str, title: str, caption: str) -> 
 
 
 def path_figure(found: Array, asked: Array | None, anchor: str, title: str, caption: str) -> Figure:
-    """Path of the end effector (k, 3), NED: both other axes over that along which it goes farthest; dots where it was asked for."""
+    """Path of the end effector (k, 3), NED; dots where it was asked for.
+
+    Down, drawn downward, and one level axis, over the level axis along which it goes farthest.
+    """
     names = ("north", "east", "down")
-    across, *others = sorted(range(3), key=lambda k: (-round(float(np.ptp(found[:, k])), 6), k))
+    across, aside = sorted(range(2), key=lambda k: (-round(float(np.ptp(found[:, k])), 6), k))
+    others = (aside, 2)
     plots = []
     for k in others:
         traces = [Trace("end effector", found[:, across], found[:, k], 0)]
         if asked is not None:
             traces.append(Trace("asked for", asked[::6, across], asked[::6, k], -1, "filled"))
-        plots.append(Plot(f"{names[k]}  [m]", f"{names[across]}  [m]", tuple(traces), is_scaled=k == others[-1]))
+        plots.append(Plot(f"{names[k]}  [m]", f"{names[across]}  [m]", tuple(traces), is_scaled=k == 2))
     said = f"The path of the end effector: {names[others[0]]} and {names[others[1]]} over {names[across]}."
     return laws_figure(anchor, title, caption, said, plots)
 
@@ -315,8 +401,6 @@ def simulated(chain: Chain, hull: Array, trajectory: Trajectory) -> ArmMotion:
 def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
     """Joints, their torques, thrusts and the path of the end effector of a `coeflab simulate` as one SVG file."""
     joints, t = motion.chain.joints, motion.time
-    scale = [180.0 / np.pi if j.turns else 1e3 for j in joints]
-    unit = "deg" if all(j.turns for j in joints) else "deg, mm"
     columns = trajectory.controls
 
     def traces(names: Sequence[str], suffixes: Sequence[str], factors: Sequence[float]) -> tuple[Trace, ...]:
@@ -326,20 +410,9 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
         )
 
     named = [j.name for j in joints]
-    plots = [
-        Plot(
-            f"joint  [{unit}]",
-            "time  [s]",
-            traces(named, [f" [{'rad' if j.turns else 'm'}]" for j in joints], scale),
-            is_scaled=False,
-        ),
-        Plot(
-            "torque  [N m]",
-            "time  [s]",
-            traces(named, [f".torque [{'N m' if j.turns else 'N'}]" for j in joints], [1.0] * len(joints)),
-            90.0,
-        ),
-    ]
+    positions = np.column_stack([columns[f"{j.name} [{'rad' if j.turns else 'm'}]"] for j in joints])
+    efforts = np.column_stack([columns[EFFORT[j.turns].format(j.name)] for j in joints])
+    plots = joint_plots(joints, t, positions, efforts)
     figures = [
         poses_figure(
             motion,
@@ -350,8 +423,8 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
         laws_figure(
             "arm-joints",
             "Joints",
-            "Positions and torques over time.",
-            f"Two panels over time: {', '.join(named)}.",
+            "Positions, and torques and forces, over time.",
+            f"{len(plots)} panels over time: {', '.join(named)}.",
             plots,
         ),
         path_figure(motion.ends, None, "arm-path", "Path of the end effector", "North, east and down."),

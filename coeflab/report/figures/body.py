@@ -101,7 +101,7 @@ class Sheet:
         depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
         for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
             part = shape.parts[i]
-            self._part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part), is_convex(part.form))
+            self.part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part), is_convex(part.form))
         if outline is not None:
             self._fill(outline, "band", FILM)
             self._line(outline, "ink", 0.9)
@@ -112,7 +112,8 @@ class Sheet:
         self._fill(outline, "band", BEHIND)
         self._line(outline, "ink", 0.9)
 
-    def _part(self, facets: Array, colour: str, poor: bool, convex: bool) -> None:
+    def part(self, facets: Array, colour: str, poor: bool, convex: bool) -> None:
+        """Draw (n, 4, 3) facets, those that look toward the viewer; poor ones striped, convex ones by their outline."""
         if convex:
             whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
         else:

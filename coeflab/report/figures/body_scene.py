@@ -45,6 +45,13 @@ def cylinder_facets(radius: float, length: float) -> Array:
     return lathe_facets(np.array([-half, -half, half, half]), np.array([0.0, radius, radius, 0.0]))
 
 
+def cut_cylinder_facets(radius: float, length: float, slices: int) -> Array:
+    """The same in so many slices, for what is seen in part."""
+    half, cap = length / 2.0, np.array([0.0, 0.5, 1.0]) * radius
+    x = np.concatenate([[-half, -half], np.linspace(-half, half, slices + 1), [half, half]])
+    return lathe_facets(x, np.concatenate([cap[:2], np.full(slices + 1, radius), cap[1::-1]]))
+
+
 def ellipsoid_facets(axes: Array) -> Array:
     """An ellipsoid of (3,) semi-axes."""
     angle = np.linspace(0.0, np.pi, ALONG + 1)

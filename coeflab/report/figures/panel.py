@@ -98,6 +98,7 @@ LEFT, RIGHT, BOTTOM, GAP, TICK = 52.0, 10.0, 34.0, 16.0, 3.0
 LEGEND_ROW, LEGEND_ROWS = 12.2, 4
 TOP = HEIGHT - 4.0 - LEGEND_ROW * LEGEND_ROWS - 8.0
 Range = tuple[float, float]
+ROUNDING = 1e-10  # of the largest value: less than this is no change
 
 
 def drawing(height: float = HEIGHT) -> Figure:
@@ -111,12 +112,18 @@ def height_of(figure: Figure) -> float:
 
 
 def limits(values: Array, margin: float) -> Range | None:
-    """Range of the finite values with a margin; None where there are none."""
+    """Range of the finite values with a margin; None where there are none.
+
+    Values that differ by rounding alone count as one, in the middle of a range of a tenth of it to either side; zero, of 1.
+    """
     finite = values[np.isfinite(values)]
     if not len(finite):
         return None
     low, high = float(finite.min()), float(finite.max())
-    room = margin * (high - low) or 0.1 * abs(high) or 1.0
+    largest = max(abs(low), abs(high))
+    room = margin * (high - low) if high - low > ROUNDING * largest else 0.1 * largest
+    if room < np.finfo(float).tiny / ROUNDING:
+        room = 1.0
     return low - room, high + room
 
 

@@ -121,14 +121,18 @@ def arm_phases(trajectory: Trajectory, name: str) -> Table:
         what, _, unit = key.removesuffix("]").partition(" [")
         if what.startswith("end."):
             rows.append((f"end effector, {what[4:]}", unit, *(f"{values[i]:.4f}" for i in at)))
-        elif what.endswith(".torque"):
+        elif what.endswith((".torque", ".force")):
+            joint, _, effort = what.rpartition(".")
             most = [f"{np.max(np.abs(values[t.phase == k])):.3g}" for k in range(len(ends))]
-            rows.append((f"{what[:-7]}, largest {'torque' if unit == 'N m' else 'force'}", unit, "", *most))
+            rows.append((f"{joint}, largest {effort}", unit, "", *most))
         elif "." not in what and unit in ("rad", "m"):
             factor, shown = (180.0 / np.pi, "deg") if unit == "rad" else (1.0, unit)
             rows.append((what, shown, *(f"{factor * values[i]:.2f}" for i in at)))
     headers = ("", "unit", "start", *(f"after {t.phases[k]}" for k in range(len(ends))))
-    return Table(f"Motion of {name}", headers, tuple(rows), (), frozenset({0, 1}))
+    notes = (
+        "vehicle, north, east, down: of its centre of mass, the arm not counted; places count from where that began.",
+    )
+    return Table(f"Motion of {name}", headers, tuple(rows), notes, frozenset({0, 1}))
 
 
 def _degrees(angle: float) -> str:

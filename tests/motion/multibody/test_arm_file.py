@@ -13,12 +13,13 @@ from coeflab.bodies.shape import Parts
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.arm_file import is_arm, read_chain
+from coeflab.motion.multibody.arm_file import is_arm, read_arm, read_chain
 from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
 from tests.motion.multibody.chains import dry, puma
 
 FILE = shipped("geometry") / "urv_puma" / "body.toml"
 TEXT = FILE.read_text()
+NEGATIVE = np.diag([1.0, 2.0, -3.0, 0.1, 0.1, 0.1]).tolist()
 
 
 def refused(folder: Path, old: str, new: str) -> InputError:
@@ -53,6 +54,11 @@ def refused(folder: Path, old: str, new: str) -> InputError:
         ('name = "upper_arm"', 'name = "shoulder"', "link", "one name for each"),
         ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["40 deg"]', "phase[0].joints", "3, one for each"),
         ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["4 m", 0, 0]', "phase[0].joints", "angle"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = [0, 0, "300 deg"]', "phase[0].joints", "-45 to 225 deg, the limits of joint forearm"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'torque = ["1 m", 0, 0]', "phase[0].torque", "moment"),
+        ("[[0.403567, 0.0, 0.0]", "[[0.403567, 0.1, 0.0]", "link[1].inertia_matrix", "the same numbers on both sides of the diagonal"),
+        ('mass = "12.96 kg"', f'mass = "12.96 kg"\nadded_mass = {NEGATIVE}', "link[0].added_mass", "smallest eigenvalue -3"),
+        ('mass = "100 kg"', f'mass = "100 kg"\nadded_mass = {NEGATIVE}', "vehicle.added_mass", "smallest eigenvalue -3"),
         ("end = [0.75", "torque = [1.0, 0.0, 0.0]\nend = [0.75", "phase[2].torque", "one of joints, end and torque"),
         ('"link.mass" = "printed', '"link.mass" = "guessed', "basis.link.mass", "printed, derived"),
     ],
@@ -126,7 +132,7 @@ def test_thrusters_that_lose_a_direction_are_named(tmp_path: Path) -> None:
     chain = read_chain(file)
     assert chain.assumed[-1] == "The thrusters make no heave, no roll, no pitch."
     assert chain.statements[-1] == chain.assumed[-1]
-    assert len(puma().assumed) == 1
+    assert len(puma().assumed) == 2
 
 
 def test_voltage_thrusters_and_their_limits(tmp_path: Path) -> None:
@@ -190,3 +196,38 @@ def test_a_cylinder_lies_along_its_own_axis(tmp_path: Path) -> None:
         strip = link.strips[0]
         assert abs(part.rotation[:, 0] @ turn @ strip.axis) == pytest.approx(1.0)
         np.testing.assert_allclose(part.centre, origin + turn @ (strip.start + strip.end) / 2.0)
+
+
+def test_a_displaced_volume_other_than_the_hull_s_is_said(tmp_path: Path) -> None:
+    """4/3 pi 1.0 0.4 0.4 = 0.6702 m^3."""
+    assert puma().assumed[1] == (
+        "The vehicle displaces 0.1 m^3, 100 kg, its mass over the density; its ellipsoid holds 0.6702 m^3, 670.2 kg of "
+        "water; added mass is that of the whole ellipsoid."
+    )
+    assert puma().assumed[1] in puma().statements
+    file = tmp_path / "body.toml"
+    stated = 'mass = "100 kg"\nvolume = "{} m^3"'
+    file.write_text(TEXT.replace('mass = "100 kg"', stated.format(0.05)))
+    assert "displaces 0.05 m^3, 50 kg, as stated; its ellipsoid holds 0.6702 m^3" in read_chain(file).assumed[1]
+    file.write_text(TEXT.replace('mass = "100 kg"', stated.format(0.67)))
+    assert len(read_chain(file).assumed) == 1
+
+
+def test_units_of_rates_torques_and_commands(tmp_path: Path) -> None:
+    """Bare numbers are SI, as before."""
+    file = tmp_path / "body.toml"
+    start = '[start]\nvelocity = ["1 kn", 0, 0, 0, 0, "9 deg/s"]\nrates = ["18 deg/s", 0.5, "0 rad/s"]\n'
+    eight = ["2 N*m", 3, *["0"] * 6]
+    phase = f'[[phase]]\nname = "p"\nlasts = 1\ntorque = ["1000 N*mm", 2, "0 N*m"]\ncommands = {eight}\n'.replace(
+        '"0"', "0"
+    )
+    file.write_text(
+        TEXT.partition("[[phase]]")[0].replace("'", '"') + phase.replace("'", '"').replace('"0"', "0") + start
+    )
+    motion = read_arm(file)[1]
+    np.testing.assert_allclose(motion.velocity, [1852.0 / 3600.0, 0, 0, 0, 0, np.pi / 20.0])
+    assert motion.orders["shoulder.rate"] == pytest.approx(np.pi / 10.0)
+    assert motion.orders["upper_arm.rate"] == 0.5
+    orders = motion.phases[0].orders
+    assert (orders["shoulder.torque"], orders["upper_arm.torque"]) == (1.0, 2.0)
+    assert (orders["fore_port"], orders["fore_starboard"]) == (2.0, 3.0)

@@ -35,6 +35,7 @@ from coeflab.motion.multibody.thrusters import (
 )
 from coeflab.motion.simulators import arm
 from coeflab.motion.trajectory import Ended
+from coeflab.report.tables.motion import arm_phases
 from tests.motion.multibody.chains import PAPER_SPEEDS, Q, drawn, dry, ideal, puma
 
 START = in_frame_0(puma(), PAPER_SPEEDS)
@@ -150,7 +151,7 @@ def test_the_end_effector_goes_straight() -> None:
         way = kane.pose(chain, track.at(time)[0]).end - start
         assert np.linalg.norm(np.cross(way, to - start)) < 1e-5 * np.linalg.norm(to - start)
     np.testing.assert_allclose(way, to - start, atol=1e-6)
-    with pytest.raises(InputError, match="does not get to"):
+    with pytest.raises(InputError, match="does not get as far as"):
         track_of_end(chain, Q, start + np.array([2.0, 0.0, 0.0]), 0.0, 2.0)
 
 
@@ -208,7 +209,7 @@ def test_thruster_matrix_says_what_it_loses() -> None:
     with pytest.raises(InputError, match="no surge, no sway, no yaw"):
         require_all_directions(thrusters[4:])
     aside = [Thruster("aside", np.array([0.5, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))]
-    assert "sway -2 yaw" in " ".join(lost_directions(thruster_matrix(aside)))
+    assert "sway apart from yaw (N = 0.5 m Y)" in lost_directions(thruster_matrix(aside))
     assert len(lost_directions(thruster_matrix([]))) == 6
 
 
@@ -260,6 +261,19 @@ def test_drives_that_are_too_weak_are_named() -> None:
     assert any("shoulder quicker than its drive" in line for line in moved.statements)
     pushed = arm.simulate(chain, Manoeuvre("m", (Phase("p", {"shoulder.torque": 9.0}, 0.1),), np.zeros(6)), {})
     assert np.max(pushed.controls["shoulder.torque [N m]"]) == pytest.approx(0.2)
+
+
+def test_what_moves_a_slide_is_a_force() -> None:
+    chain = drawn(0, 2)
+    assert [joint.turns for joint in chain.joints].count(False) == 1
+    phases = (Phase("p", {"vehicle.held": 1.0}, 0.01),)
+    moved = arm.simulate(chain, Manoeuvre("m", phases, np.zeros(6)), {})
+    efforts = [key.partition(".")[2] for key in moved.controls if key.partition(".")[2].startswith(("torque", "force"))]
+    assert efforts == ["torque [N m]" if joint.turns else "force [N]" for joint in chain.joints]
+    rows = [row[:2] for row in arm_phases(moved, "x").rows]
+    for joint in chain.joints:
+        assert (f"{joint.name}, largest {'torque' if joint.turns else 'force'}", "N m" if joint.turns else "N") in rows
+    assert "of its centre of mass" in arm_phases(moved, "x").notes[0]
 
 
 def test_a_prismatic_joint_stops_in_metres() -> None:

@@ -208,6 +208,29 @@ def test_what_a_name_holds_cannot_leave_its_comment(puma: tuple[Chain, ClosedFor
             assert all(ends not in line if language == "c" else line.startswith("#") for line in lines)
 
 
+@pytest.mark.parametrize(
+    ("language", "where"),
+    [
+        ("c", "as urv_of_file holds them: the first argument"),
+        ("octave", "Numbers of the file: the first argument"),
+        ("python", "as its last argument, of"),
+    ],
+)
+def test_where_parameters_go_and_what_does_not_follow_the_density(
+    puma: tuple[Chain, ClosedForm], random: tuple[Chain, ClosedForm], language: str, where: str
+) -> None:
+    stays = "where the density rho is changed, added masses and volumes stay as given"
+
+    def said(form: ClosedForm) -> str:
+        texts = [content.decode() for content in written(form, language, ORIGIN).values()]
+        return " ".join(re.sub(r"^ *[%#]", "", " ".join(texts), flags=re.MULTILINE).split())
+
+    symbols = said(random[1])
+    assert where.replace("urv", random[1].name) in symbols
+    assert stays in symbols
+    assert stays not in said(puma[1])
+
+
 def test_a_vehicle_without_an_arm_has_nothing_to_derive() -> None:
     with pytest.raises(InputError, match="a vehicle without links; expected one link or more"):
         derive(replace(drawn(1, 1), links=()))
