@@ -381,13 +381,18 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
 
 def _units(p: ParameterFile) -> list[Check]:
     density = p.conditions.density
-    in_air = AIR[0] < density <= AIR[1]
     span = f"{AIR[0]:g} to {AIR[1]:g} kg/m^3"
-    out = [Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.") if in_air else water(NAME, density)]
+    out = [Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.") if _in_air(p) else water(NAME, density)]
     if p.mass is not None:
         diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
         out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
     return out
+
+
+def _in_air(p: ParameterFile) -> bool:
+    """A density of air, and no added mass of water."""
+    densities = [p.conditions.density] + ([] if p.added_mass is None else [p.added_mass.density])
+    return all(AIR[0] < density <= AIR[1] for density in densities)
 
 
 def _buoyancy(p: ParameterFile) -> list[Check]:
@@ -398,7 +403,7 @@ def _buoyancy(p: ParameterFile) -> list[Check]:
     out = [*gravity(NAME, h.gravity, "hydrostatics.gravity")]
     if p.mass is None:
         return out
-    if not AIR[0] < p.conditions.density <= AIR[1]:
+    if not _in_air(p):
         out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
     below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
     if below > 0.0:

@@ -123,7 +123,18 @@ def test_an_export_that_is_refused_leaves_the_study_standing(coeflab: Run, study
     [
         ("huuv", ["huuv", "huuv_5dof"]),
         ("flyingfish", ["flyingfish_air", "flyingfish_water"]),
-        ("thauv", [f"thauv_case_0{i}" for i in (1, 2, 3)]),
+        (
+            "thauv",
+            [
+                "thauv_case_01",
+                "thauv_case_01_dive",
+                "thauv_case_02",
+                "thauv_case_02_dive",
+                "thauv_case_02_spiral",
+                "thauv_case_03",
+                "thauv_case_03_dive",
+            ],
+        ),
     ],
 )
 def test_a_publication_writes_its_parameter_file_beside_the_report(
