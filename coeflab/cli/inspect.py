@@ -55,7 +55,7 @@ def command(
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
     from coeflab.bodies.simplify.source import names_body
-    from coeflab.cli.import_ import of_runs
+    from coeflab.cli.draft import of_runs
 
     if names_body(table):
         _body(table, unit, axes, repair, density, json)
@@ -93,7 +93,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     """
     import shlex
 
-    from coeflab.cli.import_ import described, options_of
+    from coeflab.cli.draft import described, options_of
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
     from coeflab.tables.form import form, open_lines, screen
