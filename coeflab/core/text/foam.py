@@ -1,8 +1,8 @@
 """Dictionaries of OpenFOAM cases: where every entry stands, includes and macros followed, values through foamlib.
 
-foamlib 1.7 reads a file whole or not at all, and its time grows exponentially with the depth of open parentheses. So the
-braces are walked here, which also gives the line of every entry, and foamlib gets the one value that is asked for. Code that a
-case brings (``#calc``, ``#codeStream``, ``#eval``) is never run: its value stays unstated, with a note.
+foamlib 1.7 reads a file whole or not at all, and its time grows exponentially with the depth of open parentheses, and with the
+letters of numbers in a list that holds something else, too. So the braces are walked here, which also gives the line of every
+entry, and foamlib gets the one value that is asked for, but for such lists. Code that a case brings (``#calc``, ``#codeStream``, ``#eval``) is never run: its value stays unstated, with a note.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ COMPONENTS = {b"scalar": 1, b"vector": 3, b"symmTensor": 6, b"tensor": 9}
 _MACRO = re.compile(r"\$\{?([:!.\w/]+)\}?")
 _EVALUATED = ("#calc", "#eval", "#codeStream", "#neg", "#{")
 _UNIT = re.compile(r"\[\s*(rpm|rad/s|deg/s)\s*\]")
+_NUMERIC = re.compile(r"[\s0-9.+\-einfatyEINFATY]*")  # what foamlib's pattern of a list of numbers runs over
+_MOST_TRIED = 12  # of these letters: two to this power is as often as foamlib may try
 ROOTS = {"$FOAM_CASE": "", "<case>": "", "<system>": "system", "<constant>": "constant"}
 
 
@@ -273,6 +275,8 @@ def _value(text: str) -> Any:
         deepest = max(depth, deepest)
     if deepest > FOAM_DEEPEST // 2 or depth or len(text) > FOAM_VALUE:
         return None
+    if _is_tried_for_ever(text):
+        return _plain(_list_of_all_sorts(text))
     turns = _UNIT.search(text)
     try:
         with warnings.catch_warnings():
@@ -288,6 +292,43 @@ def _value(text: str) -> Any:
         factors = {"rpm": math.pi / 30.0, "deg/s": math.pi / 180.0, "rad/s": 1.0}
         return value * factors[turns[1]] if isinstance(value, (int, float)) else None
     return value
+
+
+def _is_tried_for_ever(text: str) -> bool:
+    """Whether a list begins with numbers and goes on otherwise: foamlib's pattern then cuts their letters in every way there is."""
+    for group in re.finditer(r"\(", text):
+        run = _NUMERIC.match(text, group.end())
+        if run and not text.startswith(")", run.end()) and len("".join(run[0].split())) > _MOST_TRIED:
+            return True
+    return False
+
+
+def _list_of_all_sorts(text: str) -> Any:
+    """Lists in lists of numbers and words, as foamlib gives them; None where something else is in them."""
+    stack: list[list[Any]] = [[]]
+    for match in _TOKEN.finditer(text):
+        kind, token = match.lastgroup, match[0]
+        if token == "(":
+            if stack[-1] and isinstance(stack[-1][-1], int) and text[match.start() - 1].isdigit():
+                stack[-1].pop()  # the count of the list
+            stack.append([])
+        elif token == ")":
+            done = stack.pop()
+            stack[-1].append(done)
+        elif kind in ("word", "text"):
+            stack[-1].append(_number_or_word(token))
+        elif kind != "skip":
+            return None
+    return stack[0][0] if len(stack[0]) == 1 else tuple(stack[0])
+
+
+def _number_or_word(token: str) -> Any:
+    for number in (int, float) if _NUMERIC.fullmatch(token) else ():
+        try:
+            return number(token)
+        except ValueError:
+            continue
+    return token
 
 
 def _plain(value: Any) -> Any:
