@@ -39,7 +39,7 @@ def command(
     if json:
         show.json_object(done.as_json())
     else:
-        done.told()
+        done.print()
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Done:
         """What was replaced, what is left, and the files."""
         return {**as_json(self.made, self.carried), "files": [str(p) for p in self.paths]}
 
-    def told(self) -> None:
+    def print(self) -> None:
         """Print it."""
         from coeflab.report.sections import estimates as tables
 

@@ -96,7 +96,7 @@ def command(
     else:
         _print(study, folder, sorted(files), changed, merged is None)
         if merged is not None:
-            merged.told()
+            merged.print()
     for refused in study.refused:
         why = str(refused.why).replace('"export.accept_loss": ', "").replace("accept_loss = true", "--accept-loss")
         show.error(f"error: {why}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.motion.uncertainty.uncertainty import quantile_error
+from coeflab.motion.uncertainty.spread import quantile_error
 
 
 @pytest.mark.parametrize("level", [2.5, 50.0, 97.5])

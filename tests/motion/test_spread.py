@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.motion.manoeuvre import Figure
-from coeflab.motion.uncertainty.uncertainty import spread
+from coeflab.motion.uncertainty.spread import spread
 
 SAMPLE = np.random.default_rng(1).normal(10.0, 2.0, 4000)
 HERE = Figure("advance", 10.0, "m", "along")

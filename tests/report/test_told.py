@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.motion.identify.identification import Identified, IdentifiedTerm, Outcome
-from coeflab.motion.uncertainty.uncertainty import Importance
+from coeflab.motion.uncertainty.spread import Importance
 from coeflab.report.document import Figure, Panel, Series
 from coeflab.report.figures.identified import identified_figure
 from coeflab.report.figures.motion import track_figure

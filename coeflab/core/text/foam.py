@@ -275,7 +275,7 @@ def _value(text: str) -> Any:
         deepest = max(depth, deepest)
     if deepest > FOAM_DEEPEST // 2 or depth or len(text) > FOAM_VALUE:
         return None
-    if _is_tried_for_ever(text):
+    if _backtracks(text):
         return _plain(_list_of_all_sorts(text))
     turns = _UNIT.search(text)
     try:
@@ -294,7 +294,7 @@ def _value(text: str) -> Any:
     return value
 
 
-def _is_tried_for_ever(text: str) -> bool:
+def _backtracks(text: str) -> bool:
     """Whether a list begins with numbers and goes on otherwise: foamlib's pattern then cuts their letters in every way there is."""
     for group in re.finditer(r"\(", text):
         run = _NUMERIC.match(text, group.end())

@@ -279,7 +279,7 @@ class Derivation:
             out.append(step.outward(t, out[-1]))
         return out
 
-    def gathered(self, wrenches: list[Wrench]) -> sp.Matrix:
+    def generalised(self, wrenches: list[Wrench]) -> sp.Matrix:
         """Generalised forces of forces and moments about the origins of the joint frames."""
         t, steps = self.tape, self.steps
         out = sp.zeros(6 + self.n, 1)
@@ -396,28 +396,28 @@ def _equations(one: Derivation) -> Outputs:
     carried = [(scaled(-1, f), scaled(-1, m)) for f, m in one.uniform(("displaced",), one.water)]
     for more in (heavy, carried, one.dragging):
         total = [(plus(f, g), plus(m, n)) for (f, m), (g, n) in zip(total, more, strict=True)]
-    return {"M": (one.mass, INERTIA), "f": (one.gathered(total), FORCES)}
+    return {"M": (one.mass, INERTIA), "f": (one.generalised(total), FORCES)}
 
 
 def _bias(one: Derivation) -> Outputs:
-    return {"h": (one.gathered(one.inertial), FORCES)}
+    return {"h": (one.generalised(one.inertial), FORCES)}
 
 
 def _weight(one: Derivation) -> Outputs:
-    return {"w": (one.gathered(one.uniform(("mass",), one.heavy)), FORCES)}
+    return {"w": (one.generalised(one.uniform(("mass",), one.heavy)), FORCES)}
 
 
 def _buoyancy(one: Derivation) -> Outputs:
-    return {"b": (one.gathered(one.uniform(("displaced",), one.heavy)), FORCES)}
+    return {"b": (one.generalised(one.uniform(("displaced",), one.heavy)), FORCES)}
 
 
 def _fluid_acceleration(one: Derivation) -> Outputs:
     against = [scaled(-1, v) for v in one.water]
-    return {"f": (one.gathered(one.uniform(("displaced",), against)), FORCES)}
+    return {"f": (one.generalised(one.uniform(("displaced",), against)), FORCES)}
 
 
 def _drag(one: Derivation) -> Outputs:
-    return {"d": (one.gathered(one.dragging), FORCES)}
+    return {"d": (one.generalised(one.dragging), FORCES)}
 
 
 def _end(one: Derivation) -> Outputs:

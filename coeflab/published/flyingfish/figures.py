@@ -63,10 +63,10 @@ def _operating_points(nearest: ComparedTable) -> Figure:
         both: list[Trace] = []
         apart: list[Trace] = []
         for i, rotor in enumerate(ROTORS):
-            told, ours = printed[:, first + i], found[:, first + i]
-            both.append(Trace(f"rotor {rotor}, printed", motion, told, i, "hollow"))
+            stated, ours = printed[:, first + i], found[:, first + i]
+            both.append(Trace(f"rotor {rotor}, printed", motion, stated, i, "hollow"))
             both.append(Trace(f"rotor {rotor}, recomputed", motion, ours, i, "filled"))
-            apart.append(Trace(f"rotor {rotor}, recomputed", motion, ours - told, i, "filled"))
+            apart.append(Trace(f"rotor {rotor}, recomputed", motion, ours - stated, i, "filled"))
         plots.append(Plot(f"{name}  [{unit}]", ALONG, tuple(both), 108.0, is_scaled=False))
         plots.append(Plot(f"apart  [{unit}]", ALONG, tuple(apart), 66.0, rows[first].tolerance, is_scaled=first == 4))
     worst = np.nanmax(np.abs(found - printed), axis=0)

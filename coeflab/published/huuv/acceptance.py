@@ -13,7 +13,7 @@ from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, parameter_file, read_huuv
 from coeflab.published.huuv.tuning import (
     ERRORS,
-    TOLD,
+    IN_WORDS,
     hidden_rows,
     origin_rows,
     pool_rows,
@@ -68,7 +68,7 @@ def acceptance() -> Acceptance:
 
 
 def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
-    pairs = ", ".join(f"{TOLD[a]} with {TOLD[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB]))
+    pairs = ", ".join(f"{IN_WORDS[a]} with {IN_WORDS[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB]))
     reach = max(float(np.degrees(np.nanmax(t.figures[:, 1]))) for t in huuv.turns.values())
     return (
         "m_x, m_y, m_yr, the thruster arm and the moments of inertia are chosen: the paper prints none of them.",

@@ -20,7 +20,7 @@ from coeflab.published.huuv.five_dof import (
 )
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, thrust
-from coeflab.published.huuv.tuning import TOLD
+from coeflab.published.huuv.tuning import IN_WORDS
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import body_figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
@@ -85,10 +85,10 @@ def forces_figure(huuv: Huuv, halves: Mapping[str, Tuning]) -> Figure:
 
 def _open(halves: Mapping[str, Tuning]) -> str:
     """What has no interval, of both fits."""
-    told = {MATLAB: "simulation", TRACKER: "pool"}
+    of_source = {MATLAB: "simulation", TRACKER: "pool"}
     drawn = {key for _, keys, _ in LAWS for key in keys}
     return "; ".join(
-        f"{told[source]}: {listed([TOLD[p.name] for p in fit.parameters if p.name in drawn and p.u95 is None])}"
+        f"{of_source[source]}: {listed([IN_WORDS[p.name] for p in fit.parameters if p.name in drawn and p.u95 is None])}"
         for source, fit in halves.items()
         if any(p.name in drawn and p.u95 is None for p in fit.parameters)
     )

@@ -29,7 +29,7 @@ UNITS = {
     **dict.fromkeys(("m", "mx", "my"), "kg"), "myr": "kg m", "nr": "N m s", "nrr": "N m s^2", "intercept": "N", "arm": "m",
     **dict.fromkeys(("d0", "d2", "s1", "s3"), "kg/m"), **dict.fromkeys(("n1", "n3"), "kg"),
 }  # fmt: skip
-TOLD = {
+IN_WORDS = {
     "m": "mass m", "my": "added mass m_y", "arm": "thruster arm y_ct", "intercept": "thrust intercept",
     "d0": "drag C_D (constant)", "d2": "drag C_D (beta^2)", "s1": "side force C_S (beta)", "s3": "side force C_S (beta^3)",
     "n1": "yaw moment C_m (beta)", "n3": "yaw moment C_m (beta^3)", "nr": "yaw damping M_mr (r)",
@@ -94,7 +94,7 @@ def tuned(huuv: Huuv, source: str, free: Sequence[str] = FREE, errors: Sequence[
     found = estimate(p)
     return Tuning(
         f"huuv_{source}", tuned_parameters(free, [UNITS[n] for n in free], p, found), found.correlation, found.covariance,
-        _quantities(p, found), tuple(together_in_words([TOLD[n] for n in free], c, found.parameters) for c in found.undetermined),
+        _quantities(p, found), tuple(together_in_words([IN_WORDS[n] for n in free], c, found.parameters) for c in found.undetermined),
         found.singular, found.birge, found.freedom, found.converged, statements(p, found),
     )  # fmt: skip
 
@@ -117,7 +117,7 @@ def hidden(huuv: Huuv, tuning: Tuning, source: str, constant: str) -> tuple[str,
     free = [p.name for p in tuning.parameters if p.name != "nrr"] + [constant]
     p = turning_problem(huuv, huuv.turns[source], ERRORS[source], free, whole)
     found = examine(p, p.start)
-    names = [TOLD[n] for n in free]
+    names = [IN_WORDS[n] for n in free]
     return tuple(together_in_words(names, c, p.start) for c in found.undetermined if c[-1] != 0.0)
 
 
@@ -131,7 +131,7 @@ def origin_rows(huuv: Huuv) -> ComparedTable:
     """The constants of the steady turns, fitted again."""
     fit = tuned(huuv, MATLAB, BASE)
     rows = tuple(
-        Compared("fit of seven", TOLD[n], p.unit, huuv.constants[n], p.after, 1e-3, Basis.CONSISTENCY, True)
+        Compared("fit of seven", IN_WORDS[n], p.unit, huuv.constants[n], p.after, 1e-3, Basis.CONSISTENCY, True)
         for n in BASE
         if (p := fit.parameter(n))
     )
@@ -184,7 +184,9 @@ def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
     for name in ("m", "my", "arm"):
         found = hidden(huuv, fit, MATLAB, name)
         rows.append(
-            Compared("MATLAB", f"sets that {TOLD[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY)
+            Compared(
+                "MATLAB", f"sets that {IN_WORDS[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY
+            )
         )
         said += list(found)
     both = sum("beta^3" in text and "r|r|" in text for text in fit.together)

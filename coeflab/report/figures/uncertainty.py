@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from coeflab.core.types import Array
-from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
+from coeflab.motion.uncertainty.spread import Importance, Spread
+from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.panel import BOTTOM, WIDTH, drawing, legend, panel, tick_texts, ticks
 from coeflab.report.figures.series import numbers, points

@@ -13,7 +13,8 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import CONTROLS, derivative, primed
 from coeflab.motion.manoeuvre import Simulation
-from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
+from coeflab.motion.uncertainty.spread import Importance, Spread
+from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars

@@ -13,7 +13,8 @@ from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.symbols import primed
-from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
+from coeflab.motion.uncertainty.spread import Importance, Spread
+from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
 from coeflab.study.validation import Validation
 from coeflab.vehicle.derived import Derived
