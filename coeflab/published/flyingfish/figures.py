@@ -212,7 +212,7 @@ def _level(craft: Craft, found: Mapping[int, Trajectory]) -> Figure:
     for k, style in ((1, 0), (3, 1)):
         tilts.append(Trace(f"motion {k}, printed tilts", rotor, np.degrees(craft.fish.angles[k - 1]), style, "hollow"))
         trimmed = np.degrees(craft.trims[k - 1, :4])
-        tilts.append(Trace(f"motion {k}, tilts of the corrected trim", rotor, trimmed, style, "filled"))
+        tilts.append(Trace(f"motion {k}, corrected tilts", rotor, trimmed, style, "filled"))
     return laws_figure(
         "flyingfish-level", "Level motions under water, integrated",
         "Motions 1 and 3 of Table 1, level and pitched by 45 deg, for 20 s from the trims by the corrected equation 40, held, and their "
