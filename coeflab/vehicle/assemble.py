@@ -23,6 +23,7 @@ from coeflab.core.provenance import InputFile
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
+from coeflab.fits.glide_polar import with_munk
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.law.added_mass import AddedMass, potential_part
@@ -365,6 +366,11 @@ def assemble(
     coefficients, covariance, notes = gathered(group, chosen, missing, references)
     models, repeated = recorded(chosen)
     notes += repeated
+    notes += [
+        f"Mw and Mwww, and M of the points: {f.campaign} holds no Munk moment, {float(f.settings['munk']):g} kg u w is added"
+        for f in chosen
+        if "munk" in f.settings
+    ]
     if first.datum.note:
         notes.append(f"points are measured from {first.datum}")
     configuration = body.configuration(group.body) if body else None
@@ -423,7 +429,10 @@ def assemble(
             notes=tuple(notes),
         ),
     )
-    about = [t.about(first.reference_point) for t in tables if t.datum == first.datum]
+    munk = {f.campaign: float(f.settings["munk"]) for f in chosen if "munk" in f.settings}
+    about = [
+        with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
+    ]
     return with_points(made, [t for t in about if any(t.campaign in f.campaigns for f in chosen)], chosen)
 
 
