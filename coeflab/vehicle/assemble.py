@@ -34,6 +34,7 @@ from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivati
 from coeflab.law.terms import Factor
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.force_law import full_force, points_of, spoken
+from coeflab.vehicle.from_shape import equipped
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_model import ModelArea, ModelDomain, ModelTerm, ModelVariable, ParameterModel
@@ -320,7 +321,7 @@ def assemble(
 ) -> ParameterFile:
     """Build the parameter file of a group of campaigns.
 
-    Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
+    A body that states both centres of the configuration gives buoyancy, thrusters and limits of controls, too. Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
     the earlier in the plan counts, and a note says so; a fitted value comes before literature, and a symbol that
     neither gives is written with its status.
 
@@ -429,6 +430,13 @@ def assemble(
             notes=tuple(notes),
         ),
     )
+    if (
+        body is not None
+        and configuration is not None
+        and configuration.mass is not None
+        and configuration.mass.centre is not None
+    ):
+        made = equipped(made, body, configuration)
     munk = {f.campaign: float(f.settings["munk"]) for f in chosen if "munk" in f.settings}
     about = [
         with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
