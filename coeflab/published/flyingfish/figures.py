@@ -120,7 +120,7 @@ def _thrust_over_tilt(fish: FlyingFish) -> Figure:
     return laws_figure(
         "flyingfish-thrust-over-tilt", "Thrust against tilt at the operating points",
         "One mark a rotor and motion, thrust by equation 47 at the speeds of Table 1. At no tilt the thrust points down, at 90 deg "
-        "across the arm: rotors 1 and 2, with tilts of opposite sign, drive the vehicle ahead; rotors 3 and 4 trim pitch, roll and sway.",
+        "across the arm. Rotors 1 and 2, tilted apart, drive it ahead; 3 and 4 trim pitch, roll and sway.",
         "Thrust of four rotors over their tilt: rotors 1 and 2 lie at 45 to 86 and at -47 to -82 degrees, rotors 3 and 4 between -44 and 39 degrees.",
         (Plot("thrust T  [N]", "tilt beta  [deg]", traces, 190.0),),
     )  # fmt: skip
