@@ -230,7 +230,8 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.settings import POINT_OF, doubtful_setting
+        from coeflab.tables.settings import doubtful_setting
+        from coeflab.tables.words_above import POINT_OF
 
         sizes = [f"warning, {k}: {why}" for k in self.settings if (why := doubtful_setting(self.raw, self.settings, k))]
         sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
@@ -240,7 +241,7 @@ class Draft:
         """Where the reference point is off the body."""
         from coeflab.core.units import quantity
         from coeflab.law.scaling import beyond_ends
-        from coeflab.tables.settings import POINT_OF
+        from coeflab.tables.words_above import POINT_OF
 
         point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
         if point is None or datum is None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import complete, show
-from coeflab.cli.draft import MOST, Draft, of_runs, print_list, said_on_command_line
+from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -138,18 +138,11 @@ def _of_sheet(path: str, sheet: str, out: Path, mapping: Path | None = None) -> 
 
 def _written(out: Path, table: ForceTable) -> None:
     """What was written, and what of it no fit uses."""
+    from coeflab.report.tables.results import unused
+
     show.text(f"Written: {out / 'table.csv'} ({len(table)} rows), campaign.toml, mapping.toml")
     show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
-    rows: dict[str, list[str]] = {}
-    for e in table.exclusions:
-        said = rows.setdefault(table.labels[e.row], [])
-        said += [e.component or "row"] if (e.component or "row") not in said else []
-    each = [
-        row if set(said) in ({"row"}, set(table.forces)) else f"{row} ({', '.join(said)})" for row, said in rows.items()
-    ]
-    if each:
-        more = f" and {len(each) - MOST} more" * (len(each) > MOST)
-        show.sentence(f"  kept out of fits, marked or without a number in the file: {', '.join(each[:MOST])}{more}")
+    show.sentence(unused([table]))
     show.text()
 
 
@@ -200,7 +193,6 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        show.sentence(tables.unused(study.tables))
         show.table(replace(
             found, title="First slopes, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
