@@ -392,7 +392,9 @@ _HOUSE = frozenset({*COMPONENTS, *WIND, *MOTIONS, *CONTROL_COLUMNS, "alpha", "be
 _OPENFOAM = re.compile(
     r"^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
 )
-_OF_FORCES = re.compile(r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b")
+_OF_FORCES = re.compile(
+    r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
+)
 _OF_TIME = re.compile(r"^\s*#\s*Time\b")  # without it such a line may stand in any table: "# CofR (2 0 0)"
 
 

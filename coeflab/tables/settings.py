@@ -44,6 +44,8 @@ _KINDS = {
     "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
+OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
+EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -382,6 +384,12 @@ def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting],
             line = file.line(("columns", name))
             complaints.append(InputError(why.found, why.expected, file=path, line=line, key=f"columns.{name}"))
     importer = ""
+    each = content.pop(EACH, {})
+    for key, said in each.items() if isinstance(each, dict) else ():
+        try:
+            settings[key] = Setting(read_setting(key.rpartition("/")[2], said), f"from {path.name}")
+        except InputError as why:
+            complaints.append(file.fail(EACH, why.found, why.expected, why.advice))
     for section, inner in content.items():
         keys = inner[0] if isinstance(inner, list) and inner else inner
         for name, said in keys.items() if isinstance(keys, dict) else {section: keys}.items():

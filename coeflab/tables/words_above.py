@@ -118,7 +118,7 @@ _POINT = re.compile(
 )
 _MOMENTS_AT = re.compile(
     r"(?i)(?<![^\W_])(?:moments?\s+(?:(?:are|is|were|being|taken|given|computed|referred|reduced|r[ée]duits|calcul[ée]s|pris|bezogen)\s+)*"
-    r"(?:about|around|at|to|ref\w*(?:\s+to)?|auf|au|en|[àa]|par\s+rapport\s+[àa]u?)|moment\w*\s+(?:um|bezogen\s+auf)|x_?(?:ref|mrp|mrc|cofr)"
+    r"(?:about|around|at|to|ref\w*(?:\s+to)?|auf|au|en|[àa]|par\s+rapport\s+[àa]u?)|moment\w*\s+(?:um|bezogen\s+auf)|moment[es]*(?=\W*\d)|x_?(?:ref|mrp|mrc|cofr)"
     r"|(?:moments?\s+)?ref(?:erence|\.)?\s+(?:point|cent(?:re|er))|m\.?r\.?[pc]\.?|cofr|(?:momenten)?bezugspunkt|(?:point|centre)\s+de\s+r[ée](?:f[ée]rence|duction))"
     r"(?:[\s=:,]|(?:x_?(?:ref|mrp|mrc|cofr)|is|ist|est|the|point|cent(?:re|er)|located|lies|liegt|at|of|for|moments?|der|den|dem|das|momente[ns]?|bei|le|la|un|du|des|situ[ée]|[aàx])(?!/|[^\W_]))*+"
 )
@@ -245,7 +245,8 @@ def _moments_at(place: str, text: str, marks: Marks) -> dict[str, Stated]:
         return {POINT_OF: Stated(tuple(map(float, triple.groups())), words, offered=True)}
     m = _AT.match(text, begun.end())
     number = None if m is None else _number(m["number"].replace("\u2212", "-"), marks)
-    if m is None or number is None or not (m["unit"] or m["share"]):
+    bare = re.fullmatch(r"(?i)moment[es]*\W*", begun[0]) is not None
+    if m is None or number is None or not (m["unit"] or m["share"]) or (bare and not m["point"]):
         return {}
     words = f'{place}: "{" ".join(text[begun.start() : m.end()].split())}"'
     unit = (m["unit"] or "").casefold()
