@@ -261,7 +261,7 @@ class Answer:
     chips : tuple of Chip
     slope, forest, axes : Figure or None
         Y'/v' against the size of v' with its band; every row over the published value; the axes and signs. Of a publication
-        its first figure, and how much of what is allowed its tables use; of models two figures of the first.
+        its first figure, and how much of the tolerance its tables use; of models two figures of the first.
     notes : tuple of str
         What the columns are and what is not compared; at most four lines.
     table : Table or None

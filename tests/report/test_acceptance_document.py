@@ -67,7 +67,7 @@ def test_the_verdict_counts_and_names_what_fails():
     assert failed.paragraphs[0].startswith("2 of 3 numbers within the tolerance (")
     assert failed.paragraphs[1] == "Only what is predicted, or printed and recomputed, is validation: 2 of 2 within."
     assert failed.paragraphs[2] == "Outside, Turns: u of case 2."
-    assert "calibration: our model was calibrated on this number" in failed.paragraphs[3].lower()
+    assert "calibration: our model was fitted to these numbers" in failed.paragraphs[3].lower()
 
 
 def test_numbers_met_another_way_count_once():
