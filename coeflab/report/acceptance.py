@@ -332,7 +332,9 @@ def by_basis(found: Acceptance) -> Table:
     again = found.repeated
     once = f"{len(again)} more comparisons repeat these numbers in another way: {sum(r.holds for r in again)} within the tolerance."
     headers = ("basis", "what our number is compared with", "within", WORST, "verdict")
-    return Table("Numbers of the publication by basis", headers, tuple(rows), (once,) if again else (), frozenset({0, 1, 4}))
+    return Table(
+        "Numbers of the publication by basis", headers, tuple(rows), (once,) if again else (), frozenset({0, 1, 4})
+    )
 
 
 def _closest(rows: Sequence[Compared]) -> str:

@@ -45,7 +45,7 @@ const contents = document.querySelector("details.contents"), list = contents.que
 
 // On a phone every row of a table that is wider than the page is a block of its own, which names its cells. A long table scrolls.
 {
-  const MOST = 40, phone = matchMedia("(max-width: 45rem)");
+  const MOST = 64, phone = matchMedia("(max-width: 45rem)");
   const boxes = [...document.querySelectorAll(".scroll")].filter(b => b.querySelector("table")?.tBodies[0].rows.length <= MOST);
   const roles = {THEAD: "rowgroup", TBODY: "rowgroup", TR: "row", TH: "columnheader", TD: "cell"};
   const named = table => {
