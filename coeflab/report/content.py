@@ -233,7 +233,7 @@ def _document(study: Study, full: bool) -> Document:
         *appendix,
         *_campaigns(campaigns),
     )
-    if not full:
+    if not full and study.plan.file is not None:
         sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
@@ -265,7 +265,7 @@ def also(study: Study) -> str:
     held = [
         (len(study.budgets), "uncertainty budget"),
         (len(study.hulls), "added-mass matrix", "added-mass matrices"),
-        (len(study.fits), "fit with every point and curve", "fits with every point and curve"),
+        (0 if study.shape else len(study.fits), "fit with every point and curve", "fits with every point and curve"),
         (len(study.checks), "check"),
         (sum(made.loss is not None for made in study.exports), "loss of an export", "losses of exports"),
     ]
