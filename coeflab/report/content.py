@@ -233,7 +233,7 @@ def _document(study: Study, full: bool) -> Document:
         *appendix,
         *_campaigns(campaigns),
     )
-    if not full and study.plan.file is not None:
+    if not full and (study.shape is None or study.plan.file is not None):
         sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
