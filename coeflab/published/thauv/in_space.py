@@ -253,9 +253,7 @@ def dive_file(glider: Glider, phase: GliderPhase, name: str) -> ParameterFile:
     rigid = masses.inertia(phase.position, phase.roller, rest)
     added = np.diag(np.diag(space.inertia) - [*([masses.total] * 3), *np.diag(rigid)])
     law: Law = "motion"
-    coefficients = {
-        symbol: (value / UNIT.unit(symbol, at.density), law) for symbol, value in dive_law(glider).items()
-    }
+    coefficients = {symbol: (value / UNIT.unit(symbol, at.density), law) for symbol, value in dive_law(glider).items()}
     stated = Stated(
         name, glider.title, UNIT, at, coefficients, datum=Datum("cb"), matrix=added,
         mass=MassProperties(masses.total, masses.total * float(centre[0]), None, centre, rigid),
