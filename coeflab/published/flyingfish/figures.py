@@ -259,12 +259,12 @@ def _surface(found: Trajectory) -> Figure:
     up = -np.asarray(found.velocity)[:, 2]
     media = (("under water", found.phase == 0, 0), ("in air", found.phase == 1, 1))
     plots: list[Plot] = []
-    for name, values in (("height over the surface  [m]", above + depth), ("speed up  [m/s]", up)):
+    for name, values in (("height  [m]", above + depth), ("speed up  [m/s]", up)):
         traces = tuple(Trace(medium, time[at], values[at], style) for medium, at, style in media)
         plots.append(Plot(name, "time  [s]", traces, 100.0, is_scaled=len(plots) == 1))
     return laws_figure(
         "flyingfish-surface", "Out of the water and back",
-        "From rest 2 m under the surface with rotors turned up at 2500 rpm; in air at 5000 rpm, less than hovering takes. The medium "
+        "Height over the surface: from rest 2 m under it with rotors turned up at 2500 rpm; in air at 5000 rpm, less than hovering takes. The medium "
         "changes where the craft is at the surface, located within the step. The paper shows no such motion.",
         "Height and vertical speed over time: a rise at a steady speed, then a short arc above the surface.",
         plots,
