@@ -372,7 +372,7 @@ class TorqueKeys(takes.Declaration):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VoltageKeys(takes.Declaration):
-    """Two states with slip, by voltage (Healey, Rock, Cody, Miles and Brown 1994).
+    """Two states with slip, by voltage, after Healey, Rock, Cody, Miles and Brown (1994), from memory of their work.
 
     Attributes
     ----------
