@@ -241,7 +241,7 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.parts import own
+        from coeflab.tables.parts import JOIN, alike, own
         from coeflab.tables.settings import doubtful_setting
         from coeflab.tables.words_above import POINT_OF
 
@@ -251,7 +251,12 @@ class Draft:
             sizes += [f"warning, {k}: {why}" for k in mine if (why := doubtful_setting(part.raw, mine, k))]
         sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
         shows = [e.text for found in self.founds for e in found.shows if e.text.startswith("warning")]
-        return list(dict.fromkeys([*sizes, *shows]))
+        same = [
+            f"warning: {' and '.join(names)} have the same columns. Parts of one sweep are joined by --option {JOIN}=yes; tests of "
+            "another body are a campaign of their own: name one by --option sheet= or files="
+            for names in alike(self.parts)
+        ]
+        return list(dict.fromkeys([*same, *sizes, *shows]))
 
     def _beyond_ends(self) -> str:
         """Where the reference point is off the body."""
