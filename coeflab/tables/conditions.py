@@ -294,7 +294,8 @@ class NoConditionError(InputError):
         options = " ".join(f"--name '{pattern}'" for pattern in self.patterns)
         proposed = f" If this is what they mean: {options}." if self.patterns else ""
         if UNNAMED in options:
-            proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT."
+            proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT; "
+            proposed += "what is known anyway goes with it: --set axes.frame=CFD --set 'scaling.length=4.3 LOA' ..."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",
