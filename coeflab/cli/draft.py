@@ -165,13 +165,13 @@ class Draft:
         from coeflab.tables.parts import complaints_of, require_parts, understood_together
 
         if said.options:
-            before = dict(self.said.options)
+            before, chosen = dict(self.said.options), self.chosen
             self.said.options |= said.options
             self.chosen = [replace(one, value=str(self.said.options[one.key])) for one in self.chosen]
             try:
                 self.read()
             except InputError:
-                self.said.options = before
+                self.said.options, self.chosen = before, chosen
                 raise
         require_parts(said.settings, self.parts)
         columns, settings = self.said.columns | said.columns, self.said.settings | said.settings

@@ -13,6 +13,7 @@ from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
 from tests.cli.conftest import flat
 from tests.cli.test_import import command_of, invoke, left_open, refused, stub, without_slopes
+from tests.cli.test_import_form import answered
 from tests.tables.runs_as_text import write_run
 from tests.tables.test_excel import rows, workbook
 
@@ -187,3 +188,15 @@ def test_runs_of_two_patterns_of_names_are_two_tables(stub: Path, tmp_path: Path
     assert "calm: found no of the patterns fits it" in " ".join(
         refused(invoke("import", tmp_path / "cfd", *patterns, *sets, "--accept"))
     )
+
+
+def test_sheets_and_tables_are_chosen_in_the_form(book: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a terminal: a wrong choice leaves the form as it was."""
+    answers = ["sheet=Drift, Nope", "sheet=Drift, Arm", "Arm/table.centre=port; Arm/Fy=-Y [N]", ""]
+    done = answered(monkeypatch, answers, "import", book, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert 'no sheet "Nope"' in flat(done.output)
+    assert done.output.count("Drift, Nope") == 1  # what was typed
+    made = tables_of(tmp_path / "out")
+    assert list(made) == ["Drift.csv", "Arm.csv"]
+    assert (made["Arm.csv"].motion["r"][0], made["Arm.csv"].forces["Y"][0]) == (-0.2, -12.5)
