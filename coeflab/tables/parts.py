@@ -200,9 +200,10 @@ def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...]
     found: list[tuple[str, RawTable, str, Mapping[str, Any]]] = []
     left: list[str] = []
     wanted = [name.strip() for name in str(options.get("files", "")).split(",") if name.strip()]
-    every = sorted(
-        (f for f in path.iterdir() if f.is_file() and not f.name.startswith(".")), key=lambda f: natural(f.name)
-    )
+    try:
+        every = sorted((f for f in path.iterdir() if f.is_file() and f.name[0] != "."), key=lambda f: natural(f.name))
+    except OSError as shut:
+        raise InputError(f"a folder that cannot be read ({shut.strerror})", "one that can", file=path) from None
     if absent := [name for name in wanted if name not in [f.name for f in every]]:
         raise InputError(
             f"no file {', '.join(map(shown, absent))}", f"of {', '.join(f.name for f in every[:MOST])}", file=path
