@@ -385,7 +385,8 @@ def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
         placed = {p.name: replace(s, place=f"{p.name}, {s.place}") for p, s in have}
         if key.startswith("table."):
             for p, one in zip(parts, stated, strict=True):
-                one.update({key: placed[p.name]} if p.name in placed else {})
+                if p.name in placed:
+                    one[key] = placed[p.name]
             continue
         values = {str(s.value) for _, s in have}
         split = key in ("conditions.speed", "conditions.density")

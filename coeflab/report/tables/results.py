@@ -178,7 +178,7 @@ def own_tow(found: Towed) -> Table:
     every = len(found.rows) > 1 and len(said) == 1
     reasons = [f"{'All' if every else ', '.join(symbols)}: {why}." for why, symbols in said.items() if why]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
-    grid = "" if assessed else "No grid study: not in U95."
+    grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
     notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
     headers = ("", "tow", "U95" if not grid else "U95 without grid", "grid", *found.columns)
     return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
