@@ -4,6 +4,7 @@ A law that is to hold over the whole range of the data is fitted with its linear
 `coeflab.fits.slope_at_origin` recommends, so that the two never contradict each other at rest. Of the forms none, x|x|, x^3
 and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of it the simplest. Variables take turns.
 Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine.
+What no symmetric body has is the set-up's: it is fitted with the law, taken off the points and stated, never in the law.
 
 With y = s x + A b the coefficients are b = A+ (y - s x), so that they move by -A+ x with the slope: that share of the
 slope's uncertainty is carried (GUM, JCGM 100:2008, 5.2).
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -39,7 +41,7 @@ completes = "slope_at_origin"
 SIMPLER = 2.0  # AICc that a longer form has to gain
 EXACT = 1e-12  # residuals over the largest force that count as none
 STEP = 0.995  # by which a range shrinks at the least
-UP_DOWN = ("w", "q")
+UP_DOWN, SIDEWAYS = ("w", "q"), ("v", "r")
 TOGETHER = 4  # rows in which two motions move, for a cross term
 
 
@@ -80,18 +82,15 @@ class _Rows:
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Law:
-    """Terms of one component beyond the tied ones, as fitted: levels of the tables first, then the terms."""
+    """Terms of one component beyond the tied ones, as fitted: those of the set-up first, table by table, then the law's."""
 
     rows: _Rows
+    set_up: tuple[tuple[int, NamedTerm], ...]
     form: tuple[NamedTerm, ...]
     columns: Array
     tied: Array
     values: Array
     residuals: Array
-
-    @property
-    def levels(self) -> int:
-        return len(self.values) - len(self.form)
 
     @property
     def aicc(self) -> float:
@@ -173,6 +172,19 @@ def _cross_terms(component: str, variables: Sequence[str]) -> Iterator[NamedTerm
             yield t
 
 
+def _of_set_up(component: str, v: str, rows: _Rows, declared: tuple[str, ...]) -> list[tuple[NamedTerm, ...]]:
+    """What a set-up may add over one variable that no body of port-starboard symmetry has: X that is odd in drift.
+
+    Only rows on both sides tell it from the law's part: each side reaches at least half as far as the other.
+    """
+    x = rows.x[v]
+    shorter, longer = sorted((float(x.max()), -float(x.min())))
+    if component != "X" or v not in SIDEWAYS or PORT_STARBOARD in declared or shorter < NARROWEST * longer:
+        return [()]
+    odd = read_term(f"X{v}", "tied_law"), read_term(f"X{v}|{v}|", "tied_law")
+    return [(), odd[:1], odd[1:], odd]
+
+
 def _both_move(t: NamedTerm, rows: _Rows) -> bool:
     """Whether enough rows combine the motions of a term, not one as a multiple of the other."""
     a, b = (rows.x[v] for v in {v: None for v, _, _ in t.term.factors})
@@ -182,12 +194,13 @@ def _both_move(t: NamedTerm, rows: _Rows) -> bool:
 
 
 def _fitted(
-    rows: _Rows, bases: Mapping[str, tuple[NamedTerm, float]], form: tuple[NamedTerm, ...], *, apart: bool
+    rows: _Rows, bases: Mapping[str, tuple[NamedTerm, float]], form: tuple[NamedTerm, ...], apart: tuple[NamedTerm, ...]
 ) -> _Law | None:
-    """The law of one form by least squares; None where the rows do not determine it."""
+    """The law of one form by least squares, ``apart`` the set-up's terms of every table that moves so; None if undetermined."""
     tied = np.column_stack([t.term.evaluate(rows.x) for t, _ in bases.values()])
-    levels = [(rows.table == i).astype(np.float64) for i in np.unique(rows.table)] if apart else []
-    parts = [*levels, *(t.term.evaluate(rows.x) for t in form)]
+    set_up = [(int(i), t, t.term.evaluate(rows.x) * (rows.table == i)) for t in apart for i in np.unique(rows.table)]
+    set_up = [(i, t, column) for i, t, column in set_up if np.any(column)]
+    parts = [*(column for _, _, column in set_up), *(t.term.evaluate(rows.x) for t in form)]
     columns = np.column_stack(parts) if parts else np.zeros((len(rows.y), 0))
     size = np.linalg.norm(columns, axis=0)
     if len(rows.y) < columns.shape[1] + 3 or np.any(size == 0.0):
@@ -197,10 +210,13 @@ def _fitted(
     if rank < columns.shape[1]:
         return None
     values = scaled / size
-    return _Law(rows, form, columns, tied, values, left - columns @ values)
+    return _Law(rows, tuple((i, t) for i, t, _ in set_up), form, columns, tied, values, left - columns @ values)
 
 
-def _simplest(laws: Sequence[tuple[tuple[NamedTerm, ...], _Law]]) -> tuple[tuple[NamedTerm, ...], _Law] | None:
+_Form = tuple[tuple[NamedTerm, ...], tuple[NamedTerm, ...]]  # terms of the law over one variable, and of the set-up
+
+
+def _simplest(laws: Sequence[tuple[_Form, _Law]]) -> tuple[_Form, _Law] | None:
     """The first of the laws, the simplest first, that is within `SIMPLER` of the least AICc."""
     best = min((f.aicc for _, f in laws), default=0.0)
     return next(((form, f) for form, f in laws if f.aicc <= best + SIMPLER), None)
@@ -216,10 +232,10 @@ def _chosen(
 ) -> _Law | None:
     """The law over the whole range or, where it misses points there, over the widest range in which it meets them."""
     variables = [v for v in rows.x if np.any(rows.moved(v))]
-    apart = (
-        not constant and not any(not t.term.factors for t, _ in bases.values()) and _plane(component) not in declared
-    )
-    own = (read_term(f"{component}0", "tied_law"),) if constant else ()
+    at_rest = (read_term(f"{component}0", "tied_law"),)
+    own = at_rest if constant else ()
+    free = not any(not t.term.factors for t, _ in bases.values()) and _plane(component) not in declared
+    apart = at_rest if free and not constant else ()
 
     def over(some: _Rows) -> _Law | None:
         crossed = tuple(t for t in _cross_terms(component, variables) if _both_move(t, some))
@@ -227,12 +243,13 @@ def _chosen(
 
     def by_turns(some: _Rows, always: tuple[NamedTerm, ...]) -> _Law | None:
         """One variable after the other, its form with those of the others as they are; twice."""
-        law, chosen = None, dict.fromkeys(variables, tuple[NamedTerm, ...]())
+        law, chosen = None, dict.fromkeys(variables, (tuple[NamedTerm, ...](), tuple[NamedTerm, ...]()))
         for v in (*variables, *variables):
             laws = []
-            for form in _forms(component, v, ALIKE in declared):
-                each = (*always, *(t for terms in (chosen | {v: form}).values() for t in terms))
-                laws.append((form, _fitted(some, bases, each, apart=apart)))
+            both = product(_forms(component, v, ALIKE in declared), _of_set_up(component, v, some, declared))
+            for form in sorted(both, key=lambda f: len(f[0]) + len(f[1])):
+                terms, added = zip(*(chosen | {v: form}).values(), strict=True)
+                laws.append((form, _fitted(some, bases, (*always, *chain(*terms)), (*apart, *chain(*added)))))
             found = _simplest([(form, f) for form, f in laws if f is not None])
             if found is None:
                 return None
@@ -272,7 +289,7 @@ def _coefficients(
     law: _Law, among: CoefficientSet, bases: Mapping[str, tuple[NamedTerm, float]], first: ForceTable
 ) -> tuple[list[Coefficient], Array, Array]:
     """The terms of one component, the covariance of their scatter, and how they move with every coefficient of the slopes."""
-    k = law.levels
+    k = len(law.set_up)
     fit = fit_linear(law.columns, law.residuals + law.columns @ law.values)
     symbols = [c.symbol for c in among.coefficients]
     moves = np.zeros((len(law.form), len(symbols)))
@@ -341,9 +358,8 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         if law is None:
             continue
         rest += [
-            (law.rows.names[i], component, float(law.values[n]))
-            for n, i in enumerate(np.unique(law.rows.table)) if n < law.levels
-        ]  # fmt: skip
+            (law.rows.names[i], t.symbol, float(value)) for (i, t), value in zip(law.set_up, law.values, strict=False)
+        ]
         if law.form:
             some, block, moved = _coefficients(law, among, bases, tables[0])
             every += some

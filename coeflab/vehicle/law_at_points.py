@@ -20,6 +20,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import NEAR_ZERO
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
+from coeflab.law.terms import read_term
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.parameter_parts import Strict
 
@@ -48,7 +49,8 @@ class MeasuredForce(Strict):
     at_rest: Annotated[
         tuple[Finite, ...],
         Means(
-            "force of the set-up at no angle and no rate, by row; no part of the law, taken off the values", "N or N m"
+            "force of the set-up, by row: at no angle and no rate; X odd in drift. No part of the law, taken off the values",
+            "N or N m",
         ),
     ]
     scatter: Annotated[NotNegative | None, Means("of repeated runs about the law; null where none repeats", "N or N m")]
@@ -174,11 +176,8 @@ def measured_tables(
                 combined[row] = not any(moved <= together for together in crossed.get(c, ()))
             usable = t.usable[c] & (t.motion["u"] > 0.0) & ~strange & ~combined
             if np.any(usable):
-                rest = (
-                    np.zeros(len(t))
-                    if c in constants
-                    else _at_rest(t, c, fits, usable & ~np.any(moving, axis=0), length)
-                )
+                still = usable & ~np.any(moving, axis=0)
+                rest = _of_set_up(t, c, fits, still, length, in_law=c in constants)
                 forces.append((c, usable, np.asarray(t.forces[c]) * scale, rest * scale))
         if not forces:
             continue
@@ -220,13 +219,25 @@ def _combined(t: ForceTable, names: Sequence[str], length: float) -> NDArray[np.
     return np.asarray(np.sum(moved, axis=0) > 1)
 
 
-def _at_rest(
-    t: ForceTable, component: str, fits: Sequence[FitResult], still: NDArray[np.bool_], length: float
+def _of_set_up(
+    t: ForceTable, component: str, fits: Sequence[FitResult], still: NDArray[np.bool_], length: float, *, in_law: bool
 ) -> Array:
-    """Force at rest of a set-up, by row: what a fit took off, else the mean of the rows at rest, else zero; at the table's density."""
+    """Force of a set-up, by row, at the table's density: what a fit took off, else the mean of the rows at rest, else zero.
+
+    ``in_law``: the force at rest is the law's, and not the set-up's.
+    """
     unit = 1.0 / t.primed_force(component, length, np.ones(len(t)))
-    found = [v for f in fits if f.tied for name, c, v in f.tied.at_rest if (name, c) == (t.name, component)]
-    found += [
+    motion = {m: t.primed_motion(m, length) for m in (*MOTIONS[1:], *t.controls)}
+    found = [
+        v * read_term(term, t.name).term.evaluate(motion)
+        for f in fits
+        if f.tied
+        for name, term, v in f.tied.set_up
+        if name == t.name and term[0] == component
+    ]
+    if found or in_law:
+        return np.asarray(unit * np.sum([np.zeros(len(t)), *found], axis=0))
+    pooled = [
         s.intercept
         for f in fits
         for p in f.poolings
@@ -234,8 +245,8 @@ def _at_rest(
         for s in p.shares
         if s.campaign == t.campaign and s.intercept is not None
     ]
-    if found:
-        return np.asarray(unit * found[0])
+    if pooled:
+        return np.asarray(unit * pooled[0])
     primes = t.primed_force(component, length)[still]
     return np.asarray(unit * (float(primes.mean()) if len(primes) else 0.0))
 

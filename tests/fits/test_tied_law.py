@@ -77,7 +77,7 @@ def test_planted_forms_come_back_with_their_slope_and_no_other_term(more: dict[s
     for symbol, value in more.items():
         assert found.coefficients[symbol].value == pytest.approx(value, rel=1e-6)
     assert found.tied is not None
-    assert found.tied.at_rest == (("tow/table.csv", "Y", pytest.approx(1e-4, rel=1e-6)),)
+    assert found.tied.set_up == (("tow/table.csv", "Y0", pytest.approx(1e-4, rel=1e-6)),)
 
 
 def test_terms_move_with_the_slope_and_carry_its_uncertainty() -> None:
@@ -115,6 +115,25 @@ def test_x_is_even_in_drift_and_tied_to_its_curvature() -> None:
     found = beyond(planted({"X0": -1e-3, "Xvv": 0.004, "Xvvvv": 0.03}, {"v": V}), X0=-1e-3, Xvv=0.004)
     assert found.coefficients.symbols == ("Xvvvv",)
     assert found.coefficients["Xvvvv"].value == pytest.approx(0.03, rel=1e-6)
+
+
+def test_x_that_is_odd_in_drift_is_the_set_ups_and_moves_no_term_of_the_law() -> None:
+    law = {"X0": -1e-3, "Xvv": 0.004, "Xvvvv": 0.03}
+    table = planted({**law, "Xv": -7e-4, "Xv|v|": -2e-3}, {"v": V})
+    found = beyond(table, X0=-1e-3, Xvv=0.004)
+    assert found.coefficients.symbols == ("Xvvvv",)
+    assert found.coefficients["Xvvvv"].value == pytest.approx(0.03, rel=1e-6)
+    assert found.tied is not None
+    added = {term: (name, pytest.approx(value, rel=1e-6)) for name, term, value in found.tied.set_up}
+    assert added == {"Xv": ("tow/table.csv", -7e-4), "Xv|v|": ("tow/table.csv", -2e-3)}
+
+
+@pytest.mark.parametrize("rows", [V >= 0.0, -0.4 * V.max() <= V], ids=["one side", "little of the other"])
+def test_odd_x_of_one_side_stays_in_what_the_law_misses(rows: np.ndarray) -> None:
+    table = planted({"X0": -1e-3, "Xvv": 0.004, "Xv": -7e-4}, {"v": V[rows]})
+    found = beyond(table, X0=-1e-3, Xvv=0.004)
+    assert found.tied is not None
+    assert found.tied.set_up == ()
 
 
 def test_cross_terms_where_the_rows_combine_their_motions() -> None:

@@ -130,6 +130,19 @@ def test_a_component_next_to_nothing_is_not_judged() -> None:
     assert not found["N"].small
 
 
+def test_odd_x_of_the_set_up_is_taken_off_the_points_and_said() -> None:
+    truth, tied = {"X0": -1e-3, "Xvv": 0.004, "Xv": -7e-4}, {"X0": -1e-3, "Xvv": 0.004}
+    table = planted(truth, {"v": V})
+    file = made([slopes(table, **tied), beyond(table, **tied)], table)
+    assert {c.symbol for c in file.coefficients} == {"X0'", "Xvv'"}
+    (at,), (found,) = points_of(file), law_findings(file)
+    assert (at.n_points, at.beyond) == (len(V), ())
+    assert at.share < 1e-9
+    share = 100.0 * 7e-4 * V.max() / float(np.abs(table.primed_force("X", 2.0)).max())
+    assert f"less the set-up's X that is odd in drift, up to {share:.2g} %" in found.statistic
+    assert found.severity is Severity.PASS
+
+
 def test_points_and_range_travel_with_the_file_and_earlier_versions_have_none(whole: ParameterFile, tmp_path) -> None:
     path = tmp_path / "file.json"
     path.write_bytes(whole.to_json())

@@ -118,12 +118,12 @@ def test_suboff_exports_hold_their_own_points(suboff: Study, target: str) -> Non
 
 
 def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> None:
-    """X, which is not even in drift in the tank; K at most; no component fails."""
+    """X and K of the appended hull at 18 degrees, where both turn; no component fails."""
     found = [c for c in suboff.checks if c.name == "law at points"]
     assert [c.subject for c in found if c.severity is Severity.FAIL] == []
     warned = {c.subject: c.comment for c in found if c.severity is Severity.WARN}
-    assert {s.split()[1] for s in warned} <= {"X", "K"}
-    assert "80, 81" in warned["suboff_fully_appended X suboff_roddy_2/table.csv"]
+    assert set(warned) == {f"suboff_fully_appended {c} suboff_roddy_2/table.csv" for c in "XK"}
+    assert all(said.startswith("At 80, 81, outside") for said in warned.values())
     # "worst 10 %, expected ... 5 %" read as a failure: the bound is 11 %.
     rule = next(c.rule for c in found if c.subject == "suboff_fully_appended X suboff_roddy_2/table.csv")
     assert rule == "every point within 11 % of the largest force: 3 times the scatter of repeated runs + 5 %"

@@ -322,14 +322,14 @@ class Tied:
         Its coefficients.
     moves : (n, m) array
         Change of every coefficient with each of those.
-    at_rest : tuple of (table, component, value)
-        Primed forces at rest that the fit took off and no coefficient holds.
+    set_up : tuple of (table, term, value)
+        Primed forces of the set-up that the fit took off and no coefficient holds: ``Y0`` at rest, ``Xv`` of X odd in drift.
     """
 
     fit: str
     symbols: tuple[str, ...]
     moves: Array
-    at_rest: tuple[tuple[str, str, float], ...]
+    set_up: tuple[tuple[str, str, float], ...]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "moves", locked(self.moves))

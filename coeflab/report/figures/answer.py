@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -295,7 +295,8 @@ def _drawing(
     if rows:
         strokes(axes, (at_x, at_x), up, color=COLOURS["rule"], linewidth=0.5, zorder=0)
         levels = BOTTOM + high * (np.arange(len(rows), 0.0, -1.0) - up[0]) / (up[1] - up[0])
-        place, side, lift = (left, "left", 5.0) if above else (left - 6.0, "right", -2.9)
+        place, lift = (left, 5.0) if above else (left - 6.0, -2.9)
+        side: Literal["left", "right"] = "left" if above else "right"
         for k, name, said in zip(levels, rows, beyond, strict=True):
             label(figure, place / WIDTH, (k + lift) / height, name, side)
             label(figure, (WIDTH - 3.0) / WIDTH, (k + lift) / height, said, "right", color=COLOURS["muted"])
