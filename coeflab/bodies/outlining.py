@@ -357,7 +357,7 @@ def outline_table(outline: Outline) -> Table:
                 "hull",
                 number(float(-np.trapezoid(hull.girth, hull.x)), 3),
                 size,
-                number(float(hull.x[0]), 4),
+                number(round(float(hull.x[0]), 9), 4),
                 "",
             )
         )

@@ -114,7 +114,8 @@ def _print(found: Comparison) -> None:
     from coeflab.vehicle.comparison import Verdict
 
     for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
-        show.table(table if show.whole() else _comparable(table))
+        if table.rows:
+            show.table(table if show.whole() else _comparable(table))
     if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):

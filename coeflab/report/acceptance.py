@@ -301,7 +301,7 @@ def share(r: Compared) -> float:
     return r.difference / r.tolerance
 
 
-WORST = "worst / tolerance"
+WORST, MEANING = "worst / tolerance", "what our number is compared with"
 WORST_NOTE = f"{WORST}: the largest difference in % of its tolerance; of a limit, the share that is reached."
 
 
@@ -331,7 +331,7 @@ def by_basis(found: Acceptance) -> Table:
             rows.append((b.value, BASES[b], f"{good} of {count}", _closest(mine), _verdict(mine)))
     again = found.repeated
     once = f"{len(again)} more comparisons repeat these numbers in another way: {sum(r.holds for r in again)} within the tolerance."
-    headers = ("basis", "what our number is compared with", "within", WORST, "verdict")
+    headers = ("basis", MEANING, "within", WORST, "verdict")
     return Table(
         "Numbers of the publication by basis", headers, tuple(rows), (once,) if again else (), frozenset({0, 1, 4})
     )

@@ -17,7 +17,7 @@ from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
-from coeflab.report.acceptance import Acceptance, by_basis, held
+from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
@@ -32,7 +32,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
 NO_DATA = "no data"
-WIDTH, MOST_MODELS = 70, 12  # of a table that stands in the place of rows
+WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
@@ -458,8 +458,7 @@ def answer_table(found: Answer) -> Table:
         models, the table that stands in the place of rows.
     """
     if found.table is not None:
-        cut = tuple(tuple(map(_cut, row)) for row in found.table.rows)
-        return replace(found.table, rows=cut, notes=(*found.table.notes, *found.notes))
+        return _on_a_terminal(found.table, found.notes)
     short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
@@ -467,6 +466,19 @@ def answer_table(found: Answer) -> Table:
     headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     return Table("Answer", headers, rows, found.notes, frozenset(left))
+
+
+def _on_a_terminal(table: Table, notes: tuple[str, ...]) -> Table:
+    """Long cells are cut; what the numbers of a publication are compared with stands below."""
+    if MEANING not in table.headers:
+        rows = tuple(tuple(map(_cut, row)) for row in table.rows)
+        return replace(table, rows=rows, notes=(*table.notes, *notes))
+    i = table.headers.index(MEANING)
+    meant = tuple(f"{row[0]}: {row[i]}" for row in table.rows)
+    rows = tuple((*row[:i], *row[i + 1 :]) for row in table.rows)
+    left = frozenset(k - (k > i) for k in table.left if k != i)
+    headers = (*table.headers[:i], *table.headers[i + 1 :])
+    return replace(table, headers=headers, rows=rows, left=left, notes=(*meant, *table.notes, *notes))
 
 
 def _cut(text: str) -> str:

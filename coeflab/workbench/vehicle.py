@@ -26,7 +26,7 @@ from coeflab.motion.simulation import manoeuvres_of, moved, simulate
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.report.document import Document, Section, digest_of
 from coeflab.report.formats import REPORTERS
-from coeflab.report.sections.estimates import manoeuvre_table, replaced_section
+from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
@@ -356,7 +356,7 @@ def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[
     p = made.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
     page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,
-                    digest_of(p.provenance.inputs))  # fmt: skip
+                    digest_of(p.provenance.inputs), answer=answer_of_merge(made, moves, carried))  # fmt: skip
     files = parameter_files_rendered([p])
     with REPORTERS.guarded("html"):
         files.update(REPORTERS.load("html").render(page))

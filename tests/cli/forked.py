@@ -28,6 +28,13 @@ for module in pkgutil.walk_packages(coeflab.__path__, "coeflab."):
     except ImportError:
         pass  # of a library that is not installed; the command that needs it says so
 import manifold3d, rich.console, scipy.interpolate, scipy.spatial, scipy.stats, trimesh  # which commands import late
+from coeflab.report.content import document
+from coeflab.report.formats import REPORTERS
+from coeflab.study.plan import read_plan
+from coeflab.workbench import run
+from pathlib import Path
+# Checkers of files, fonts and the like are made when they are needed first: here once, not in every command.
+REPORTERS.load("html").render(document(run(read_plan(Path(coeflab.cli.__file__).parent / "template" / "plan.toml")), full=False))
 answers = os.dup(1)
 gc.collect()
 gc.freeze()

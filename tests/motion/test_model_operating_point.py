@@ -56,7 +56,7 @@ def test_a_family_says_its_rule_and_where_it_goes_on() -> None:
     said = " ".join(got.words())
     assert "a family of 1 parameter; 2 unknowns, 1 equations of rank 1" in said
     assert "least sum of squares of thrust / 1.000 N, other / 1.000 N" in said
-    assert "It goes on along thrust" in said
+    assert "The family extends along thrust" in said
 
 
 def test_nearest_to_a_point_weighs_only_what_it_names() -> None:

@@ -21,7 +21,13 @@ from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.report.answer import answer
 from coeflab.report.content import document
-from coeflab.report.sections.estimates import estimates_table, main_spread, manoeuvre_table, shares_figure
+from coeflab.report.sections.estimates import (
+    answer_of_merge,
+    estimates_table,
+    main_spread,
+    manoeuvre_table,
+    shares_figure,
+)
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import full_force
@@ -287,6 +293,12 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
     assert [(r.symbol, r.after is None) for r in made.replaced] == [
         ("Yv'", False), ("Nv'", False), ("Yv|v|'", True), ("Yvvv'", False),
     ]  # fmt: skip
+    page = answer_of_merge(made, (), ())
+    assert page.sentence == "both: 3 numbers replaced, 6 estimates left."
+    assert [(r.symbol, r.value, r.published[0]) for r in page.rows if r.source not in ("", "estimate")] == [
+        ("Yv", -0.025, VALUES["Yv"]), ("Nv", -0.014, VALUES["Nv"]),
+    ]  # fmt: skip
+    assert page.forest is not None
     symbols = list(made.parameters.covariance.symbols)
     matrix = np.array(made.parameters.covariance.matrix, dtype=float)
     i, j = symbols.index("Yv'"), symbols.index("Nr'")

@@ -184,7 +184,7 @@ class OperatingPoint:
         moving = np.abs(scaled) > FAMILY_SHOWN * np.max(np.abs(scaled))
         share = direction / np.max(np.abs(scaled))
         parts = [f"{u.name} {u.shown(share[i], 3)}" for i, u in enumerate(self.unknowns) if moving[i]]
-        return f"It goes on along {', '.join(parts)}."
+        return f"The family extends along {', '.join(parts)}."
 
     def table(self) -> Table:
         """Unknowns with their bounds, angles in degrees; what was found in sentences."""

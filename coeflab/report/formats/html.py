@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import ABSENT, LARGEST_SHARE, as_printed, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.figures.svg import size_of
 from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
@@ -147,6 +148,7 @@ def render(document: Document) -> Mapping[str, bytes]:
         "published": published,
         "rows_json": rows_json,
         "anchors": anchors,
+        "is_broad": is_broad,
     }
     seen: set[str] = set()
     environment.globals["definitions"] = lambda: Markup(definitions_html(seen))
@@ -253,6 +255,14 @@ def bar_of(row: AnswerRow) -> Ends | None:
         return None
     end = min(max(row.share, -WALL), WALL) / (2.0 * WALL) * 100.0
     return Ends(round(50.0 + min(end, 0.0), 1), round(abs(end), 1), abs(row.share) > WALL)
+
+
+BROAD = 400.0  # points; in half a page such a drawing's letters are too small to read
+
+
+def is_broad(figure: Figure) -> bool:
+    """Whether a drawing takes the width of the page."""
+    return size_of(figure.svg)[0] > BROAD
 
 
 def anchors(document: Document) -> frozenset[str]:

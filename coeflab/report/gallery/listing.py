@@ -76,6 +76,7 @@ OWN_REPORTS = ("report.html", "summary.html")
 MOST_FILES, MOST_ENTRIES = 2_000, 200_000
 LONGEST, MOST_ROWS = 300, 60
 SLOPES = tuple(s for *several, _ in INDICES.values() for s in several)
+LOOK, CLASS = re.compile(r"^figure svg \.(s\d+) \{ ([^{}<>\"]*) \}$", re.MULTILINE), re.compile(r' class="(s\d+)"')
 DRAWN = re.compile(r'<svg xmlns="http://www.w3.org/2000/svg" viewBox="[\d. ]+" role="img".*?</svg>', re.DOTALL)
 ROWS = re.compile(r'<script type="application/json" class="rows">(.*?)</script>', re.DOTALL)
 
@@ -297,13 +298,17 @@ class Shelf:
         return None if path is None or path.suffix.lower() != ".json" else read_parameter_file(path)
 
     def drawing(self, key: str) -> str:
-        """The first drawing of a report's page, one ``<svg>`` element; empty where the key means no report with one."""
+        """The first drawing of a report's page, one ``<svg>`` element with its own styles; empty where the key means no report with one."""
         path = place_of(self.folder, key)
         if path is None or path.suffix.lower() != ".html":
             return ""
         with path.open("rb") as stream:
-            found = DRAWN.search(stream.read(HEAD).decode("utf-8", "replace"))
-        return found[0] if found else ""
+            text = stream.read(HEAD).decode("utf-8", "replace")
+        found = DRAWN.search(text)
+        if found is None:
+            return ""
+        looks = dict(LOOK.findall(text, 0, found.start()))
+        return CLASS.sub(lambda c: f' style="{looks[c[1]]}"' if c[1] in looks else c[0], found[0])
 
     def _entry(self, name: str) -> ReportEntry | ParameterEntry | None:
         path = place_of(self.folder, key_of(name))

@@ -25,7 +25,7 @@ TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
     "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
     f"U95 covers {COVERS}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
-    "Input: declared errors of the inputs, and the grid; for a term of higher degree, the uncertainty of its slope. A dash: not assessed, so "
+    "Input: declared errors of the inputs, and the grid. Of a term of higher degree it is the uncertainty of its slope. A dash: not assessed, so "
     "not in U95.",
 )
 

@@ -16,6 +16,7 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
+from coeflab.report.figures.answer import forest_figure
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
 from coeflab.report.sections.body import hull_figure
@@ -28,6 +29,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 COLUMN = 244.0  # points: 86 mm
+BEFORE = "estimate before"
 FIRST = (
     "tactical diameter",
     "advance",
@@ -353,6 +355,34 @@ def _value(c: Coefficient | None) -> str:
         return ABSENT
     value, u95 = with_u95(c.value, c.u95)
     return f"{value} +- {u95}" if c.u95 else value
+
+
+def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> Answer:
+    """The first page of a merge: six slopes beside the estimates that they replace, and what is still an estimate."""
+    p, left = made.parameters, len(made.estimates)
+    before = {r.symbol.removesuffix("'"): r.before.value for r in made.replaced if r.before is not None}
+    rows = []
+    for symbol in SIX:
+        c = p.coefficient(symbol)
+        value, u95 = (c.value, c.u95) if c is not None else (None, None)
+        source = "" if c is None else _status(c)
+        status = "no estimate" if value is None else "" if u95 else "no U95"
+        rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
+    given = sum(r.after is not None for r in made.replaced)
+    turn = interval_in_words(carried).removesuffix(", estimate")
+    said = f"{p.name}: {given} numbers replaced, {left} estimates left{f'; {turn}' if turn else ''}."
+    chips = (
+        Chip("Replaced", f"{given} numbers", Severity.PASS if given else Severity.WARN, "coefficients"),
+        Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
+        Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres"),
+    )
+    first = next(iter(moves), None)
+    left_figure = (
+        track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
+    )
+    right = forest_figure(rows, (BEFORE,), BEFORE) or forest_figure(rows, (BEFORE,), "")
+    note = f"{BEFORE}: the value that was replaced, of the base. Made dimensionless with {p.scaling.length_name} = {p.scaling.length:.5g} m."
+    return Answer(said[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))
 
 
 def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from coeflab.core.stored import FIRST_VERSION
-from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.table import ABSENT, LARGEST_SHARE, Table, coefficient, number, with_u95
 from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -113,14 +113,21 @@ def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:
 
 def percent(share: float) -> str:
     """A relative difference in per cent, 0 where it is rounding."""
-    return f"{100.0 * share if share > LOSSLESS else 0.0:.2g} %"
+    value = 100.0 * share if share > LOSSLESS else 0.0
+    return (
+        f"> {LARGEST_SHARE:.0f} %" if value > LARGEST_SHARE else f"{value:.0f} %" if value >= 99.5 else f"{value:.2g} %"
+    )
 
 
 def in_short(loss: Loss) -> str:
     """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
     terms = [what.partition(" (")[0] for what in loss.not_held]
     said = [f"no {_some(terms, NAMED)}"] if terms else []
-    said += [_some([str(x) for x in loss.lost], 1)] if loss.lost else []
+    said += (
+        [_some([f"{x.kind}: {x.what.partition('; ')[0].partition(': ')[0]}" for x in loss.lost], 1)]
+        if loss.lost
+        else []
+    )
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
-    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the rest, and of a "
-    "fixed form what the residuals show that it leaves out; input: what enters from outside, declared inputs and grid.",
+    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the curve that "
+    "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid.",
 )
 ROUNDING = 1e-12
 REJECTED = "form rejected"

@@ -44,7 +44,7 @@ def spread_table(carried: Carried) -> Table:
     beyond = [s.figure.name for s in carried.spreads if s.extrapolated]
     if beyond:
         notes.append(
-            f"Lean on motions that no data cover: {', '.join(beyond)}. The interval knows nothing of the error of that."
+            f"Beyond the data: {', '.join(beyond)}. The interval does not contain the error of extrapolating."
         )
     q = carried.question
     notes.append(
@@ -57,8 +57,8 @@ def spread_table(carried: Carried) -> Table:
         "unit",
         "median",
         "95 % interval",
-        "+- low",
-        "+- high",
+        "low +-",
+        "high +-",
         "members",
         "status",
         "interval",

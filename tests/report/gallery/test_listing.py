@@ -8,14 +8,16 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.report.document import digest_of
+from coeflab.report.answer import answer
+from coeflab.report.document import Document, digest_of
+from coeflab.report.formats import REPORTERS
 from coeflab.report.gallery import listing
 from coeflab.report.gallery.listing import Shelf
 from coeflab.report.printable import visible
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.test_compare import VALUES, made
 from tests.report.gallery.conftest import report
-from tests.report.studies import ENDLESS, HOSTILE
+from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
 
 def test_reports_say_title_study_and_digest_and_stand_with_their_pdf(folder):
@@ -62,6 +64,18 @@ def test_a_card_says_verdict_day_and_where_its_picture_is(folder):
     )  # fmt: skip
     assert Shelf(folder).drawing(found.picture).startswith("<svg")
     assert [(c.symbol, c.said) for c in found.coefficients] == [("Yv'", "-0.0260 +- 0.0030"), ("Nr'", "no data")]
+
+
+def test_a_picture_keeps_the_looks_that_the_page_of_its_report_has_as_classes(tmp_path):
+    """Without them curves are filled black and texts start where they should end."""
+    study = small_study(FULL)
+    page = REPORTERS.load("html").render(Document("Tow", "", (), answer=answer(study)))["report.html"]
+    (tmp_path / "report.html").write_bytes(page)
+    svg = Shelf(tmp_path).drawing("report.html")
+    assert b'class="s0"' in page
+    assert " class=" not in svg
+    assert svg.count("text-anchor: end") > 2
+    assert svg.count("fill: none") > 3
 
 
 @pytest.mark.parametrize(
