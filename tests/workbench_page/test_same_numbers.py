@@ -80,7 +80,7 @@ ESTIMATED = """([x, y, se, odd]) => {
   const f = slopeAtOrigin(document.getElementById("bench").bench.data.constants).estimate(x, y, se, { odd });
   return [f.value, f.u95, f.status, f.removed];
 }"""
-KINDS = ("stated errors", "wrong point", "one side", "odd by symmetry", "mirrored", "repeated")
+KINDS = ("stated errors", "wrong point", "one side", "odd by symmetry", "mirrored", "repeated", "half hidden")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -98,6 +98,9 @@ def test_sweeps_of_every_kind(page, kind):
         x, y = np.concatenate([x[7:], -x[7:]]), np.concatenate([y[7:], -y[7:]])
     if kind == "repeated":
         x, y = np.concatenate([x, x[:4], x[8:]]), np.concatenate([y, y[:4], y[8:] + 1e-4])
+    if kind == "half hidden":  # terms of opposed signs: the whole polynomial widens the interval
+        x = np.linspace(0.0, 0.28, 12)
+        y = 3e-4 - 0.025 * x - 0.02 * x**2 + 0.1 * x**4 + 6e-5 * np.random.default_rng(1).standard_normal(len(x))
     odd = kind == "odd by symmetry"
     found = origin_slope.estimate(x, y, se, odd=odd)
     value, u95, status, removed = page.evaluate(

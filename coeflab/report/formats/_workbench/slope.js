@@ -319,6 +319,7 @@ const slopeAtOrigin = (k) => {
       main.mean.push(mean);
       main.variance.push(variance * unit);
       main.noise.push(variance);
+      main.squares.push(squares);
       if (deletions) {
         const row = { weight: new Float64Array(n), slope: new Float64Array(n), variance: new Float64Array(n) };
         for (let r = 0; r < n; r++) {
@@ -378,6 +379,17 @@ const slopeAtOrigin = (k) => {
     return s.length % 2 ? s[h] : 0.5 * (s[h - 1] + s[h]);
   };
 
+  // Slope by the whole polynomial and its reach either way, where it beats a straight line that has support; null elsewhere.
+  const wholePolynomial = (d, main, rows, least) => {
+    const cells = d.members[0].cells, last = cells.length - 1, free = (cell) => cell.precision.reduce((s, v) => s + (v < 1 ? 1 : 0), 0);
+    const bound = cells.map((cell) => cell.precision.slice(2).reduce((s, v) => s + v, 0)), straight = bound.lastIndexOf(Math.max(...bound));
+    const freedom = rows - free(cells[last]), more = free(cells[last]) - free(cells[straight]);
+    const gained = rows * Math.log(main.squares[straight] / main.squares[last]) - 2 * more;
+    if (freedom < 1 || more < 1 || !(gained > 0 && gained <= k.SUPPORTED)) return null;
+    const sd = Math.sqrt(Math.max(main.squares[last] / freedom, least) * cells[last].inverse[d.p + 1]);
+    return { slope: main.mean[last], reach: studentAt(freedom, k.ONE_END) * sd };
+  };
+
   const slopesOf = (d, y, stated, deletions = true) => {
     const n = d.n, centre = median(y);
     const size = y.reduce((s, v) => Math.max(s, Math.abs(v - centre)), 0) || 1;
@@ -388,7 +400,7 @@ const slopeAtOrigin = (k) => {
     const floor = n * k.ROUNDING ** 2 + (stated === null ? 0 : k.STATED_FREEDOM * stated / size ** 2);
     const least = stated === null ? 0 : stated / size ** 2;
     const check = deletions && n - d.flat >= 3;
-    const main = { weight: [], mean: [], variance: [], noise: [] }, gone = grid(0, n, () => []);
+    const main = { weight: [], mean: [], variance: [], noise: [], squares: [] }, gone = grid(0, n, () => []);
     for (const m of d.members) evaluate(m, d, start, rest, nu, floor, least, check, main, gone);
     const evidence = logSum(main.weight), weights = main.weight.map((w) => Math.exp(w - evidence));
     let noise = 0, middle = 0;
@@ -410,6 +422,12 @@ const slopeAtOrigin = (k) => {
       parts = main.weight.map((w, i) => ({ weight: w, mean: main.mean[i], scale: Math.sqrt(main.variance[i]), freedom: nu }));
     }
     const { ends, sd } = mixtureQuantiles(parts, nu, tail);
+    const whole = wholePolynomial(d, main, nu + d.flat, least);
+    if (whole) {
+      const reach = whole.reach + Math.abs(whole.slope - ends[1]);
+      ends[0] = Math.min(ends[0], ends[1] - reach);
+      ends[2] = Math.max(ends[2], ends[1] + reach);
+    }
     return { lower: ends[0] * unit, value: ends[1] * unit, upper: ends[2] * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
   };
 
