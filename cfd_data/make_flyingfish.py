@@ -1,4 +1,4 @@
-"""Write the parameter files of the TJ-FlyingFish and a synthetic bench test of its rotor: ``python cfd_data/make_flyingfish.py``.
+"""Write parameter files of the TJ-FlyingFish and of THAUV's dives, and a bench test of a rotor: ``python cfd_data/make_flyingfish.py``.
 
 The paper plots forces and torques of its bench (Fig. 5) and prints the identified curves, equations 45 to 48. The tables here are
 computed from those equations: steps of the speed with the lag of a motor and seeded normal noise. They show that the
@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.core.files import shipped, write_all
+from coeflab.motion.glider.glider import gliders_at
 from coeflab.published.flyingfish.model import MEDIA, FlyingFish, read_flyingfish
 from coeflab.published.parameter_files import flyingfish_file
+from coeflab.published.thauv.in_space import dive_files
 
 SEEDS = {"water": 71, "air": 72}
 STEPS, HOLD, RATE, LAG = 9, 2.5, 20.0, 0.12  # steps of so many s, rows a second, time constant of the motor in s
@@ -40,7 +42,9 @@ def bench(fish: FlyingFish, medium: str) -> bytes:
 def files() -> dict[str, bytes]:
     """Every file by its path below cfd_data."""
     fish = read_flyingfish()
-    made = {f"flyingfish_bench_synthetic/{medium}.csv": bench(fish, medium) for medium in MEDIA}
+    dives = dive_files(gliders_at(shipped("cfd_data") / "thauv"))
+    made = {f"thauv/{p.name}.parameters.json": p.to_json() for p in dives}
+    made |= {f"flyingfish_bench_synthetic/{medium}.csv": bench(fish, medium) for medium in MEDIA}
     return made | {
         f"flyingfish/flyingfish_{medium}.parameters.json": flyingfish_file(fish, medium).to_json() for medium in MEDIA
     }

@@ -20,6 +20,7 @@ FOLDER = Path(__file__).resolve().parent / "huuv_synthetic"
 SEED = 20250925
 STEP = 2.5
 LARGEST = 25.0
+REPEATS = 8  # more runs at no angle, which show the scatter
 DENSITY, SPEED, AREA, LENGTH = 998.0, 1.0, 0.04, 1.2
 NOISE = 0.002
 TRUTH: dict[str, dict[tuple[int, int], float]] = {
@@ -36,10 +37,13 @@ def table() -> str:
     """The table: settings in degrees, forces in N and N m in FRD, six significant digits."""
     steps = np.arange(-LARGEST, LARGEST + STEP / 2, STEP)
     alpha, beta = (a.ravel() for a in np.meshgrid(steps, steps[steps >= 0.0], indexing="ij"))
+    first, again = len(alpha), np.random.default_rng(SEED + 1)
+    alpha, beta = (np.concatenate([x, np.zeros(REPEATS)]) for x in (alpha, beta))
     a, b = np.radians(alpha), np.radians(beta)
     rng = np.random.default_rng(SEED)
     value = {
-        name: sum(c * a**i * b**j for (i, j), c in terms.items()) + NOISE * rng.standard_normal(len(a))
+        name: sum(c * a**i * b**j for (i, j), c in terms.items())
+        + NOISE * np.concatenate([rng.standard_normal(first), again.standard_normal(REPEATS)])
         for name, terms in TRUTH.items()
     }
     ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)

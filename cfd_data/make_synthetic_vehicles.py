@@ -163,8 +163,8 @@ def thauv(case: str) -> tuple[bytes, Description]:
     return csv_of(columns), Description(
         title=f"THAUV case {case}, synthetic, angle of attack at three speeds",
         body=f"thauv_case_{case}_synthetic",
-        datum="paper_axes",
-        datum_note="origin of the paper's body axes",
+        datum="cb",
+        datum_note="centre of buoyancy, origin of the paper's body axes",
         length="1 m",
         length_name="unit length (the polar needs none)",
         density=1025.0,

@@ -1,4 +1,4 @@
-"""The keys of a body.toml of a vehicle with an arm: joints, links, vehicle, mount, thrusters and phases."""
+"""The keys of a body.toml of a vehicle with an arm: joints, links, vehicle, mount, thrusters, controller and phases."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ INERTIA = (
     "[[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]] about the centre of mass: the same numbers on both sides of the diagonal, "
     "principal moments above zero, none above the sum of the other two"
 )
+LAWS = ("computed_torque", "station")
 FORMULAS = ("across", "ends", "none")
 DIMENSIONS = {"revolute": ("angle", "rate", "moment"), "prismatic": ("length", "speed", "force")}
 IN_LINK = "a point [x, y, z] in metres, in the link's own frame"
@@ -117,6 +118,7 @@ _SIX_SPEEDS = {
     "minItems": 6,
     "maxItems": 6,
 }
+_BY_CONTROL = "Its controller gives the torques."
 Speeds = Annotated[tuple[float, ...], takes.Takes("six speeds, m/s and rad/s", _speeds, _SIX_SPEEDS)]
 
 
@@ -435,6 +437,32 @@ class PropulsorKeys(takes.Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ControllerKeys(takes.Declaration):
+    """The controller of a vehicle that is kept on its station: e'' + 2 damping w e' + w^2 e = 0 of every error e.
+
+    Attributes
+    ----------
+    law : {"computed_torque", "station"}
+        Computed torque knows the whole model; station the inertia at the start of the phase, and weight and buoyancy.
+    vehicle_frequency, joint_frequency : float
+        Natural frequency w of errors of the vehicle, and of the joints.
+    damping : float
+        Over the critical one.
+    propeller_rate : float
+        How fast a propeller is brought to its speed, 1/s.
+    knows_current : bool
+        Whether the model of computed torque has the current.
+    """
+
+    law: Annotated[str, takes.one_of(*LAWS)] = "computed_torque"
+    vehicle_frequency: Annotated[takes.Rate, takes.ABOVE_ZERO] = 1.0
+    joint_frequency: Annotated[takes.Rate, takes.ABOVE_ZERO] = 4.0
+    damping: Annotated[takes.Pure, takes.ABOVE_ZERO] = 1.0
+    propeller_rate: Annotated[takes.Pure, takes.ABOVE_ZERO] = 10.0
+    knows_current: takes.Flag = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class StartKeys(takes.Declaration):
     """How a motion begins: at the origin, level, heading north, with the joints at home.
 
@@ -460,21 +488,21 @@ class ArmPhaseKeys(takes.Declaration):
         Of the phase.
     lasts : float
         How long.
-    vehicle : {"free", "held"}
-        held: it keeps its velocity, by whatever force that takes.
+    vehicle : {"free", "held", "kept"}
+        held: it keeps its velocity, by whatever force that takes; kept: thrusters and drives keep it where the motion began, by [controller].
     joints : list
         Positions that the joints reach at its end, from rest to rest, each with its unit.
     end : (3,) array
         Place that the end effector reaches at its end, on a straight line of the vehicle, [x, y, z], m, FRD, from the datum.
     torque : list
-        Of the joints, N m or N where bare, constant. Without joints, end and torque they turn freely.
+        Of the joints, N m or N where bare, constant. Without joints, end and torque they turn freely; of a vehicle that is kept they stay.
     commands : list
         Of the thrusters, constant: N m by torque, V by voltage, N without a model; without it they stand still.
     """
 
     name: takes.Text
     lasts: Annotated[takes.Time, takes.ABOVE_ZERO]
-    vehicle: Annotated[str, takes.one_of("free", "held")] = "free"
+    vehicle: Annotated[str, takes.one_of("free", "held", "kept")] = "free"
     joints: Positions = ()
     end: takes.Point | None = None
     torque: Efforts = ()
@@ -486,5 +514,7 @@ class ArmPhaseKeys(takes.Declaration):
         given = [key for key, there in ways.items() if there]
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)}", "one of joints, end and torque", column=given[1])
-        if self.commands and self.vehicle == "held":
-            raise InputError("commands of a vehicle that is held", "a free vehicle", column="commands")
+        if self.commands and self.vehicle != "free":
+            raise InputError(f"commands of a vehicle that is {self.vehicle}", "a free vehicle", column="commands")
+        if self.torque and self.vehicle == "kept":
+            raise InputError("torque of a vehicle that is kept", "joints or end", column="torque", advice=_BY_CONTROL)

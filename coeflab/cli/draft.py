@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,10 +15,10 @@ from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
-    from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.form import Line, Typed
+    from coeflab.tables.imported import Filled
+    from coeflab.tables.parts import Part
     from coeflab.tables.questions import Understood
-    from coeflab.tables.raw_table import RawTable
     from coeflab.tables.settings import Setting
 
 
@@ -36,82 +35,88 @@ class Said:
 
 @dataclass(slots=True)
 class Draft:
-    """A campaign in the making: the file as it is read, and what is said of it so far."""
+    """A campaign in the making: the tables as they are read, and what is said of them so far."""
 
     file: Path
     said: Said
     assumed: Mapping[str, Setting]
     maps: Sequence[str]
-    accept: bool = False
-    importer: str = ""
-    sheets: tuple[str, ...] = ()
     chosen: list[Line] = field(default_factory=list)
+    left: tuple[str, ...] = ()
     numbers: dict[str, int] = field(default_factory=dict)
-    raw: RawTable = field(init=False)
-    found: Understood = field(init=False)
+    parts: tuple[Part, ...] = ()
+    founds: tuple[Understood, ...] = ()
     settings: dict[str, Setting] = field(default_factory=dict)
 
-    def read(self) -> None:
-        """Read the file, with a sheet or a pattern of names as a proposal where it needs one."""
-        from coeflab.tables.conditions import UNNAMED, NoConditionError
-        from coeflab.tables.raw_table import SeveralError
-        from coeflab.tables.reading import importer_of, read_raw
-        from coeflab.tables.settings import stated_settings
+    @property
+    def whole(self) -> str:
+        """Name of what is imported, for its citation; empty where the one table says it."""
+        return self.file.resolve().name if len(self.parts) > 1 else ""
 
-        self.importer = importer_of(self.file, self.said.importer)
+    def read(self) -> None:
+        """Read the file, with sheets, tables of the folder or patterns of names as a proposal where it needs some."""
+        from coeflab.tables.parts import read_parts, require_parts, stated_together, with_shared_words
+
         with show.narrated(), show.progress(False) as say:
-            while True:
-                try:
-                    self.raw = read_raw(self.file, self.importer, self.said.options, say)
-                    break
-                except SeveralError as several:
-                    if not several.choices:
-                        raise
-                    self.sheets = several.choices
-                    self.said.options["sheet"] = _likely_sheet(self.file, self.importer, self.said.options, self.sheets)
-                except NoConditionError as unsaid:
-                    if self.said.options.get("names") or not unsaid.pattern or UNNAMED in unsaid.pattern:
-                        raise
-                    self.said.options["names"] = unsaid.pattern
-                    self.chosen.append(_pattern_line(unsaid))
-        if self.sheets:
-            others = ", ".join(s for s in self.sheets if s != self.said.options["sheet"])
-            self.chosen = [one for one in self.chosen if one.key != "sheet"]
-            self.chosen.append(
-                _line(
-                    "sheet",
-                    self.said.options["sheet"],
-                    f"others: {others}",
-                    f"Sheets with numbers: {', '.join(self.sheets)}.",
-                )
-            )
-        names = {column.name for column in self.raw.columns}
+            parts, chosen = read_parts(self.file, self.said.importer, self.said.options, say)
+        self.parts = with_shared_words(parts)
+        before = {one.key for one in self.chosen}
+        fresh = [_line(one.key, one.value, one.why, f"{one.about}.") for one in chosen if one.key not in before]
+        self.chosen = [*self.chosen, *fresh]
+        self.left = tuple(text for one in chosen for text in one.left)
+        self.said.options |= {one.key: one.value for one in chosen}
         shown, left = (
             [t for t in self.maps if "?" not in t.partition("=")[2]],
             [t for t in self.maps if "?" in t.partition("=")[2]],
         )
-        self.said.columns = {n: c for n, c in self.said.columns.items() if n in names or not self.sheets} | _mapped(
-            shown, self.raw
-        )
+        self.said.columns = self.said.columns | _mapped(shown, self.parts)
         self.said.left += [t.partition("=")[0] for t in left]
-        self.settings = {**self.assumed, **stated_settings(self.raw), **self.said.settings}
+        require_parts(self.said.settings, self.parts)
+        self.settings = {**self.assumed, **stated_together(self.parts), **self.said.settings}
+
+    def understand(self) -> None:
+        """What follows from what is said so far; `founds` is of it."""
+        from coeflab.tables.parts import understood_together
+
+        self.founds = understood_together(self.parts, self.said.columns, self.settings)
 
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
-        from coeflab.tables.form import form
+        from coeflab.tables.parts import form_together
 
-        return form(self.raw, self.found, self.settings, self.chosen, self.numbers)
+        return form_together(self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole)
+
+    def filled(self) -> tuple[Filled, ...]:
+        """The tables, once everything is said.
+
+        Raises
+        ------
+        InputError
+            Columns that cannot be what is said of them.
+        """
+        from coeflab.tables.form import of_campaign
+        from coeflab.tables.imported import Filled
+        from coeflab.tables.mapping import assigned
+        from coeflab.tables.parts import own
+
+        return tuple(
+            Filled(
+                part.name, part.raw, part.importer, part.options, assigned(part.raw, found.mapping), found.mapping,
+                of_campaign(own(self.settings, part, self.parts)), frozenset(found.about),
+            )
+            for part, found in zip(self.parts, self.founds, strict=True)
+        )  # fmt: skip
 
     def asked(self) -> None:
         """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
         from coeflab.core.errors import together
-        from coeflab.tables.form import open_lines, settled, typed
-        from coeflab.tables.questions import understood
+        from coeflab.tables.form import open_lines, typed
+        from coeflab.tables.parts import columns_by_name, complaints_of, settled_together
 
-        self.found = understood(self.raw, self.said.columns, self.settings)
-        if self.found.complaints:
-            raise together(list(self.found.complaints))
-        described(self.raw, self.importer, self.found, whole=False)
+        self.understand()
+        if complaints := complaints_of(self.founds):
+            raise together(complaints)
+        self.described()
         changed: set[str] = set()
         again = True
         while True:
@@ -127,14 +132,14 @@ class Draft:
                 continue
             try:
                 if not answer:
-                    found, settings = settled(self.raw, self.said.columns, self.settings, True)
-                    if found.complaints:
-                        raise together(list(found.complaints))
-                    self.found, self.settings = found, settings
+                    founds, settings = settled_together(self.parts, self.said.columns, self.settings, True, self.whole)
+                    if complaints := complaints_of(founds):
+                        raise together(complaints)
+                    self.founds, self.settings = founds, settings
                     if not open_lines(self.lines()):
                         return
                 else:
-                    said = typed(answer, lines, self.raw, [one.key for one in self.chosen])
+                    said = typed(answer, lines, columns_by_name(self.parts), [one.key for one in self.chosen])
                     for one in said.explain:
                         show.sentence(f"  {one.key}: {one.about}")
                     if not (said.columns or said.settings or said.options):
@@ -157,7 +162,7 @@ class Draft:
             What they say together is not possible.
         """
         from coeflab.core.errors import together
-        from coeflab.tables.questions import understood
+        from coeflab.tables.parts import complaints_of, require_parts, understood_together
 
         if said.options:
             before = dict(self.said.options)
@@ -168,11 +173,12 @@ class Draft:
             except InputError:
                 self.said.options = before
                 raise
+        require_parts(said.settings, self.parts)
         columns, settings = self.said.columns | said.columns, self.said.settings | said.settings
-        found = understood(self.raw, columns, self.settings | said.settings)
-        if found.complaints:
-            raise together(list(found.complaints))
-        self.said.columns, self.said.settings, self.found = columns, settings, found
+        founds = understood_together(self.parts, columns, self.settings | said.settings)
+        if complaints := complaints_of(founds):
+            raise together(complaints)
+        self.said.columns, self.said.settings, self.founds = columns, settings, founds
         self.settings |= said.settings
 
     def unasked(self, words: Sequence[str], accept: bool) -> None:
@@ -184,21 +190,21 @@ class Draft:
             What cannot be, all of it.
         """
         from coeflab.core.errors import together
-        from coeflab.tables.form import open_lines, pending, settled
-        from coeflab.tables.questions import understood
+        from coeflab.tables.form import open_lines
+        from coeflab.tables.parts import complaints_of, is_pending, settled_together, understood_together
         from coeflab.tables.settings import Setting
 
-        found, settings = settled(self.raw, self.said.columns, self.settings, accept)
-        if found.complaints:
-            raise together(list(found.complaints))
-        waits = pending(found) or (bool(self.chosen) and not accept)
+        founds, settings = settled_together(self.parts, self.said.columns, self.settings, accept, self.whole)
+        if complaints := complaints_of(founds):
+            raise together(complaints)
+        waits = is_pending(self.parts, founds) or (bool(self.chosen) and not accept)
         if not waits and not self.said.left:
-            self.found, self.settings = found, settings
+            self.founds, self.settings = founds, settings
             return
-        self.found = understood(self.raw, self.said.columns, self.settings)
+        self.understand()
         if accept:
-            self.found, self.settings = found, settings
-        described(self.raw, self.importer, self.found, whole=False)
+            self.founds, self.settings = founds, settings
+        self.described()
         lines = self.lines()
         self.shown(lines)
         for key in self.said.left:
@@ -208,12 +214,11 @@ class Draft:
         missing = open_lines(lines)
         many = f"{len(missing)} open: replace each ? by its value. " if missing else ""
         show.sentence(f"{many}--accept takes the proposals shown. Nothing is written yet.")
-        if any(one.key == "table.contains_inertia" for one in missing):
-            inside = {**self.settings, "table.contains_inertia": Setting(True, "")}
-            more = [
-                q for q in understood(self.raw, self.said.columns, inside).questions if q.key.startswith("inertia.")
-            ]
-            show.sentence("# if true: add " + " ".join(f"--set {q.key}={q.default or '...'}" for q in more))
+        if inertia := [one.key for one in missing if one.key.endswith("table.contains_inertia")]:
+            inside = {**self.settings, **dict.fromkeys(inertia, Setting(True, ""))}
+            asked = [q for f in understood_together(self.parts, self.said.columns, inside) for q in f.questions]
+            more = {q.key: q.default or "..." for q in asked if q.key.startswith("inertia.")}
+            show.sentence("# if true: add " + " ".join(f"--set {key}={said}" for key, said in more.items()))
         show.command_line(
             "coeflab import", " ".join([*words, *(one.argument for one in missing), "--accept"]), separator=" "
         )
@@ -228,19 +233,31 @@ class Draft:
         show.text()
         print_list("Check", self.warned())
 
+    def described(self) -> None:
+        """Print what each table is, what its numbers show, and what is not taken."""
+        for part, found in zip(self.parts, self.founds, strict=True):
+            described(part, found, whole=False)
+        print_list("Not taken", self.left)
+
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.settings import POINT_OF, doubtful_setting
+        from coeflab.tables.parts import own
+        from coeflab.tables.settings import doubtful_setting
+        from coeflab.tables.words_above import POINT_OF
 
-        sizes = [f"warning, {k}: {why}" for k in self.settings if (why := doubtful_setting(self.raw, self.settings, k))]
+        sizes = []
+        for part in self.parts:
+            mine = own(self.settings, part, self.parts)
+            sizes += [f"warning, {k}: {why}" for k in mine if (why := doubtful_setting(part.raw, mine, k))]
         sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
-        return [*sizes, *(e.text for e in self.found.shows if e.text.startswith("warning"))]
+        shows = [e.text for found in self.founds for e in found.shows if e.text.startswith("warning")]
+        return list(dict.fromkeys([*sizes, *shows]))
 
     def _beyond_ends(self) -> str:
         """Where the reference point is off the body."""
         from coeflab.core.units import quantity
         from coeflab.law.scaling import beyond_ends
-        from coeflab.tables.settings import POINT_OF
+        from coeflab.tables.words_above import POINT_OF
 
         point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
         if point is None or datum is None:
@@ -255,46 +272,15 @@ def _line(key: str, value: str, why: str, about: str) -> Line:
     return Line(key, value, why, Group.GRAVE, about, pending=True)
 
 
-def _likely_sheet(file: Path, importer: str, options: Mapping[str, Any], sheets: Sequence[str]) -> str:
-    """The first sheet with a column that may be a force or moment by its name; else the first."""
-    from coeflab.tables.proposals import proposals
-    from coeflab.tables.reading import read_raw
-
-    for sheet in sheets:
-        try:
-            raw = read_raw(file, importer, {**options, "sheet": sheet})
-        except InputError:
-            continue
-        if any(re.match(r"-?(?:[XYZKMN]|lift|drag|side)\b", one.text) for one in proposals(raw)):
-            return sheet
-    return sheets[0]
-
-
-def _pattern_line(unsaid: NoConditionError) -> Line:
-    """The pattern of names of runs, with what it makes of them."""
-    from coeflab.tables.conditions import SPELT, name_pattern
-
-    pattern = name_pattern(unsaid.pattern)
-    read = [
-        f"{run}: "
-        + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in (pattern.conditions(run) or {}).items())
-        for run in unsaid.runs
-    ]
-    return _line(
-        "names",
-        unsaid.pattern,
-        "; ".join(read[:2]),
-        f"Conditions by the names of the runs. {'; '.join(read)}. {SPELT}.",
-    )
-
-
-def described(raw: RawTable, importer: str, found: Understood, *, whole: bool = True) -> None:
-    """Print what a file is and what its numbers show; its columns and what it says of itself where the form does not."""
+def described(part: Part, found: Understood, *, whole: bool = True) -> None:
+    """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not."""
     from coeflab.report.tables import raw_tables
     from coeflab.tables.collect import runs_shown
 
+    raw = part.raw
     said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
-    show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
+    name = f"{part.name}: " * bool(part.name)
+    show.sentence(f"{name}{raw.path}: read by {part.importer}" + (f"; {said}" if said else ""))
     if runs := runs_shown(raw, MOST if whole else FEW):
         show.table(runs)
     if whole:
@@ -322,7 +308,8 @@ def print_list(title: str, texts: Sequence[str]) -> None:
 def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.settings import Setting, read_settings, saved_mapping
+    from coeflab.tables.parts import read_in
+    from coeflab.tables.settings import Setting, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -338,7 +325,7 @@ def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequ
             complaints.append(InputError(shown(text), "KEY=VALUE, such as axes.frame=CFD", column="--set"))
             continue
         try:
-            out.settings |= {k: Setting(v, "confirmed") for k, v in read_settings(key.strip(), said.strip()).items()}
+            out.settings |= {k: Setting(v, "confirmed") for k, v in read_in(key.strip(), said.strip()).items()}
         except InputError as why:
             complaints.append(why)
     try:
@@ -361,9 +348,11 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
     return {key.strip(): _number(said.strip()) for key, _, said in pairs}
 
 
-def of_runs(name: str, runs: Path | None, state: Path | None = None) -> list[str]:
+def of_runs(name: Sequence[str], runs: Path | None, state: Path | None = None) -> list[str]:
     """Options of collected runs as ``--option`` takes them."""
-    given = {"names": name, "run_list": runs, "state": state}
+    from coeflab.tables.conditions import BETWEEN
+
+    given = {"names": BETWEEN.join(name), "run_list": runs, "state": state}
     return [f"{option}={value}" for option, value in given.items() if value]
 
 
@@ -376,21 +365,22 @@ def _number(text: str) -> Any:
     return text
 
 
-def _mapped(map_: Sequence[str], raw: RawTable) -> dict[str, ColumnMap]:
+def _mapped(map_: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
     """What ``--map`` says, by the names of the file."""
     from coeflab.core.errors import shown, together
     from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.mapping import known_as
+    from coeflab.tables.parts import columns_by_name
 
-    names = {n: c.name for c in raw.columns for n in (c.name, *known_as(c))}
+    names = {name: key for name, (key, _) in columns_by_name(parts).items()}
     out: dict[str, ColumnMap] = {}
     complaints: list[InputError] = []
     for text in map_:
         fits = [n for n in names if text.startswith(f"{n}=")]
         name = max(fits, key=len) if fits else text.partition("=")[0].strip()
         if name not in names:
-            have = ", ".join(c.name for c in raw.columns)
-            complaints.append(InputError(f"no column {shown(name)}", f"one of {have}", file=raw.path, column="--map"))
+            have = ", ".join(dict.fromkeys(c.name for part in parts for c in part.raw.columns))
+            file = parts[0].raw.path
+            complaints.append(InputError(f"no column {shown(name)}", f"one of {have}", file=file, column="--map"))
             continue
         try:
             out[names[name]] = read_column_map(text[len(name) + 1 :])

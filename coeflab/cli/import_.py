@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import complete, show
-from coeflab.cli.draft import MOST, Draft, of_runs, print_list, said_on_command_line
+from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,8 +54,11 @@ def command(
         autocompletion=complete.importers,
         help="Read it with this importer (coeflab formats importers).",
     ),
-    name: str = typer.Option(
-        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    name: list[str] = typer.Option(
+        [],
+        "--name",
+        metavar="PATTERN",
+        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
     ),
     runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
     state: Path = typer.Option(
@@ -76,7 +79,6 @@ def command(
     from coeflab.core.files import typed, write_all
     from coeflab.tables.form import of_campaign
     from coeflab.tables.imported import checked, contents
-    from coeflab.tables.mapping import assigned
     from coeflab.tables.settings import assumed
 
     file = typed(path)
@@ -90,20 +92,14 @@ def command(
         draft.asked()
     else:
         draft.unasked(_typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force), accept)
-    raw, settings = draft.raw, draft.settings
-    known = assigned(raw, draft.found.mapping)
-    made = contents(raw, draft.importer, said.options, known, draft.found.mapping, of_campaign(settings))
-    table = checked(made, raw, draft.found.mapping)
+    filled = draft.filled()
+    made = contents(filled, of_campaign(draft.settings), file)
+    tables = checked(made, filled)
     write_all(out, made)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
-    _written(out, table)
+    _written(out, [t.file for t in filled], tables)
     failed = _first_slopes(out)
-    others = [s for s in draft.sheets if s != said.options.get("sheet")]
-    print_list(
-        "The other sheets, with the answers of this one",
-        [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
-    )
     if failed:
         raise typer.Exit(1)
 
@@ -117,39 +113,30 @@ def _named_after(file: Path) -> Path:
 
 def _typed_so_far(
     path: str, out: Path, map_: Sequence[str], set_: Sequence[str], mapping: Path | None, option: Sequence[str], as_: str,
-    name: str, runs: Path | None, state: Path | None, force: bool,
+    name: Sequence[str], runs: Path | None, state: Path | None, force: bool,
 ) -> list[str]:  # fmt: skip
     """The words of the command as they were typed, without what was left open."""
     words = [shlex.quote(path)]
-    for flag, said in (("--as", as_), ("--name", name), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
+    for flag, said in (("--as", as_), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
         words += [f"{flag} {shlex.quote(str(said))}"] if said else []
-    for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
-        words += [f"{flag} {shlex.quote(text)}" for text in many if "?" not in text.partition("=")[2]]
+    for flag, many in (("--name", name), ("--option", option), ("--map", map_), ("--set", set_)):
+        words += [
+            f"{flag} {shlex.quote(text)}" for text in many if flag == "--name" or "?" not in text.partition("=")[2]
+        ]
     return [*words, *["--force"] * force, f"--out {shlex.quote(str(out))}"]
 
 
-def _of_sheet(path: str, sheet: str, out: Path, mapping: Path | None = None) -> str:
-    """The command that imports one sheet into a folder of its own."""
-    from coeflab.core.wording import identifier
-
-    words = ["coeflab", "import", path, "--option", f"sheet={sheet}", *(["--mapping", str(mapping)] if mapping else [])]
-    return shlex.join([*words, "--out", f"{out}_{identifier(sheet)}"])
-
-
-def _written(out: Path, table: ForceTable) -> None:
+def _written(out: Path, files: Sequence[str], tables: Sequence[ForceTable]) -> None:
     """What was written, and what of it no fit uses."""
-    show.text(f"Written: {out / 'table.csv'} ({len(table)} rows), campaign.toml, mapping.toml")
-    show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
-    rows: dict[str, list[str]] = {}
-    for e in table.exclusions:
-        said = rows.setdefault(table.labels[e.row], [])
-        said += [e.component or "row"] if (e.component or "row") not in said else []
-    each = [
-        row if set(said) in ({"row"}, set(table.forces)) else f"{row} ({', '.join(said)})" for row, said in rows.items()
-    ]
-    if each:
-        more = f" and {len(each) - MOST} more" * (len(each) > MOST)
-        show.sentence(f"  kept out of fits, marked or without a number in the file: {', '.join(each[:MOST])}{more}")
+    from coeflab.report.tables.results import unused
+
+    several = len(tables) > 1
+    sizes = [f"{file} ({len(table)} rows)" for file, table in zip(files, tables, strict=True)]
+    show.text(f"Written: {out / sizes[0]}{''.join(f', {one}' for one in sizes[1:])}, campaign.toml, mapping.toml")
+    for file, table in zip(files, tables, strict=True):
+        of = f"{file}: " * several
+        show.sentence(f"  {of}varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
+    show.sentence(unused(tables))
     show.text()
 
 
@@ -200,7 +187,6 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        show.sentence(tables.unused(study.tables))
         show.table(replace(
             found, title="First slopes, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),

@@ -33,8 +33,11 @@ def command(
     density: float = typer.Option(
         1000.0, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
     ),
-    name: str = typer.Option(
-        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    name: list[str] = typer.Option(
+        [],
+        "--name",
+        metavar="PATTERN",
+        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
     ),
     runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
@@ -66,7 +69,12 @@ def command(
         )
     every = [*option, *of_runs(name, runs)]
     if as_ or every or _is_raw(table):
-        given = [("--as", as_), ("--name", name), ("--runs", str(runs or "")), *(("--option", o) for o in option)]
+        given = [
+            ("--as", as_),
+            *(("--name", n) for n in name),
+            ("--runs", str(runs or "")),
+            *(("--option", o) for o in option),
+        ]
         _raw(table, as_, every, json, [(flag, said) for flag, said in given if said])
         return
     _tables(table, json, strict, rows)
@@ -93,28 +101,32 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     """
     import shlex
 
-    from coeflab.cli.draft import described, options_of
+    from coeflab.cli.draft import described, options_of, print_list
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.form import form, open_lines, screen
-    from coeflab.tables.questions import understood
-    from coeflab.tables.reading import importer_of, read_raw
-    from coeflab.tables.settings import stated_settings
+    from coeflab.tables.form import open_lines, screen
+    from coeflab.tables.parts import (
+        form_together,
+        read_parts,
+        stated_together,
+        understood_together,
+        with_shared_words,
+    )
 
     path = located(table, "cfd_data")
-    importer = importer_of(path, importer)
     options = options_of(option)
     try:
         with show.narrated(), show.progress(json) as say:
-            raw = read_raw(path, importer, options, say)
+            parts, chosen = read_parts(path, importer, options, say)
     except InputError as why:
-        if _is_run(path, importer):
-            _run(path, importer, options, json, why)
+        if known := _run_importer(path, importer):
+            _run(path, known, options, json, why)
             return
         raise
-    settings = stated_settings(raw)
-    found = understood(raw, {}, settings)
-    lines = form(raw, found, settings)
+    parts = with_shared_words(parts)
+    settings = stated_together(parts)
+    founds = understood_together(parts, {}, settings)
+    lines = form_together(parts, founds, settings, whole=path.resolve().name)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
     following = " ".join(
         ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given), f"--out {out}"]
@@ -123,20 +135,33 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
         from coeflab.report.tables.raw_tables import as_json
 
         missing = [{"argument": one.argument, "about": one.about} for one in open_lines(lines)]
-        show.json_object(as_json(raw, importer, found.proposals, found.shows) | {"missing": missing, "next": following})
+        every = [
+            as_json(part.raw, part.importer, found.proposals, found.shows) | ({"name": part.name} if part.name else {})
+            for part, found in zip(parts, founds, strict=True)
+        ]
+        told = every[0] if len(every) == 1 else {"path": str(path), "tables": every}
+        show.json_object(told | {"missing": missing, "next": following})
         return
-    described(raw, importer, found)
+    for part, found in zip(parts, founds, strict=True):
+        described(part, found)
+    print_list("Not taken", [text for one in chosen for text in one.left])
     for line in screen(lines, (), min(show.width(), 100)):
         show.lines(line)
     show.text()
     show.command_line("Next", following)
 
 
-def _is_run(path: Path, importer: str) -> bool:
+def _run_importer(path: Path, importer: str) -> str:
+    """The importer of runs that a path is a run of; empty where it is none."""
     from coeflab.tables.importers import IMPORTERS
+    from coeflab.tables.reading import importer_of
 
-    plugin = IMPORTERS.load(importer)
-    return plugin.run is not None and plugin.recognises(path)
+    try:
+        name = importer_of(path, importer)
+    except InputError:
+        return ""
+    plugin = IMPORTERS.load(name)
+    return name if plugin.run is not None and plugin.recognises(path) else ""
 
 
 def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, missing: InputError) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
-    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.motion.manoeuvre import Manoeuvre, Simulation
     from coeflab.motion.multibody.chain import Chain
     from coeflab.motion.trajectory import Trajectory
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 TABLES = ("csv", "parquet")
-TAKEN_BY_ARM = {"file", "current", "record", "to", "out", "json"}
+TAKEN_BY_ARM = {"file", "manoeuvre", "current", "record", "to", "out", "json"}
 
 
 def command(
@@ -61,8 +62,8 @@ def command(
     """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
-    See --help-options. A vehicle with an arm makes the phases of its body.toml and takes --record, --current, --method and
-    --tolerance. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
+    See --help-options. A vehicle with an arm makes the phases of its body.toml, or --manoeuvre free_motion, station_keeping or
+    end_effector_track. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
     was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written.
     """
     from coeflab.cli.fit import further
@@ -86,11 +87,11 @@ def command(
         typed = _typed(ctx)
         if strange := sorted(typed - TAKEN_BY_ARM):
             raise InputError(
-                f"--{strange[0]} for a vehicle with an arm, which makes the [[phase]] tables of its body.toml",
-                "--record, --current, --to, --out, --json, or an option of --help-options", column=f"--{strange[0]}",
+                f"--{strange[0]} for a vehicle with an arm",
+                "--manoeuvre, --record, --current, --to, --out, --json, or an option of --help-options", column=f"--{strange[0]}",
             )  # fmt: skip
         of_arm = current_of(current) | ({"record": record} if "record" in typed else {}) | dict(further(ctx.args))
-        _arm(body, of_arm, to, out, json)
+        _arm(body, manoeuvre if "manoeuvre" in typed else "phases", of_arm, to, out, json)
         return
     parameters = read_parameter_file(file)
     given = {"integrator": integrator, "step": step, "record": record}
@@ -123,17 +124,29 @@ def _typed(ctx: typer.Context) -> set[str]:
 
 
 def _explain_arm() -> None:
-    """Options of an arm's motion, and the keys of its phases."""
-    from coeflab.bodies.arm_keys import ArmPhaseKeys, StartKeys
+    """Manoeuvres of an arm and their options, those of its motion, and the keys of its phases."""
+    from coeflab.bodies.arm_keys import ArmPhaseKeys, ControllerKeys, StartKeys
     from coeflab.cli.formats import explain
     from coeflab.core.declarations import meanings, taken
+    from coeflab.core.options import described
     from coeflab.core.table import Table
+    from coeflab.motion.multibody.manoeuvres import MANOEUVRES
     from coeflab.motion.simulators import SIMULATORS
 
+    named = tuple((f"--manoeuvre {name}", one.summary) for name, one in MANOEUVRES.items())
+    notes = ("Without --manoeuvre: phases.",)
+    show.table(
+        Table("Manoeuvres of a vehicle with an arm", ("option", "what it does"), named, notes, frozenset({0, 1}))
+    )
+    for name, one in MANOEUVRES.items():
+        own = tuple((o.name, o.takes, o.default, o.meaning) for o in described(one.options))
+        if own:
+            heads = ("option", "takes", "default", "meaning")
+            show.table(Table(f"Options of {name}", heads, own, (), frozenset({0, 1, 2, 3})))
     explain(SIMULATORS, "arm")
     rows = [
         (f"{table}{key}", takes.words, meanings(kind)[key])
-        for table, kind in (("[[phase]] ", ArmPhaseKeys), ("[start] ", StartKeys))
+        for table, kind in (("[[phase]] ", ArmPhaseKeys), ("[start] ", StartKeys), ("[controller] ", ControllerKeys))
         for key, takes in taken(kind).items()
     ]
     notes = ("All keys of a body.toml of an arm: docs/files.md; a whole one: geometry/urv_puma.",)
@@ -152,25 +165,13 @@ def arm_at(file: Path) -> Path | None:
     return None
 
 
-def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
-    """The phases of a vehicle with an arm."""
-    from coeflab.core.errors import InputError
+def _arm(body: Path, name: str, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
+    """A motion of a vehicle with an arm."""
     from coeflab.core.files import write_all
-    from coeflab.core.text.toml import read_toml
-    from coeflab.motion.multibody.arm_file import BODY, read_arm
-    from coeflab.motion.simulators import SIMULATORS
     from coeflab.motion.trajectory import Ended
     from coeflab.report.tables.motion import arm_phases, columns, motion_csv, motion_parquet
 
-    chain, manoeuvre = read_arm(body)
-    try:
-        with SIMULATORS.guarded("arm"):
-            moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
-    except InputError as why:
-        if why.file is not None or why.column is None or not why.column.startswith("phase["):
-            raise
-        toml = read_toml(body / BODY if body.is_dir() else body)
-        raise toml.fail(why.column, why.found, why.expected, why.advice) from None
+    chain, manoeuvre, moved = _moved(body, name, options)
     table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
     content = (
         {} if out is None else {f"{manoeuvre.name}.{to}": table, **_arm_pictures(body, chain, manoeuvre.name, moved)}
@@ -193,16 +194,55 @@ def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: b
         raise typer.Exit(1)
 
 
+def _moved(body: Path, name: str, options: dict[str, Any]) -> tuple[Chain, Manoeuvre, Trajectory]:
+    """Read a body.toml and make a manoeuvre; what its keys are to blame for names their lines."""
+    from coeflab.core.errors import InputError
+    from coeflab.core.options import described
+    from coeflab.core.text.toml import read_toml
+    from coeflab.motion.multibody.arm_file import BODY, read_arm
+    from coeflab.motion.multibody.manoeuvres import MANOEUVRES
+    from coeflab.motion.simulators import SIMULATORS
+
+    own = {o.name for o in described(MANOEUVRES[name].options)} if name in MANOEUVRES else set()
+    simulator = SIMULATORS.load("arm")
+    known = own | {o.name for o in described(simulator.Options)}
+    if name in MANOEUVRES and (strange := [option for option in options if option not in known]):
+        expected = f"one of {', '.join(sorted(known))}"
+        option = f"--{strange[0].replace('_', '-')}"
+        raise InputError(f"{option} for {name}", expected, column=option, advice="See --help-options.")
+    texts = {k: v if k in ("lasts", "stays") else str(v) for k, v in options.items() if k in own}
+    arm = read_arm(body, name, texts)
+    stated = {f.name: getattr(arm.controller, f.name) for f in fields(arm.controller)}
+    stated["knows_current"] = "yes" if arm.controller.knows_current else "no"
+    try:
+        with SIMULATORS.guarded("arm"):
+            how = {k: v for k, v in options.items() if k not in own}
+            return arm.chain, arm.manoeuvre, simulator.simulate(arm.chain, arm.manoeuvre, stated | how)
+    except InputError as why:
+        column = "" if why.file is not None or why.column is None else why.column
+        toml = read_toml(body / BODY if body.is_dir() else body)
+        place, _, key = column.partition(".")
+        if column == "thruster":
+            raise toml.fail(column, why.found, why.expected, why.advice) from None
+        if not place.startswith("phase["):
+            raise
+        place = arm.places[int(place[6:-1])]
+        if not place:
+            raise InputError(why.found, why.expected, column=f"--{key}", advice=why.advice) from None
+        raise toml.fail(f"{place}.{key}", why.found, why.expected, why.advice) from None
+
+
 def _arm_pictures(body: Path, chain: Chain, name: str, moved: Trajectory) -> dict[str, bytes]:
     """Joints, torques, thrusts and the path of the end effector as a drawing, and a page that plays the motion."""
     from coeflab.bodies.readers.arm import read
     from coeflab.report.figures.arm import animation, hull_of, simulated, simulated_sheet
 
     motion = simulated(chain, hull_of(read(body / "body.toml" if body.is_dir() else body)), moved)
-    said = f"Motion of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
+    what = "motion" if name == "arm_motion" else name.replace("_", " ")
+    said = f"{what.capitalize()} of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
     return {
         f"{name}.svg": simulated_sheet(motion, moved),
-        f"{name}.html": animation(motion, f"Motion of {chain.name}", said),
+        f"{name}.html": animation(motion, f"{what.capitalize()} of {chain.name}", said),
     }
 
 

@@ -69,11 +69,17 @@ class Contribution:
         ``forces(nu, angles)``: (n, 6) X, Y, Z, K, M, N, N and N m, FRD, about the datum, at (n, 6) velocities u, v, w, p, q, r
         of the datum through still water; ``angles`` holds (n,) control angles by name, rad.
     share : float
-        95 % half-width over the value, from the scatter that the source states; 0.3 is 30 %.
+        95 % half-width over the value, from the scatter that the source states; 0.3 is 30 %. One error for all of a kind.
     citation, place : str
         Key of a work and page or equation.
     outside : str
         Why the part lies outside the range of the source; empty where it is inside.
+    each : float
+        As ``share``, of what one body's parts scatter apart from others': one error for all of a kind in one group.
+    lever : float
+        95 % half-width of where the force acts along x, m; one error for all of a kind in one group.
+    group : str
+        Parts that err together; the part itself where empty.
     """
 
     part: str
@@ -84,6 +90,9 @@ class Contribution:
     citation: str
     place: str
     outside: str = ""
+    each: float = 0.0
+    lever: float = 0.0
+    group: str = ""
 
 
 @brief
@@ -132,6 +141,7 @@ METHODS = Registry("coeflab.estimates", "method of estimates", EstimateMethod, _
 KINDS_OF_ESTIMATE = "semi-empirical, from the shape"
 STEP, GRID = 2e-3, (0.1, 0.2, 0.3)
 NOTHING = 1e-9  # of the largest value
+LEVERS = {4: (2, -1.0), 5: (1, 1.0)}  # M = -x Z, N = x Y
 PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
 
 
@@ -179,7 +189,7 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     -----
     Alternatives of one part and kind: their mean, with half-width range / sqrt(3) (95 % of a rectangular distribution
     between the extremes has standard deviation range / (2 sqrt 3)). Scatter of one kind is common to all of its parts;
-    kinds are independent.
+    what a source states of single bodies is an error of each group, and so is the place of its force. Kinds are independent.
     """
     scaling = body.scaling or _overall(body, outline)
     point = body.reference_point
@@ -188,7 +198,8 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     )
     symbols = tuple(f.symbol for f in functionals)
     units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])
-    rows = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
+    both = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
+    rows, levered = [b[0] for b in both], [b[1] for b in both]
     kinds: dict[str, dict[str, list[int]]] = {}
     for i, c in enumerate(contributions):
         kinds.setdefault(c.kind, {}).setdefault(c.part, []).append(i)
@@ -197,19 +208,26 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     shares: dict[str, dict[str, float]] = {s: {} for s in symbols}
     for kind, parts in kinds.items():
         common = np.zeros(len(symbols))
+        apart_by: dict[tuple[str, str], NDArray[np.float64]] = {}
         alternatives: dict[str, NDArray[np.float64]] = {}
         for part, members in parts.items():
             mean = np.mean([rows[i] for i in members], axis=0)
             value += mean
             common += mean * float(np.mean([contributions[i].share for i in members]))
+            first = contributions[members[0]]
+            place = np.mean([levered[i] * contributions[i].lever for i in members], axis=0)
+            for what, error in (("size", mean * first.each), ("place", place)):
+                at = (what, first.group or part)
+                apart_by[at] = apart_by.get(at, np.zeros(len(symbols))) + error
             for s, v in zip(symbols, mean, strict=True):
                 if v != 0.0:
                     shares[s][f"{part}, {kind}"] = float(v)
             for i in members if len(members) > 1 else ():
                 key = contributions[i].method
                 alternatives[key] = alternatives.get(key, np.zeros(len(symbols))) + rows[i] - mean
-        covariance += np.outer(common, common) / 4.0
-        scatter += common**2
+        for error in (common, *apart_by.values()):
+            covariance += np.outer(error, error) / 4.0
+            scatter += error**2
         if alternatives:
             apart = np.array(list(alternatives.values()))
             width = (apart.max(axis=0) - apart.min(axis=0)) / np.sqrt(3.0)
@@ -340,16 +358,24 @@ def _coupled(length: float, speed: float, slide: str, turn: str, components: lis
     return out
 
 
-def _derived(functionals: tuple[Functional, ...], forces: Forces, units: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(k,) primed coefficients of one law of forces; each set of motions is computed once."""
+def _derived(
+    functionals: tuple[Functional, ...], forces: Forces, units: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(k,) primed coefficients of one law of forces, and what they gain if the force acts 1 m further forward.
+
+    Each set of motions is computed once.
+    """
     known: dict[tuple[int, tuple[str, ...]], NDArray[np.float64]] = {}
-    out = np.empty(len(functionals))
+    out, gained = np.empty(len(functionals)), np.zeros(len(functionals))
     for i, f in enumerate(functionals):
         key = (id(f.nu), tuple(f.angles))
         if key not in known:
             known[key] = forces(f.nu, f.angles)
         out[i] = known[key][:, f.component] @ f.weights
-    return out / units
+        if f.component in LEVERS:
+            row, sign = LEVERS[f.component]
+            gained[i] = sign * known[key][:, row] @ f.weights
+    return out / units, gained / units
 
 
 def _counts(symbol: str, value: float, variance: float, values: NDArray[np.float64], symbols: tuple[str, ...]) -> bool:

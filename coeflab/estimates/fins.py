@@ -1,7 +1,8 @@
 """Fins, sails and control surfaces: lift of low aspect on a hull, its loss behind other foils, cross-flow and induced drag.
 
 Free-stream lift of foil and mirror image by Whicker & Fehlner; carried over to and from the hull by slender-body theory
-(Pitts, Nielsen & Kaattari); in the hull's boundary layer; behind the tip vortices of the foils ahead.
+(Pitts, Nielsen & Kaattari), in the free stream as they have it and in the hull's boundary layer; behind the tip vortices of
+the foils ahead. A foil that turns with the body has the incidence of its three-quarter chord (Glauert 1926).
 """
 
 from __future__ import annotations
@@ -21,6 +22,10 @@ summary = "fins and sails of low aspect on a hull, control surfaces, loss behind
 citations = ("whicker1958", "pitts1957", "glauert1926")
 
 LIFT_SHARE, DRAG_SHARE, WASH_SHARE, CONTROL_SHARE = 0.20, 0.50, 0.50, 0.20
+EACH, PLACE = 0.10, 0.02  # NACA 1307: lifts within 10 %, centres of pressure within 0.02 of the body's length
+STRIPS = 8
+CENTRE = 4.0 / (3.0 * np.pi)  # of an elliptic load
+ALONG = 0.9
 ASPECTS = (0.5, 4.0)  # tested: 1 to 3
 TIPS = {"square tips": (0.1, 1.6), "faired tips": (0.1, 0.7)}  # C_Dc = a + b taper
 OSWALD = 0.9
@@ -53,6 +58,8 @@ class FoilForce:
     ----------
     centre, axis : (3,) array
         Where its own lift acts, and where that which the hull carries does, m.
+    half : float
+        Half of its chord, m: its incidence is that of a point so far behind; astern the two change places.
     normal : (3,) array
         Unit, across foil and x.
     own, carried : float
@@ -67,6 +74,7 @@ class FoilForce:
 
     centre: NDArray[np.float64]
     axis: NDArray[np.float64]
+    half: float
     normal: NDArray[np.float64]
     own: float
     carried: float
@@ -85,8 +93,11 @@ class FoilForce:
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         ahead = nu[:, 0]
-        at_axis = local(nu, self.axis) @ self.normal
-        rolling = local(nu, self.centre) @ self.normal - at_axis  # the hull carries none of a rolling foil's lift
+        astern = ahead < 0.0
+        behind = np.array([self.half, 0.0, 0.0])
+        seen = local(nu, self.axis) @ self.normal
+        rolling = local(nu, self.centre) @ self.normal - seen  # the hull carries none of a rolling foil's lift
+        at_axis = np.where(astern, seen, local(nu, self.axis - behind) @ self.normal)
         angle = angles.get(self.control, np.zeros(len(nu))) if self.control else np.zeros(len(nu))
         pressure, speed = 0.5 * self.density, np.abs(ahead)
         lift = speed * (self.own * (at_axis + rolling) + self.turned * ahead * angle)
@@ -96,6 +107,7 @@ class FoilForce:
         incidence = across * (self.own + self.carried) + ahead * angle * (self.turned + self.turned_carried)
         along = pressure * np.sign(ahead) * incidence * (across - self.induced * incidence / self.lifting)
         out = acting(force, self.normal, self.centre) + acting(beside, self.normal, self.axis)
+        out[:, 3:] -= np.cross(behind, (astern * (force + beside))[:, None] * self.normal)
         return out + acting(along, np.array([1.0, 0.0, 0.0]), self.axis)
 
 
@@ -110,8 +122,8 @@ class Wash:
         Where the velocity is, where the loss acts, m.
     source, normal : (3,) array
         Unit normals of the foil ahead and of the group.
-    area : float
-        Per 1/2 rho u and cross velocity, m^2.
+    area, roll : float
+        Per 1/2 rho u and cross velocity: of the force, m^2, and of the moment about x by which the foils differ, m^3.
     control : str
         Of the foil ahead.
     turned : float
@@ -124,6 +136,7 @@ class Wash:
     source: NDArray[np.float64]
     normal: NDArray[np.float64]
     area: float
+    roll: float
     control: str
     turned: float
     density: float
@@ -137,8 +150,10 @@ class Wash:
         across = local(nu, self.ahead) @ self.source
         if self.control:
             across = across + self.turned * nu[:, 0] * angles.get(self.control, np.zeros(len(nu)))
-        force = 0.5 * self.density * np.maximum(nu[:, 0], 0.0) * self.area * across
-        return acting(force, self.normal, self.place)
+        pressure = 0.5 * self.density * np.maximum(nu[:, 0], 0.0) * across
+        out = acting(self.area * pressure, self.normal, self.place)
+        out[:, 3] += self.roll * pressure
+        return out
 
 
 def local(nu: Array, place: Array) -> Array:
@@ -164,11 +179,9 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
     flows: dict[int, HullFlow] = {}
     out: list[Contribution] = []
     for group in groups:
-        hull = carrier(outline, group.foils[0].stand, group.quarter)
-        flow = _flow(hull, water, flows)
-        share = 1.0 if flow is None else _pressure(flow, group)
+        flow = _flow(carrier(outline, group.foils[0].stand, group.quarter), water, flows)
         for foil in group.foils:
-            out += _of_foil(foil, group, share, water)
+            out += _of_foil(foil, group, flow, water)
     for ahead in groups:
         for behind in groups:
             out += _washes(outline, ahead, behind, water, flows)
@@ -187,38 +200,47 @@ def _pressure(flow: HullFlow, group: FinGroup) -> float:
     return flow.pressure_share(group.quarter, group.radius, 0.0, group.reach - group.radius)
 
 
-def _of_foil(foil: Foil, group: FinGroup, pressure: float, water: Water) -> list[Contribution]:
+def _named(group: FinGroup) -> str:
+    return " and ".join(f.name for f in group.foils)
+
+
+def _of_foil(foil: Foil, group: FinGroup, flow: HullFlow | None, water: Water) -> list[Contribution]:
     across = (foil.tip - foil.root) * np.array([0.0, 1.0, 1.0])
     direction = across / np.linalg.norm(across)
     normal = np.cross([1.0, 0.0, 0.0], direction)
-    reach = 4.0 / (3.0 * np.pi)  # centre of an elliptic load
-    centre = foil.root + reach * (foil.tip - foil.root)
+    centre = foil.root + CENTRE * (foil.tip - foil.root)
     axis = np.array([centre[0], *foil.stand])
-    lift = group.slope * foil.area * pressure
-    whole = lift * group.carried
-    effect = foil.sign * flap_effect(foil.flap) * lift * group.turned if foil.control else 0.0
+    half = 0.5 * (foil.root_chord + CENTRE * (foil.tip_chord - foil.root_chord))
     outside = "" if ASPECTS[0] <= group.aspect <= ASPECTS[1] else (
         f"aspect {group.aspect:.2g} with mirror image, outside {ASPECTS[0]:g} to {ASPECTS[1]:g}")  # fmt: skip
     own = group.own
     induced = group.slope / (OSWALD * np.pi * group.aspect)
     place = "equation 1; NACA 1307, slender-body carry-over"
-    made = [("fin lift", "fins", 0.0, LIFT_SHARE, False)]
-    made += [("control", "fins", 0.0, CONTROL_SHARE, True)] if foil.control else []
-    out = [
-        Contribution(
-            foil.name, kind, method,
-            FoilForce(
-                centre, axis, normal, 0.0 if control else whole * own, 0.0 if control else whole * (1.0 - own),
-                effect * own if control else 0.0, effect * (1.0 - own) if control else 0.0, whole, induced, cross,
-                foil.control if control else "", water.density,
-            ),
-            share, "whicker1958, pitts1957" + (", glauert1926" if control and foil.flap < 1.0 else ""), place, outside,
-        )
-        for kind, method, cross, share, control in made
-    ]  # fmt: skip
+    streams = {"free stream": 1.0} if flow is None else {"free stream": 1.0, "boundary layer": _pressure(flow, group)}
+    lever = 0.0 if flow is None else PLACE * flow.hull.length
+    works = "whicker1958, pitts1957" + (", glauert1926" if foil.control and foil.flap < 1.0 else "")
+    out = []
+    for stream, pressure in streams.items():
+        whole = group.slope * foil.area * pressure * group.carried
+        effect = foil.sign * flap_effect(foil.flap) * whole / group.carried * group.turned if foil.control else 0.0
+        lift = FoilForce(
+            centre, axis, half, normal, whole * own, whole * (1.0 - own), 0.0, 0.0, whole, induced, 0.0, "", water.density
+        )  # fmt: skip
+        turned = FoilForce(
+            centre, axis, half, normal, 0.0, 0.0, effect * own, effect * (1.0 - own), whole, induced, 0.0, foil.control,
+            water.density,
+        )  # fmt: skip
+        kinds = [("fin lift", lift, LIFT_SHARE)] + ([("control", turned, CONTROL_SHARE)] if foil.control else [])
+        out += [
+            Contribution(
+                foil.name, kind, f"fins, {stream}", force, share, works, place, outside, EACH, lever, _named(group)
+            )
+            for kind, force, share in kinds
+        ]
+    pressure = list(streams.values())[-1]
     for tips in TIPS:
         cross = cross_flow_drag(foil.tip_chord / foil.root_chord, tips) / group.aspect * foil.area * pressure
-        force = FoilForce(centre, axis, normal, 0.0, 0.0, 0.0, 0.0, whole, 0.0, cross, "", water.density)
+        force = FoilForce(centre, axis, half, normal, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, cross, "", water.density)
         out.append(
             Contribution(
                 foil.name, "fin cross-flow", f"fins, {tips}", force, DRAG_SHARE, "whicker1958", "C_Dc", outside
@@ -230,37 +252,65 @@ def _of_foil(foil: Foil, group: FinGroup, pressure: float, water: Water) -> list
 def _washes(
     outline: Outline, ahead: FinGroup, behind: FinGroup, water: Water, flows: dict[int, HullFlow]
 ) -> list[Contribution]:
-    """What the tip vortices of each foil of one group take from another behind it on the same hull and in the same plane."""
+    """What the tip vortices of each foil of one group do to another group behind it on the same hull."""
     hull = carrier(outline, ahead.foils[0].stand, ahead.quarter)
     chord = max(f.root_chord for f in ahead.foils)
     if hull is None or carrier(outline, behind.foils[0].stand, behind.quarter) is not hull:
         return []
-    if behind.quarter > ahead.quarter - chord or abs(float(ahead.normal @ behind.normal)) < 0.9:
+    if behind.quarter > ahead.quarter - chord or behind.radius <= 0.0:
         return []
     flow = _flow(hull, water, flows)
-    if flow is None or behind.radius <= 0.0:
+    if flow is None:
         return []
     out = []
+    streams = {"free stream": (1.0, 1.0), "boundary layer": (_pressure(flow, ahead), _pressure(flow, behind))}
     for foil in ahead.foils:
         across = (foil.tip - foil.root) * np.array([0.0, 1.0, 1.0])
         direction = across / np.linalg.norm(across)
         height = ahead.radius + np.pi / 4.0 * (ahead.reach - ahead.radius)  # NACA 1307: vortex of an elliptic load
-        lift = ahead.slope * foil.area * ahead.carried * _pressure(flow, ahead)
-        strength = lift / (height - ahead.radius**2 / height)
-        side = float(np.sign(direction @ behind.direction))
-        passed = strength * (height - behind.radius**2 / height) * behind.seen(side * height)
-        area = passed * behind.finite * _pressure(flow, behind)
         normal = np.cross([1.0, 0.0, 0.0], direction)
-        centre = foil.root + 4.0 / (3.0 * np.pi) * (foil.tip - foil.root)
-        source = np.array([centre[0], *foil.stand])
+        centre = foil.root + CENTRE * (foil.tip - foil.root)
+        half = 0.5 * (foil.root_chord + CENTRE * (foil.tip_chord - foil.root_chord))
+        source = np.array([centre[0] - half, *foil.stand])
         place = np.array([behind.quarter, *behind.foils[0].stand])
         effect = foil.sign * flap_effect(foil.flap) * ahead.turned / ahead.carried if foil.control else 0.0
-        force = Wash(source, place, normal, normal, area, foil.control, effect, water.density)
-        part = " and ".join(f.name for f in behind.foils)
-        out.append(
-            Contribution(
-                f"{part} behind {foil.name}", "sidewash", "fins", force, WASH_SHARE, "pitts1957",
-                "trailing vortex at pi/4 of the exposed span, carried aft along x",
-            )
-        )  # fmt: skip
+        for stream, (first, second) in streams.items():
+            lift = ahead.slope * foil.area * ahead.carried * first
+            strength = lift / (height - ahead.radius**2 / height)
+            force, roll = _strips(behind, direction, height, strength * behind.slope * second)
+            if abs(float(ahead.normal @ behind.normal)) > ALONG:
+                side = float(np.sign(direction @ behind.direction))
+                passed = strength * (height - behind.radius**2 / height) * behind.seen(side * height)
+                force = passed * behind.finite * second * normal
+            area = float(np.linalg.norm(force))
+            towards = force / area if area > 0.0 else normal
+            wash = Wash(source, place, normal, towards, area, roll, foil.control, effect, water.density)
+            out.append(
+                Contribution(
+                    f"{_named(behind)} behind {foil.name}", "sidewash", f"fins, {stream}", wash, WASH_SHARE, "pitts1957",
+                    "trailing vortex at pi/4 of the exposed span, carried aft along x",
+                )
+            )  # fmt: skip
     return out
+
+
+def _strips(behind: FinGroup, direction: Array, height: float, strength: float) -> tuple[Array, float]:
+    """(3,) force and moment about x of foils by strips, in the flow of a vortex at a height along a direction and its image.
+
+    NACA 1307. Each strip has the incidence of the flow there; the hull has the vortex's image at r^2 / height.
+    """
+    force, roll = np.zeros(3), 0.0
+    for foil in behind.foils:
+        out = (foil.tip - foil.root) * np.array([0.0, 1.0, 1.0])
+        out /= np.linalg.norm(out)
+        normal = np.cross([1.0, 0.0, 0.0], out)
+        for step in (np.arange(STRIPS) + 0.5) / STRIPS:
+            arm = behind.radius + step * foil.span
+            chord = foil.root_chord + step * (foil.tip_chord - foil.root_chord)
+            flow = 0.0
+            for sign, far in ((-1.0, height), (1.0, behind.radius**2 / height)):
+                to = arm * out - far * direction
+                flow += sign / (4.0 * np.pi) * float(np.cross([1.0, 0.0, 0.0], to) @ normal) / float(to @ to)
+            area = strength * flow * chord * foil.span / STRIPS
+            force, roll = force + area * normal, roll + area * arm
+    return force, roll

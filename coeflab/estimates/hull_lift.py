@@ -156,10 +156,12 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
                  ("Hopkins", _cut(flow), "hopkins1951", "x0/l = 0.378 + 0.527 x1/l"),
                  ("displacement", _displaced(flow), "lighthill1960", "slender body with its displacement area"))  # fmt: skip
         for name, shed, work, place in works:
-            force = Shed(shed.flow, shed.start, shed.sway, shed.heave, shed.grows, _taken(outline, flow))
-            out.append(
-                Contribution(hull.name, "hull lift", f"hull_lift, {name}", force, SHED_SHARE, work, place, outside)
-            )
+            taken = _taken(outline, flow)
+            ways = {"": ()} if not taken else {", fins as NACA 1307": (), ", taken up by fins": taken}
+            for way, by in ways.items():
+                force = Shed(shed.flow, shed.start, shed.sway, shed.heave, shed.grows, by)
+                method = f"hull_lift, {name}{way}"
+                out.append(Contribution(hull.name, "hull lift", method, force, SHED_SHARE, work, place, outside))
     return tuple(out)
 
 

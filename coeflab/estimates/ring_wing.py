@@ -36,12 +36,15 @@ class RingForce:
     Attributes
     ----------
     centre : (3,) array
+    half : float
+        Of the chord, m: its incidence is that of a circle so far behind.
     sway, heave, cross : float
         Lift per 1/2 rho u^2 and incidence, in each direction, and drag across per 1/2 rho and velocity squared, m^2.
     density : float
     """
 
     centre: NDArray[np.float64]
+    half: float
     sway: float
     heave: float
     cross: float
@@ -53,12 +56,14 @@ class RingForce:
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         del angles
-        velocity = nu[:, :3] + np.cross(nu[:, 3:], self.centre)
+        astern = (nu[:, 0] < 0.0)[:, None]
+        behind = np.array([self.half, 0.0, 0.0])
+        velocity = nu[:, :3] + np.cross(nu[:, 3:], np.where(astern, self.centre, self.centre - behind))
         side, down = velocity[:, 1], velocity[:, 2]
         lift = np.abs(nu[:, 0])[:, None] * np.column_stack([np.zeros(len(nu)), self.sway * side, self.heave * down])
         drag = np.hypot(side, down)[:, None] * self.cross * velocity * np.array([0.0, 1.0, 1.0])
         force = -0.5 * self.density * (lift + drag)
-        return np.hstack([force, np.cross(self.centre, force)])
+        return np.hstack([force, np.cross(np.where(astern, self.centre - behind, self.centre), force)])
 
 
 def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
@@ -74,8 +79,8 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
         area = ring.diameter * ring.chord
         slope = ring_slope(ring.diameter / ring.chord) * area * _pressure(outline, ring, water)
         sway, heave = (slope * _behind_fins(outline, ring, row) for row in (1, 2))
-        lift = RingForce(ring.centre, sway, heave, 0.0, water.density)
-        drag = RingForce(ring.centre, 0.0, 0.0, PLATE * area, water.density)
+        lift = RingForce(ring.centre, ring.chord / 2.0, sway, heave, 0.0, water.density)
+        drag = RingForce(ring.centre, ring.chord / 2.0, 0.0, 0.0, PLATE * area, water.density)
         out += [
             Contribution(
                 ring.name, "ring lift", "ring_wing", lift, SHARE, "weissinger1955", "approximation for l below 5"

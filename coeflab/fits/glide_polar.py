@@ -5,6 +5,13 @@ the table's reference point; a is alpha = atan2(w, u). The paper does not say th
 degrees (in radians the glide has no such speed) [derived], so the fit gives both and `angle_unit_of` tells which of
 them a printed set is in.
 
+Along the body axes, with s = w/V = sin(a), the polar is a series that every reader of derivatives has; for beta = 0 and without the
+fifth order of s::
+
+    X = V^2 [-D0 + L0 s + (L1 + D0/2 - D2) s^2 + (L1/6 + D0/8 + D2/6) s^4]
+    Z = V^2 [-L0 - (L1 + D0) s + L0/2 s^2 + (L1/3 - D2) s^3]
+    M = V^2 [M0 + M1 s + M1/6 s^3]
+
 Coefficients that somebody printed, read from words and held against a fit.
 """
 
@@ -18,14 +25,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.options import one_of, parse_options, words
+from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import Domain, FittedModel, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
-from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
@@ -85,6 +92,20 @@ UNLIKELY = 0.01
 SLOPES = ("K_L", "K_D", "K_M")
 FREER = "Fit a narrower range of angles, or a polynomial over alpha."
 PRINTABLE = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
+SERIES = {
+    "X0": (0.0, 0.0, -1.0, 0.0, 0.0, 0.0),
+    "Xw": (1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    "Xww": (0.0, 1.0, 0.5, -1.0, 0.0, 0.0),
+    "Xwwww": (0.0, 1.0 / 6.0, 0.125, 1.0 / 6.0, 0.0, 0.0),
+    "Z0": (-1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    "Zw": (0.0, -1.0, -1.0, 0.0, 0.0, 0.0),
+    "Zww": (0.5, 0.0, 0.0, 0.0, 0.0, 0.0),
+    "Zwww": (0.0, 1.0 / 3.0, 0.0, -1.0, 0.0, 0.0),
+    "M0": (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
+    "Mw": (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+    "Mwww": (0.0, 0.0, 0.0, 0.0, 0.0, 1.0 / 6.0),
+}  # of L0 L1 D0 D2 M0 M1, per radian
+MUNK = {"Mw": 1.0, "Mwww": -0.5}  # (m3 - m1) u w in powers of w/V
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,11 +122,15 @@ class Options:
         than need be (``square``) or, with fewer rows that count, less sure (``constant``).
     printed : tuple of str
         Coefficients that somebody printed, such as ``K_L=9.5281 K_D=0.215``; the models then state their unit.
+    munk : float
+        Added mass along z less that along x, kg, where the table's M does not hold the Munk moment, as one from CFD or a tank does.
+        (m3 - m1) u w is then added to Mw and Mwww, which state whole moments; the models stay without it.
     """
 
     angle_unit: str = one_of("deg", "deg", "rad")
     noise: str = one_of("square", "square", "constant", "stated")
     printed: tuple[str, ...] = words()
+    munk: float = measured(0.0, -1e9, 1e9, "mass")
 
 
 @brief
@@ -235,6 +260,66 @@ def _per_unit(result: FitResult, slope: str) -> dict[str, tuple[float, float]] |
     return None
 
 
+def series(polar: Array, munk: float = 0.0) -> dict[str, float]:
+    """The polar along the body axes: SI factors of V^2 and powers of w/V, by the symbols of derivatives; see the module.
+
+    Parameters
+    ----------
+    polar : (6,) array
+        L0, L1, D0, D2, M0, M1, per radian.
+    munk : float
+        m3 - m1 of a Munk moment that M does not hold, kg.
+    """
+    return {s: float(np.dot(row, polar)) + munk * MUNK.get(s, 0.0) for s, row in SERIES.items()}
+
+
+def with_munk(table: ForceTable, munk: float) -> ForceTable:
+    """The table with the Munk moment (m3 - m1) u w in its M; ``munk`` is m3 - m1, kg."""
+    if not munk or "M" not in table.forces:
+        return table
+    whole = table.forces["M"] + munk * table.motion["u"] * table.motion["w"]
+    return replace(table, forces={**table.forces, "M": whole})
+
+
+def _derivatives(models: Sequence[FittedModel], scaling: Scaling, first: ForceTable, munk: float) -> CoefficientSet:
+    """The series of fitted models, primed, with what their scatter and form leave open; errors of two models are independent."""
+    place = {f"{name}/V^2": slice(2 * i, 2 * i + 2) for i, name in enumerate("LDM")}
+    polar, joint, scatter, worth = np.full(6, np.nan), np.zeros((6, 6)), np.zeros((6, 6)), [Status.NOT_DETERMINED] * 6
+    for m in models:
+        at = place[m.response]
+        polar[at] = m.fit.coefficients
+        joint[at, at], scatter[at, at] = (np.nan_to_num(f.covariance) for f in (m, replace(m, remainder=None)))
+        worth[at] = [m.worth(i)[1] for i in range(2)]
+    known = {s: np.array(row) for s, row in SERIES.items() if np.isfinite(polar[np.flatnonzero(row)]).all()}
+    values = series(np.nan_to_num(polar), munk)
+    units = {s: scaling.unit(s, first.conditions.density) for s in known}
+    rows = np.array([row / units[s] for s, row in known.items()])
+    covariance, random = rows @ joint @ rows.T, rows @ scatter @ rows.T
+    out = []
+    for i, (symbol, row) in enumerate(known.items()):
+        of = [worth[k] for k in np.flatnonzero(row)]
+        status = next((s for s in of if s is not Status.FORM_ASSUMED), Status.FORM_ASSUMED)
+        half = 2.0 * np.sqrt(np.array([covariance[i, i], random[i, i]]))
+        sure = status is Status.FORM_ASSUMED
+        parts = (
+            Parts(random=float(half[1]), model_form=float(np.sqrt(max(half[0] ** 2 - half[1] ** 2, 0.0))))
+            if sure
+            else Parts()
+        )
+        held = [m for m in models if any(row[place[m.response]])]
+        out.append(
+            Coefficient(
+                symbol=symbol, value=values[symbol] / units[symbol], u95=float(half[0]) if sure else None, status=status,
+                body=first.body, parts=parts, origin="fit", table=held[0].table,
+                campaign=first.campaign, n_points=min(m.n_points for m in held), citation=first.source.citation,
+                estimator=f"{' and '.join(m.response[0] for m in held)} of the polar along the body axes",
+            )
+        )  # fmt: skip
+        if not sure:
+            covariance[i, :] = covariance[:, i] = np.nan
+    return CoefficientSet(tuple(out), covariance, scaling, first.reference_point, first.datum, first.body)
+
+
 def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     """Whether printed coefficients of the polar are per degree or per radian, by the fit to the forces.
 
@@ -296,7 +381,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         Of one campaign, about one reference point. Rows with drift, rotation or deflected controls are left out. One
         speed is enough; that the force goes with V^2 is then assumed, which the result says.
     scaling : Scaling
-        Kept with the (empty) set of SNAME coefficients; the polar is dimensional.
+        Of the derivatives; the polar itself is dimensional.
     options : mapping
         See `Options`.
 
@@ -304,7 +389,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     -------
     FitResult
         Models of L/V^2, D/V^2 and, with a column M, M/V^2 over alpha in radians; then, unless they are not wanted, the
-        same per degree, over the columns ``alpha_deg`` and (for the domain) ``alpha``.
+        same per degree, over the columns ``alpha_deg`` and (for the domain) ``alpha``. The coefficients are the polar along the
+        body axes (see the module), primed, which simulations, exports and checks read.
 
     Raises
     ------
@@ -327,10 +413,15 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         fit="glide_polar",
         campaign=first.campaign,
         body=first.body,
-        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
+        coefficients=_derivatives(radians, scaling, first, chosen.munk),
         sweeps=(),
         citations=citations,
-        settings={"angle_unit": chosen.angle_unit, "noise": chosen.noise, "printed": " ".join(chosen.printed)},
+        settings={
+            "angle_unit": chosen.angle_unit,
+            "noise": chosen.noise,
+            "printed": " ".join(chosen.printed),
+            **({"munk": f"{chosen.munk!r}"} if chosen.munk else {}),
+        },
         models=models,
     )
     if not printed:

@@ -21,7 +21,7 @@ from coeflab.core.wording import file_stem
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.rigid_body import momentum_force
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.vehicle.force_law import force_of_tables
+from coeflab.vehicle.force_law import by_coefficients, force_of_tables
 from coeflab.vehicle.inertia import COMPUTED, MEASURED, WaterInertia, known_mass, stated_accelerations, water_inertia
 from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -64,7 +64,7 @@ def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterIn
     """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
     that are not in the added mass it is given, and an added mass of another body.
     """
-    tables = tuple(_table(m) for m in parameters.models if not _by_coefficients(m, parameters))
+    tables = tuple(_table(m) for m in parameters.models if not by_coefficients(m, parameters))
     unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
     out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, water))]
@@ -96,14 +96,6 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
             f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"
         )
     return out
-
-
-def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
-    """Whether coefficients of the file state the same force component."""
-    component = model.response.removesuffix("/V^2").removesuffix("'")
-    return component in COMPONENTS and any(
-        c.value is not None and derivative(c.symbol).component == component for c in parameters.coefficients
-    )
 
 
 def _table(model: ParameterModel) -> str:

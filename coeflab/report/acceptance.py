@@ -5,6 +5,7 @@ Numbers beside what they are held against, as tables.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import copysign, inf, nan
@@ -35,9 +36,9 @@ class Basis(StrEnum):
 
 BASES: dict[Basis, str] = {
     Basis.PREDICTED: "published, and not used to make our model",
-    Basis.PRINTED: "printed by the paper, and computed here from other printed numbers",
-    Basis.CALIBRATION: "our model was calibrated on this number, so that agreement proves nothing",
-    Basis.CONSISTENCY: "computed here in a second way, or by theory; the paper does not print it",
+    Basis.PRINTED: "published, and computed here from other published numbers",
+    Basis.CALIBRATION: "our model was fitted to these numbers, so agreement proves nothing",
+    Basis.CONSISTENCY: "not published: computed here in a second way, or by theory",
 }
 
 
@@ -263,8 +264,7 @@ def tables(acceptance: Acceptance) -> tuple[Table, ...]:
 
 
 def _table(t: ComparedTable) -> Table:
-    bases = dict.fromkeys(r.basis for r in t.rows)
-    notes = (f"{t.source}. {'; '.join(f'{b}: {BASES[b]}' for b in bases)}.", *t.statements)
+    notes = (f"In the publication: {t.source}.", *t.statements)
     return Table(t.title, HEADERS, tuple(_row(r) for r in t.rows), notes, frozenset({0, 1, 3, 5, 8}))
 
 
@@ -302,6 +302,7 @@ def share(r: Compared) -> float:
 
 
 WORST = "worst / tolerance"
+WORST_NOTE = f"{WORST}: the largest difference in % of its tolerance; of a limit, the share that is reached."
 
 
 def overview(found: Acceptance) -> Table:
@@ -311,19 +312,38 @@ def overview(found: Acceptance) -> Table:
             t.title,
             t.source,
             f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
-            _closest(t),
-            "pass" if t.holds else "fail",
+            _closest(t.rows),
+            _verdict(t.rows),
         )
         for t in found.tables
     )
-    notes = (f"{WORST}: the largest difference in % of the tolerance; of a limit, the share that is reached",)
-    headers = ("what", "of the publication", "hold", WORST, "verdict")
+    notes = (WORST_NOTE,)
+    headers = ("what", "in the publication", "within", WORST, "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
 
 
-def _closest(t: ComparedTable) -> str:
-    shares = [abs(share(r)) for r in t.rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
+def by_basis(found: Acceptance) -> Table:
+    """One row a basis: how many numbers have it, how many are within the tolerance, and the worst of them."""
+    rows = []
+    for b, (good, count) in held(found).items():
+        mine = [r for r in found.numbers if r.basis is b]
+        if mine:
+            rows.append((b.value, BASES[b], f"{good} of {count}", _closest(mine), _verdict(mine)))
+    again = found.repeated
+    once = f"{len(again)} more comparisons repeat these numbers in another way: {sum(r.holds for r in again)} within the tolerance."
+    headers = ("basis", "what our number is compared with", "within", WORST, "verdict")
+    return Table(
+        "Numbers of the publication by basis", headers, tuple(rows), (once,) if again else (), frozenset({0, 1, 4})
+    )
+
+
+def _closest(rows: Sequence[Compared]) -> str:
+    shares = [abs(share(r)) for r in rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
     return f"{100.0 * max(shares):.0f} %" if shares else "-"
+
+
+def _verdict(rows: Sequence[Compared]) -> str:
+    return "pass" if all(r.holds for r in rows) else "fail"
 
 
 def errata(acceptance: Acceptance) -> Table:

@@ -17,7 +17,7 @@ from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
-from coeflab.report.acceptance import WORST, Acceptance, held, overview
+from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
@@ -32,7 +32,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
 NO_DATA = "no data"
-WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
+WIDTH, MOST_MODELS = 70, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
@@ -412,8 +412,7 @@ def _of_publication(found: Acceptance) -> Answer:
         if valid
         else f"; {none}"
     )
-    table = _narrow(overview(found), ("what", "hold", WORST, "verdict"))
-    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
+    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=by_basis(found))
 
 
 def _held(found: Acceptance) -> tuple[int, int, int]:
@@ -437,8 +436,8 @@ def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
     worst = Severity.PASS if good == count else Severity.FAIL
     errata = len(found.errata)
     return (
-        Chip("Numbers", f"{good} of {count} hold", worst, "compared"),
-        Chip("Validation", f"rests on {valid} numbers", Severity.PASS if valid else Severity.NOTE, "verdict"),
+        Chip("Numbers", f"{good} of {count} pass", worst, "compared"),
+        Chip("Validation", f"{valid} of {count} numbers" if valid else "none", Severity.PASS if valid else Severity.NOTE, "verdict"),
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip

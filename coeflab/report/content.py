@@ -166,7 +166,7 @@ def _parted(sentence: str) -> list[str]:
 
 def first_lines(text: str) -> str:
     """The first sentences of a caption, three lines at most; the whole report has the rest."""
-    return text if len(text) <= LINES else three_lines((text,))[0]
+    return text if len(text) <= LINES else re.sub(r"[;,]$", ".", three_lines((text,))[0])
 
 
 def _found(anchor: str, known: set[str]) -> str:
@@ -233,7 +233,7 @@ def _document(study: Study, full: bool) -> Document:
         *appendix,
         *_campaigns(campaigns),
     )
-    if not full:
+    if not full and (study.shape is None or study.plan.file is not None):
         sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
@@ -265,7 +265,7 @@ def also(study: Study) -> str:
     held = [
         (len(study.budgets), "uncertainty budget"),
         (len(study.hulls), "added-mass matrix", "added-mass matrices"),
-        (len(study.fits), "fit with every point and curve", "fits with every point and curve"),
+        (0 if study.shape else len(study.fits), "fit with every point and curve", "fits with every point and curve"),
         (len(study.checks), "check"),
         (sum(made.loss is not None for made in study.exports), "loss of an export", "losses of exports"),
     ]
@@ -293,7 +293,7 @@ def _re_analysis(study: Study) -> list[str]:
     ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
     judged = [c for c in ours if c.passed is not None]
     if not judged:
-        return ["No published evaluation of these data is compared with the results: no verdict on them."]
+        return ["The plan names no published evaluation of these data, so there is no verdict on them."]
     failed = [c for c in judged if c.passed is False]
     count = _counted(len(judged), "comparison")
     if failed:
@@ -314,8 +314,8 @@ def _re_analysis(study: Study) -> list[str]:
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
         out.append(
-            f"Predicted outside the tolerance, |E| > U_V: {each}. U_V leaves out turbulence model, Reynolds number and rig, so "
-            "this alone does not fail the study: a comparison with the authors' own evaluation or a check would."
+            f"Predicted outside the tolerance, |E| > U_V: {each}. U_V does not contain turbulence model, Reynolds number and rig, so "
+            "this alone does not fail the study. A failed comparison with the authors' own evaluation or a failed check would."
         )
     out.append(
         "This is a re-analysis: both sides use the same measurements. A pass says that our evaluation reproduces theirs within "
@@ -333,7 +333,7 @@ def verdict(study: Study) -> Section:
     if others:
         names = listed(list(dict.fromkeys(c.reference for c in others)))
         text.append(
-            f"No verdict on {names}: another body or another method. A difference there may be the appendages as well as an error."
+            f"No verdict on {names}: another body or another method. A difference may come from the appendages or from an error."
         )
     text += [*in_words(study), *_without_value(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
@@ -343,7 +343,8 @@ def verdict(study: Study) -> Section:
     if study.failed:
         text.append("The study as a whole fails.")
     elif study.checks or study.comparisons:
-        text.append("The study does not fail: no comparison with the authors' own evaluation and no check failed.")
+        both = "no comparison with the authors' own evaluation and no check failed"
+        text.append(f"The study does not fail: {both if study.comparisons else 'no check failed'}.")
     return Section("verdict", "Verdict", tuple(text))
 
 
@@ -405,8 +406,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text = (
-        "The force law of every parameter file compared with the measured points that it was fitted to. Allowed is a difference of three "
-        "times the scatter of repeated runs plus 5 % of the largest force; a larger one inside the range of the law is a failure.",
+        "The force law of every parameter file is compared with the measured points that it was fitted to. Three times the scatter of repeated "
+        "runs plus 5 % of the largest force is allowed. A larger difference inside the range of the law is a failure.",
     )
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
@@ -451,7 +452,7 @@ def _checks(study: Study) -> Section:
 def _provenance(study: Study) -> Section:
     text = ["The files below are identified by the sha256 of their bytes. Equal inputs give this report byte for byte."]
     settings = dict.fromkeys(
-        f"Settings of {f.fit}: {', '.join(f'{k} = {v}' for k, v in sorted(f.settings.items()))}."
+        f"Settings of the fit {f.fit}: {', '.join(f'{k} = {v}' for k, v in sorted(f.settings.items()))}."
         for f in study.fits
         if f.settings
     )

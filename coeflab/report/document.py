@@ -261,7 +261,8 @@ class Answer:
     chips : tuple of Chip
     slope, forest, axes : Figure or None
         Y'/v' against the size of v' with its band; every row over the published value; the axes and signs. Of a publication
-        its first figure, and how much of what is allowed its tables use; of models two figures of the first.
+        its first figure, and how much of the tolerance its tables use; of models two figures of the first; of a vehicle the track, the
+        shares of its variance and the outline.
     notes : tuple of str
         What the columns are and what is not compared; at most four lines.
     table : Table or None

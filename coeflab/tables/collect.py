@@ -21,6 +21,8 @@ from coeflab.tables.conditions import (
     DIMENSIONS,
     SETTINGS,
     Condition,
+    NamePattern,
+    RunList,
     joined,
     name_pattern,
     named,
@@ -172,12 +174,77 @@ def collect(
     OutputError
         The state file cannot be written.
     """
-    pattern = name_pattern(names) if names else None
+    return collect_groups(
+        path,
+        importer,
+        options=options,
+        patterns=(names,),
+        run_list=run_list,
+        progress=progress,
+        workers=workers,
+        state=state,
+    )[0]
+
+
+def collect_groups(
+    path: Path,
+    importer: str = "",
+    *,
+    options: Mapping[str, Any] | None = None,
+    patterns: Sequence[str] = ("",),
+    run_list: Path | None = None,
+    progress: Progress | None = None,
+    workers: int | None = None,
+    state: Path | None = None,
+) -> tuple[Collected, ...]:
+    """Runs whose names follow several patterns as a table each; they are read once.
+
+    Parameters
+    ----------
+    patterns : sequence of str
+        A run belongs to the one that its name fits. Of a single pattern, which may be empty, all runs are.
+    path, importer, options, run_list, progress, workers, state
+        See `collect`.
+
+    Raises
+    ------
+    InputError
+        As `collect`; a run with forces whose name fits no pattern, or two.
+    """
+    named_by = [name_pattern(text) if text else None for text in patterns]
     listed_runs = read_run_list(run_list) if run_list is not None else None
     chosen, found = find_runs(path, importer)
     matched = set((listed_runs.matches(list(found)) if listed_runs else {}).values())
     summaries, again = read_all(path, chosen, found, options or {}, progress, workers, state)
     summaries = _broken_off(summaries)
+    if len(named_by) == 1:
+        groups = [summaries]
+    else:
+        fits = {s.name: [p for p in named_by if p and p.conditions(s.name) is not None] for s in summaries}
+        complaints = [
+            InputError(f"{len(fits[s.name]) or 'no'} of the patterns fit{'s' * (not fits[s.name])} it", "one", file=s.name)
+            for s in summaries if len(fits[s.name]) != 1 and (fits[s.name] or s.status.has_numbers)
+        ]  # fmt: skip
+        if complaints:
+            raise together(complaints)
+        groups = [[s for s in summaries if p in fits[s.name]] for p in named_by]
+    out = []
+    for pattern, group in zip(named_by, groups, strict=True):
+        if not group:
+            raise InputError(
+                f"no run of the pattern {pattern.text if pattern else ''}",
+                f"names such as {named(list(found)[:3])}",
+                file=path,
+            )
+        out.append(_collected(path, chosen, group, pattern, listed_runs, matched, again))
+    return tuple(out)
+
+
+def _collected(
+    path: Path, chosen: str, summaries: Sequence[RunSummary], pattern: NamePattern | None, listed_runs: RunList | None,
+    matched: set[str], again: int,
+) -> Collected:  # fmt: skip
+    """Runs of one table."""
     conditions = joined({s.name: of_files(s.stated_conditions) for s in summaries}, pattern, listed_runs)
     conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]

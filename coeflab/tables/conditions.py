@@ -59,9 +59,11 @@ _SIGNS = {
     **dict.fromkeys(("m", "n", "M", "N", "neg", "minus"), "-"),
     **dict.fromkeys(("p", "P", "pos", "plus"), "+"),
 }
+_BEFORE = re.compile(r"(?<![A-Za-z])(?:neg|minus|pos|plus|[mnpMNP]|[-+])$")  # a sign before a number
 _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
 UNNAMED = "NAME:UNIT"
 SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4"
+BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
 
@@ -218,11 +220,42 @@ def likely_pattern(names: Sequence[str]) -> str:
     >>> likely_pattern(["drift_m12", "drift_p4", "drift_0"])
     'drift_{beta:deg:m=-,p=+}'
     """
+    return _likely(_texts(names))
+
+
+def likely_patterns(names: Sequence[str]) -> tuple[str, ...]:
+    """The one pattern of all names, or those of groups of alike names, ``drift_{beta:deg}`` and ``yaw_r{r:rad/s}``.
+
+    Empty where a name belongs to none.
+    """
+    texts = _texts(names)
+    if whole := _likely(texts):
+        return (whole,)
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for text in texts:
+        words = _DIGITS.split(text)[::2]
+        groups.setdefault((str(len(words)), *(_BEFORE.sub("", w) for w in words)), []).append(text)
+    joined: list[list[str]] = []
+    for group in groups.values():
+        home = next((other for other in joined if _likely([*other, *group])), None)
+        if home is None:
+            joined.append(group)
+        else:
+            home += group
+    found = tuple(map(_likely, joined))
+    return found if all(found) else ()
+
+
+def _texts(names: Sequence[str]) -> list[str]:
+    """The last parts of names where they differ, else whole, without an extension that all share."""
     lasts = [name.rpartition("/")[2] for name in names]
     texts = lasts if len(set(lasts)) == len(lasts) else list(names)
     ends = {found[0] if (found := _EXTENSION.search(text)) else "" for text in texts}
-    if len(ends) == 1:
-        texts = [text.removesuffix(next(iter(ends))) for text in texts]
+    return [text.removesuffix(next(iter(ends))) for text in texts] if len(ends) == 1 else texts
+
+
+def _likely(texts: Sequence[str]) -> str:
+    """`likely_pattern` of names without their folders and extension."""
     split = [_DIGITS.split(text) for text in texts]
     if len(texts) < 2 or len({len(parts) for parts in split}) != 1 or len(split[0]) < 3:
         return ""
@@ -252,15 +285,16 @@ def likely_pattern(names: Sequence[str]) -> str:
 
 
 class NoConditionError(InputError):
-    """Nobody says the conditions of any run; ``runs`` are their names, ``pattern`` the one that they seem to have."""
+    """Nobody says the conditions of any run; ``runs`` are their names, ``patterns`` those that they seem to have."""
 
     def __init__(self, runs: Sequence[str]) -> None:
         self.runs = tuple(runs)
-        self.pattern = likely_pattern(runs)
+        self.patterns = likely_patterns(runs)
         sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
-        proposed = f" If this is what they mean: --name '{self.pattern}'." if self.pattern else ""
-        if UNNAMED in self.pattern:
-            proposed = f" If their numbers are a setting: --name '{self.pattern}', with NAME beta, alpha, r, U ... and its UNIT."
+        options = " ".join(f"--name '{pattern}'" for pattern in self.patterns)
+        proposed = f" If this is what they mean: {options}." if self.patterns else ""
+        if UNNAMED in options:
+            proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",
@@ -566,7 +600,7 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
             why = f"The name does not fit {shown(pattern.text)}. {SPELT}. " if pattern and unfit else ""
             out.append(InputError(
                 f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
-                advice=f"{why}Where they are zero, a list of runs says so.",
+                advice=f"{why}Where they are zero, a list of runs says so; or a second --name makes a table of these.",
             ))  # fmt: skip
     return out
 

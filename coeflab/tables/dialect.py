@@ -390,14 +390,19 @@ def raw_columns(
 
 _HOUSE = frozenset({*COMPONENTS, *WIND, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
 _OPENFOAM = re.compile(
-    r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
-    r"|^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
+    r"^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
 )
+_OF_FORCES = re.compile(
+    r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
+)
+_OF_TIME = re.compile(r"^\s*#\s*Time\b")  # without it such a line may stand in any table: "# CofR (2 0 0)"
 
 
 def is_of_openfoam(lines: Sequence[str]) -> bool:
     """Whether the first lines are those of forces or a dictionary of OpenFOAM, whose importer takes the folder of a case."""
-    return any(_OPENFOAM.search(line[:2000]) for line in lines[:60])
+    first = [line[:2000] for line in lines[:60]]
+    titled = any(map(_OF_FORCES.search, first)) and any(map(_OF_TIME.search, first))
+    return titled or any(map(_OPENFOAM.search, first))
 
 
 def is_house_table(path: Path) -> bool:

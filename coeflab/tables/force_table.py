@@ -58,6 +58,8 @@ class Exclusion:
         True when the source marks the value as doubtful, so that a reader may choose to use it after all.
     status : str
         What a label column ``status`` says of the row, such as ``too short``; empty without one.
+    of_source : bool
+        The source marks it or has no number there, or the campaign does not select the row.
     """
 
     row: int
@@ -66,6 +68,7 @@ class Exclusion:
     reason: str
     uncertain: bool = False
     status: str = ""
+    of_source: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

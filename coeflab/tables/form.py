@@ -7,16 +7,15 @@ import shlex
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.table import folded
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.mapping import known_as, with_unit
+from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
-from coeflab.tables.questions import Doubt, Understood, understood, without_unit
+from coeflab.tables.questions import Doubt, Question, Understood, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_settings
 
@@ -104,34 +103,34 @@ def form(
     numbers : dict of str to int, optional
         Those of the keys that were shown before; new ones are added.
     """
-    out = [*read_by, *_columns(raw, found)]
-    for q in found.questions:
-        group = Group.OPEN if q.open else Group.GRAVE if q.grave else Group.FURTHER
-        value, why = q.default or q.shown, (q.short or q.why) if not q.open else q.choices
-        about = q.asks + (f". Proposed: {value}, {q.why or q.short}" if value else "")
-        out.append(
-            Line(q.key, value, why, group, f"{about}.", argument("--set", q.key, q.default or OPEN), not q.harmless)
-        )
+    out = [*read_by, *column_lines(raw, found), *map(question_line, found.questions)]
     words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
         if not key.startswith(UNSHOWN):
-            group = Group.GRAVE if key.startswith(GRAVE) else Group.FURTHER
-            value = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
-            out.append(
-                Line(
-                    key,
-                    value,
-                    f"{AGAINST}{words[key]}" if key in words else one.origin.replace("confirmed", "said"),
-                    group,
-                    f"{found.about.get(key, key)}. It is {value}: {one.origin}.",
-                )
-            )
+            out.append(setting_line(key, one, found.about.get(key, key), words.get(key, "")))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
 
 
-def _columns(raw: RawTable, found: Understood) -> Iterator[Line]:
+def question_line(q: Question) -> Line:
+    """The line of a key that nobody has said."""
+    group = Group.OPEN if q.open else Group.GRAVE if q.grave else Group.FURTHER
+    value, why = q.default or q.shown, (q.short or q.why) if not q.open else q.choices
+    about = q.asks + (f". Proposed: {value}, {q.why or q.short}" if value else "")
+    return Line(q.key, value, why, group, f"{about}.", argument("--set", q.key, q.default or OPEN), not q.harmless)
+
+
+def setting_line(key: str, one: Setting, about: str, against: str) -> Line:
+    """The line of a key that is known; ``against`` is a line of the file that says something else."""
+    group = Group.GRAVE if key.startswith(GRAVE) else Group.FURTHER
+    value = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
+    why = f"{AGAINST}{against}" if against else one.origin.replace("confirmed", "said")
+    return Line(key, value, why, group, f"{about}. It is {value}: {one.origin}.")
+
+
+def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
+    """The lines of the columns."""
     doubts = {d.column.name: d for d in found.doubts}
     still = {column.name: offer for column, offer in found.open}
     for column, offer in zip(raw.columns, found.proposals, strict=True):
@@ -261,7 +260,10 @@ class Typed:
     explain: list[Line] = field(default_factory=list)
 
 
-def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[str] = ()) -> Typed:
+Places = Mapping[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]]
+
+
+def typed(text: str, lines: Sequence[Line], columns: Places, options: Collection[str] = ()) -> Typed:
     """What ``3=Y [N]; axes.frame=CFD; 5 ?`` means: by number, key or column; several with semicolons between.
 
     A bare answer such as ``midship`` counts for the one line that is open.
@@ -271,7 +273,8 @@ def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[s
     text : str
     lines : sequence of Line
         Of the form that the person saw.
-    raw : RawTable
+    columns : mapping of str to (str, places)
+        By every name of a column its key, and the tables that have it; see `coeflab.tables.parts.columns_by_name`.
     options : collection of str
         Keys that are options of the importer.
 
@@ -281,7 +284,6 @@ def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[s
         All that cannot be read.
     """
     out, complaints = Typed(), list[InputError]()
-    columns = {n: c for c in raw.columns for n in (c.name, *known_as(c))}
     parts = [*filter(None, map(str.strip, re.split(r";(?![^\[]*\])", text)))]
     bare = [one for one in parts if not set("=?") & set(one) and _line(one, () if one.isdecimal() else lines) is None]
     alone = open_lines(lines)
@@ -297,7 +299,7 @@ def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[s
             out.explain += [one] if one else open_lines(lines) if not name else []
             continue
         try:
-            _take(out, part, lines, raw, columns, options)
+            _take(out, part, lines, columns, options)
         except InputError as why:
             complaints.append(why)
     if complaints:
@@ -309,8 +311,7 @@ def _take(
     out: Typed,
     part: str,
     lines: Sequence[Line],
-    raw: RawTable,
-    columns: Mapping[str, RawColumn],
+    columns: Places,
     options: Collection[str],
 ) -> None:
     """One KEY=VALUE."""
@@ -325,11 +326,15 @@ def _take(
     if key in options:
         out.options[key] = said
     elif key in columns:
-        out.columns[columns[key].name] = _column(raw, columns[key], said)
+        own, places = columns[key]
+        for raw, column in places:
+            out.columns[own] = _column(raw, column, said)
     elif "." not in key:
         raise _no_key(key, lines)
     else:
-        out.settings |= {k: Setting(value, "confirmed") for k, value in read_settings(key, said).items()}
+        table, slash, plain = key.rpartition("/")
+        read = read_settings(plain, said).items()
+        out.settings |= {f"{table}{slash}{k}": Setting(value, "confirmed") for k, value in read}
 
 
 def _column(raw: RawTable, column: RawColumn, said: str) -> ColumnMap:
@@ -356,35 +361,6 @@ def _no_key(name: str, lines: Sequence[Line]) -> InputError:
     )
 
 
-def settled(
-    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool
-) -> tuple[Understood, dict[str, Setting]]:
-    """What follows when proposals are accepted, one from the other until nothing more does; else of harmless ones alone.
-
-    Parameters
-    ----------
-    raw : RawTable
-    said : mapping of str to ColumnMap
-    settings : mapping of str to Setting
-    accept : bool
-    """
-    out = dict(settings)
-    while True:
-        found = understood(raw, said, out, accept)
-        fresh: dict[str, Setting] = {}
-        for q in found.questions:
-            if q.default and (accept or q.harmless):
-                fresh |= {k: Setting(v, q.why) for k, v in read_settings(q.key, q.default).items() if k not in out}
-        if not fresh:
-            return found, out
-        out |= fresh
-
-
-def pending(found: Understood) -> bool:
-    """Whether something is open or waits to be accepted."""
-    return bool(found.doubts or found.open or any(not q.harmless for q in found.questions))
-
-
-def of_campaign(settings: Settings) -> dict[str, Any]:
+def of_campaign(settings: Settings) -> dict[str, Setting]:
     """The settings without what was said of columns alone."""
-    return {key: one for key, one in settings.items() if key not in EXTRA}
+    return {key: one for key, one in settings.items() if key.rpartition("/")[2] not in EXTRA}

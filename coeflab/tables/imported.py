@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,102 +13,209 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.declarations import validated
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import toml_text, value
+from coeflab.core.types import brief
 from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
+from coeflab.core.wording import identifier
 from coeflab.law.symbols import CONTROL_COLUMNS
 from coeflab.tables.campaign import FILE, CampaignFile, read_campaign
 from coeflab.tables.column_map import ColumnMap
+from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.settings import CONFIRMED, SECTIONS, Settings
+from coeflab.tables.settings import CONFIRMED, EACH, OF_ARMS, SECTIONS, Settings
+from coeflab.tables.words_above import POINT_OF
 
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"
 SAVED = "mapping.toml"
 
 
-def contents(
-    raw: RawTable, importer: str, options: Mapping[str, Any], columns: Sequence[Assigned],
-    mapping: Mapping[str, ColumnMap], settings: Settings,
-) -> dict[str, bytes]:  # fmt: skip
-    """The files of the campaign: table.csv, campaign.toml and mapping.toml.
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Filled:
+    """A table of which everything is said.
 
-    Parameters
+    Attributes
     ----------
+    name : str
+        Of the sheet, file or group of runs; empty where it is the only one.
     raw : RawTable
     importer : str
-        Its name.
     options : mapping
         Those of the importer.
-    columns : sequence of Assigned
+    columns : tuple of Assigned
     mapping : mapping of str to ColumnMap
         What each column was confirmed to be, ignored ones too.
     settings : mapping of str to Setting
-        Every key.
+        Every key, as it holds for this table.
+    asked : frozenset of str
+        Keys that this table raises.
+    """
+
+    name: str
+    raw: RawTable
+    importer: str
+    options: Mapping[str, Any]
+    columns: tuple[Assigned, ...]
+    mapping: Mapping[str, ColumnMap]
+    settings: Settings
+    asked: frozenset[str]
+
+    @property
+    def file(self) -> str:
+        """Of its table in the campaign."""
+        return f"{identifier(self.name)}.csv" if self.name else TABLE
+
+
+def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict[str, bytes]:
+    """The files of the campaign: its tables, campaign.toml and mapping.toml.
+
+    Parameters
+    ----------
+    tables : sequence of Filled
+    settings : mapping of str to Setting
+        Every key, of all tables together; what one has of its own has its name and a slash before it.
+    source : Path
+        What was imported.
 
     Raises
     ------
     InputError
-        Something that campaign.toml does not take.
+        Something that campaign.toml does not take; tables that count from two points of the body.
     """
-    table, labels = _table(raw, columns, settings)
-    declared: dict[str, Any] = {"file": TABLE, "source_sha256": sha256_of(raw.path, raw.files)}
-    comments = {"table.source_sha256": f"of {raw.path.name}, from which {TABLE} was made"}
-    if labels:
-        declared["labels"] = labels
-    if any(c.said.name == "cells" for c in columns):
-        declared["cells"] = "cells"
-    dialect = "; ".join(f"{k} {v}" for k, v in raw.dialect.items() if k != "importer")
-    how = f"Imported from {raw.path.name} by coeflab {VERSION}, importer {importer}" + (
-        f" ({dialect})" if dialect else ""
-    )
-    named = ", ".join(f"{name} = {said}" for name, said in mapping.items() if said.name != "ignore")
+    common = {key: one for key, one in settings.items() if "/" not in key}
+    for key in (k for t in tables for k in t.settings if k not in common and not k.startswith("table.")):
+        common[key] = next(t.settings[key] for t in tables if key in t.settings)
+    _require_one(tables, common)
+    comments: dict[str, str] = {}
     sections: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    for key, one in settings.items():
+    for key, one in common.items():
         section, _, name = key.partition(".")
-        sections[section][name] = one.value
-        comments[key] = one.origin
-    sections["source"]["how_obtained"] = ". ".join(
-        [*filter(None, [str(sections["source"].get("how_obtained", ""))]), f"{how}. Columns: {named}."]
+        if section != "table":
+            sections[section][name] = one.value
+            comments[key] = one.origin
+    sections["source"]["how_obtained"] = (
+        ". ".join(
+            [*filter(None, [str(sections["source"].get("how_obtained", ""))]), *(_how_obtained(t) for t in tables)]
+        )
+        + "."
     )
     comments.pop("source.how_obtained", None)
-    sections["table"] = declared | sections["table"]
-    content: dict[str, Any] = {k: v for k, v in sections.items() if v and k != "table"}
-    content["table"] = [sections["table"]]
+    sections.pop("table")
+    made, declared = dict[str, bytes](), list[tuple[dict[str, Any], dict[str, str]]]()
+    for t in tables:
+        made[t.file], labels = _table(t.raw, t.columns, t.settings, _constants(t, common))
+        own: dict[str, Any] = {"file": t.file, "source_sha256": sha256_of(t.raw.path, t.raw.files)}
+        said = {"source_sha256": f"of {t.raw.path.name}, from which {t.file} was made"}
+        if labels:
+            own["labels"] = labels
+        if any(c.said.name == "cells" for c in t.columns):
+            own["cells"] = "cells"
+        for key, one in t.settings.items():
+            section, _, name = key.partition(".")
+            if section == "table" and (len(tables) == 1 or key in t.asked or key not in OF_ARMS):
+                own[name], said[name] = one.value, one.origin
+        if t.settings[POINT_OF].value != common[POINT_OF].value:
+            own["reference_point"], said["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+        declared.append((own, said))
+    content: dict[str, Any] = {k: v for k, v in sections.items() if v}
+    content["table"] = [own for own, _ in declared]
     validated(CampaignFile, content)
-    saved = {
-        "campaign": {"importer": importer},
-        "importer": dict(options),
-        "columns": {name: str(said) for name, said in mapping.items()},
+    return {
+        **made,
+        FILE: _campaign_text(sections, comments, declared, tables, source).encode(),
+        SAVED: _saved(tables, settings).encode(),
+    }
+
+
+def _require_one(tables: Sequence[Filled], common: Settings) -> None:
+    """Refuse tables that count places from two points of the body."""
+    for t in tables:
+        if str(t.settings["axes.datum"].value) != str(common["axes.datum"].value):
+            raise InputError(
+                f"axes.datum {shown(str(t.settings['axes.datum'].value))} of {t.name}, {shown(str(common['axes.datum'].value))} of others",
+                "one point that all places count from", column="axes.datum",
+                advice=f"Say the point of {t.name} from the other one: {t.name}/axes.reference_point=X.",
+            )  # fmt: skip
+
+
+def _how_obtained(table: Filled) -> str:
+    dialect = "; ".join(f"{k} {v}" for k, v in table.raw.dialect.items() if k != "importer")
+    how = f"Imported from {table.raw.path.name} by coeflab {VERSION}, importer {table.importer}"
+    named = ", ".join(f"{name} = {said}" for name, said in table.mapping.items() if said.name != "ignore")
+    of = f"{table.file}: " * bool(table.name)
+    return f"{of}{how}{f' ({dialect})' if dialect else ''}. Columns: {named}"
+
+
+def _constants(table: Filled, common: Settings) -> dict[str, float]:
+    """Heads and values of columns for what one table has of its own where a campaign has one: speed and density."""
+    roles = {c.said.role for c in table.columns}
+    primed = all(c.said.primed for c in table.columns if c.said.role == "velocity")
+    out = {}
+    for key, role, head in (
+        ("conditions.speed", "speed", "U [m/s]"),
+        ("conditions.density", "density", "density [kg/m^3]"),
+    ):
+        own = quantity(table.settings[key].value, role)
+        if own != quantity(common[key].value, role) and role not in roles and (role == "density" or primed):
+            out[head] = own
+    return out
+
+
+def _saved(tables: Sequence[Filled], settings: Settings) -> str:
+    """mapping.toml: what was confirmed, for the next file of the same kind."""
+    importers = {t.importer for t in tables}
+    several = len(tables) > 1
+    options = {k: v for k, v in tables[0].options.items() if not (several and k in ("sheet", "files", "names"))}
+    if several and "names" in tables[0].options:
+        options["names"] = BETWEEN.join(str(t.options["names"]) for t in tables)
+    columns: dict[str, str] = {}
+    for t in tables:
+        for name, said in t.mapping.items():
+            same = {str(o.mapping[name]) for o in tables if name in o.mapping}
+            columns[name if len(same) == 1 else f"{t.name}/{name}"] = str(said)
+    named = (
+        importers.pop() if len(importers) == 1 and not (several and tables[0].raw.path != tables[-1].raw.path) else ""
+    )
+    saved: dict[str, dict[str, Any]] = {
+        "campaign": {"importer": named} if named else {},
+        "importer": options,
+        "columns": columns,
     }
     for key, one in settings.items():
-        section, _, name = key.partition(".")
+        table, _, plain = key.rpartition("/")
+        section, _, name = plain.partition(".")
         if one.origin.startswith(CONFIRMED) and section != "campaign":
-            saved.setdefault(section, {})[name] = one.value
+            saved.setdefault(EACH if table else section, {})[key if table else name] = one.value
     head = f"# Used again by: coeflab import FILE --mapping {SAVED} --out DIR --accept\n"
-    return {
-        TABLE: table,
-        FILE: _campaign_text(sections, comments, raw).encode(),
-        SAVED: (head + toml_text({k: v for k, v in saved.items() if v})).encode(),
-    }
+    return head + toml_text({k: v for k, v in saved.items() if v})
 
 
-def _campaign_text(sections: Mapping[str, Mapping[str, Any]], comments: Mapping[str, str], raw: RawTable) -> str:
-    lines = [f"# What the numbers in {TABLE} mean. Made by `coeflab import` from {_plain(raw.path.name)}."]
-    lines += [f"# {_plain(remark)}" for remark in raw.remarks]
-    for section, keys in sections.items():
+def _campaign_text(
+    sections: Mapping[str, Mapping[str, Any]], comments: Mapping[str, str],
+    declared: Sequence[tuple[Mapping[str, Any], Mapping[str, str]]], tables: Sequence[Filled], source: Path,
+) -> str:  # fmt: skip
+    made = ", ".join(t.file for t in tables)
+    lines = [f"# What the numbers in {made} mean. Made by `coeflab import` from {_plain(source.name)}."]
+    for t in tables:
+        lines += [f"# {_plain(f'{t.name}: ' * bool(t.name) + remark)}" for remark in t.raw.remarks]
+    every: list[tuple[str, Mapping[str, Any], Mapping[str, str]]] = [
+        (name, keys, {k: comments.get(f"{name}.{k}", "") for k in keys}) for name, keys in sections.items()
+    ]
+    every += [("table", own, said) for own, said in declared]
+    for section, keys, said in every:
         if not keys:
             continue
         lines += ["", f"[[{section}]]" if section == "table" else f"[{section}]"]
         for name, content in keys.items():
             line = f"{name} = {value(content)}"
-            said = comments.get(f"{section}.{name}", "")
-            lines.append(f"{line:<41} # {_plain(said)}" if said else line)
+            lines.append(f"{line:<41} # {_plain(said[name])}" if said.get(name) else line)
         lines += [f"# {hint}" for hint in HINTS.get(section, ()) if hint.partition(" ")[0] not in keys]
     return "\n".join(lines) + "\n"
 
@@ -127,7 +234,9 @@ def _plain(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in text)
 
 
-def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tuple[bytes, list[str]]:
+def _table(
+    raw: RawTable, columns: Sequence[Assigned], settings: Settings, constants: Mapping[str, float]
+) -> tuple[bytes, list[str]]:
     """The table in coeflab's names and the file's units, all digits; and the names of its label columns."""
     rows = usable_rows(columns, len(raw))
     length = quantity(settings["scaling.length"].value, "length")
@@ -159,6 +268,9 @@ def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tu
         cells.append(["" if np.isnan(x) else repr(x + 0.0) for x in values.tolist()])
         for row in rows[np.isnan(values)] if said.role == "force" else ():
             doubts[row].add(said.name)
+    for head, number in constants.items():
+        heads.append(head)
+        cells.append([repr(number)] * len(rows))
     if any(doubts[row] for row in rows):
         heads.append("uncertain")
         names = [LONG.get(one.said.name, one.said.name) for one in columns if not one.said.error]
@@ -190,15 +302,14 @@ def _label(name: str, taken: Sequence[str]) -> str:
     return out
 
 
-def checked(made: Mapping[str, bytes], raw: RawTable, mapping: Mapping[str, ColumnMap]) -> ForceTable:
-    """The table as the new campaign reads, tried in a temporary folder; complaints are about the file that was imported.
+def checked(made: Mapping[str, bytes], tables: Sequence[Filled]) -> tuple[ForceTable, ...]:
+    """The tables as the new campaign reads, tried in a temporary folder; complaints are about the file that was imported.
 
     Parameters
     ----------
     made : mapping of str to bytes
         From `contents`.
-    raw : RawTable
-    mapping : mapping of str to ColumnMap
+    tables : sequence of Filled
 
     Raises
     ------
@@ -211,11 +322,15 @@ def checked(made: Mapping[str, bytes], raw: RawTable, mapping: Mapping[str, Colu
             (Path(folder) / file).write_bytes(content)
         try:
             campaign = read_campaign(path)
-            declared = replace(campaign.tables[0], labels=(), ignore=(), cells="", select={})
-            mapped_table(raw, replace(campaign, columns=mapping), declared)
+            for t, own in zip(tables, campaign.tables, strict=True):
+                declared = replace(own, labels=(), ignore=(), cells="", select={})
+                at = (quantity(t.settings[f"conditions.{name}"].value, name) for name in ("density", "speed"))
+                conditions = replace(campaign.conditions, **dict(zip(("density", "speed"), at, strict=True)))
+                one = replace(campaign, columns=t.mapping, conditions=conditions, tables=(declared,), lines=())
+                mapped_table(t.raw, one, declared)
         except InputError as why:
-            for one in (why, *why.others):
-                if one.file is not None and Path(one.file) == path:
-                    one.file = one.line = None
+            for complaint in (why, *why.others):
+                if complaint.file is not None and Path(complaint.file) == path:
+                    complaint.file = complaint.line = None
             raise
-        return read_house(campaign)[0]
+        return read_house(campaign)

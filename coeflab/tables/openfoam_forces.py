@@ -344,7 +344,10 @@ def from_coefficients(history: History, density: float) -> str:
     if not np.allclose(frame @ frame.T, np.eye(3), atol=1e-4):
         return "dragDir and liftDir are not at right angles, or not of length 1"
     axes = [np.array(facts.get(n, d)) for n, d in (("rollAxis", drag), ("pitchAxis", side), ("yawAxis", lift))]
-    scale = 0.5 * density * facts["magUInf"] ** 2 * facts["Aref"]
+    speed, area = facts["magUInf"], facts["Aref"]
+    scale = 0.5 * density * speed * speed * area
+    if not math.isfinite(scale):
+        return f"magUInf {speed:g} and Aref {area:g} make a force beyond what a number can hold"
     moment = ("CmRoll", "Cm" if "Cm" in values else "CmPitch", "CmYaw")
     for names, directions, unit, components in (
         (("Cd", "Cs", "Cl"), frame, scale, COMPONENTS[:3]),

@@ -30,8 +30,17 @@ from coeflab.tables.mapping import (
 )
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import EXTRA, POINT_OF, Setting, Settings, against_words, frame_of, read_setting
-from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, of_the_test
+from coeflab.tables.settings import (
+    EXTRA,
+    Setting,
+    Settings,
+    against_words,
+    frame_of,
+    of_datum,
+    point_by_words,
+    read_setting,
+)
+from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID, of_the_test
 
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
@@ -188,8 +197,20 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
     at, frame, datum = raw.stated.get(POINT_OF), frame_of(settings), settings.get("axes.datum")
     own = at.value if at and isinstance(at.value, tuple) and len(at.value) == 3 else None
     asks = f"Point that the moments are about: {PLACE_ASKED}; or a point by its name: midship, cg, nose"
+    choices = "x from a point: -2.1 from nose; or midship, cg"
     here, why, short, shown = "", "", "", ""
-    if own is not None and at is not None:
+    text, point, x = point_by_words(raw, settings)
+    words = raw.stated.get(POINT_FROM)
+    by_words = words is not None and (datum is None or of_datum(str(datum.value), point))
+    if words is not None and own is None:
+        unsaid = "; from where it does not say: taken aft of the nose" * words.value.endswith(UNSAID)  # type: ignore[union-attr]
+        if words.contradicted or not by_words:
+            choices = f"{words.contradicted or words.place}; {choices}"
+        elif x is None:
+            shown, short = text, f"{words.place}{unsaid}"
+        else:
+            here, why, short = f"{x:.12g}, 0, 0", f"{words.place}{unsaid}", f"{words.place}{unsaid}"
+    elif own is not None and at is not None:
         why = f"the file's point {_point(own)} from the origin of its axes, {at.place}"
         asks += f". The file has {_point(own)} in its own axes from its own origin ({at.place})"
         short = f"of the file, {at.place}"
@@ -198,19 +219,19 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
             here = ", ".join(f"{x + 0.0:.12g}" for x in (frame.rotation @ np.array(own) if frame else np.array(own)))
     elif datum is not None or "axes.datum" in raw.stated:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
-    yield Question(
-        POINT_OF, asks, "x from a point: -2.1 from nose; or midship, cg", here, why, short, shown, grave=True
-    )
-    text = "Point of the body that places count from: nose, cg, midship ..."
+    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True)
+    asks = "Point of the body that places count from: nose, cg, midship ..."
     if own is not None:
         origin = f"origin_{identifier(raw.path.resolve().stem)}"[:40]
         yield Question(
-            "axes.datum", text, "", origin, "the origin of the file's axes", "origin of the file's axes", grave=True
+            "axes.datum", asks, "", origin, "the origin of the file's axes", "origin of the file's axes", grave=True
         )
+    elif by_words and words is not None and not words.contradicted:
+        yield Question("axes.datum", asks, "", point, words.place, words.place, grave=True)
     else:
         follows = "" if POINT_OF in settings else "as the point says"
         yield Question(
-            "axes.datum", text, "nose, midship, cg ...", shown=follows, short="-2.1 from nose: nose", grave=True
+            "axes.datum", asks, "nose, midship, cg ...", shown=follows, short="-2.1 from nose: nose", grave=True
         )
 
 
@@ -307,8 +328,8 @@ def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
         return "", ""
     x, _, point = str(said.value).partition(" ")
     datum = settings.get("axes.datum") or raw.stated.get("axes.datum")
-    same = datum is not None and bool(point) and of_the_test([("", f"reference point {datum.value}")]).get("axes.datum")
-    return (f"{x}, 0, 0" if same and same.value == point else "", said.place)
+    same = datum is not None and bool(point) and of_datum(str(datum.value), point)
+    return (f"{x}, 0, 0" if same else "", said.place)
 
 
 def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
@@ -332,6 +353,10 @@ def _of_source(raw: RawTable) -> Iterator[Question]:
 def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     """The question with what words over the table or its name say as its default, where no number gives one."""
     said = raw.stated.get(q.key) or words.get(q.key)
+    if (q.key in (POINT_OF, "axes.datum") and POINT_FROM in raw.stated) or (
+        said is not None and isinstance(said.value, tuple)
+    ):
+        return q
     if said is not None and said.contradicted and not q.why.startswith("median"):
         choices = f"{said.contradicted}; {q.choices}".rstrip("; ")
         return replace(

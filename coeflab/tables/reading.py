@@ -14,7 +14,8 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
-from coeflab.tables.collect import collect
+from coeflab.tables.collect import collect, collect_groups
+from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
@@ -142,6 +143,33 @@ def read_raw(
             path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
             state=Path(state) if state else None,
         ).table  # fmt: skip
+
+
+def read_groups(
+    path: Path, name: str, options: Mapping[str, Any], progress: Progress | None = None
+) -> tuple[RawTable, ...]:
+    """A table of the runs of each of several patterns, which the option ``names`` holds with `BETWEEN`.
+
+    Parameters
+    ----------
+    path, name, options, progress
+        See `read_raw`; the pattern of a table is in its dialect.
+
+    Raises
+    ------
+    InputError
+        As `read_raw`; a run of no pattern, or of two.
+    """
+    given = dict(options)
+    with IMPORTERS.guarded(name):
+        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
+        patterns = [text.strip() for text in names.split(BETWEEN)]
+        groups = collect_groups(
+            path, name, options=given, patterns=patterns, run_list=Path(runs) if runs else None, progress=progress,
+            state=Path(state) if state else None,
+        )  # fmt: skip
+    tables = zip(patterns, (group.table for group in groups), strict=True)
+    return tuple(replace(table, dialect={**table.dialect, "names": pattern}) for pattern, table in tables)
 
 
 def with_declarations(

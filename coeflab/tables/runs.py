@@ -129,6 +129,10 @@ class RunSummary:
     conditions: Mapping[str, Condition] = field(default_factory=dict)
 
 
+class NoRunsError(InputError):
+    """A folder or file in which no run of a known format is."""
+
+
 def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:
     """The runs at or below a path: what exactly one importer recognises, and nothing inside of it.
 
@@ -178,7 +182,7 @@ def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:
         _walk(path, claimed)
     if not runs:
         kinds = ", ".join(f"{n} ({p.reads or p.summary})" for n, p in plugins.items())
-        raise InputError("no run of a known format", f"folders or files of one of: {kinds or 'none'}", file=path)
+        raise NoRunsError("no run of a known format", f"folders or files of one of: {kinds or 'none'}", file=path)
     if len(formats) > 1:
         some = " and ".join(f"{name} ({kind})" for kind, name in formats.items())
         raise InputError(f"runs of {len(formats)} formats: {some}", "one format a table", file=path,

@@ -31,8 +31,8 @@ from coeflab.tables.campaign import (
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
+from coeflab.tables.words_above import POINT_FROM, POINT_OF, of_the_test
 
-POINT_OF = "axes.reference_point"
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 _SIZES = {
     "conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length", "inertia.mass": "mass",
@@ -44,6 +44,8 @@ _KINDS = {
     "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
+OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
+EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -289,7 +291,7 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
     """Settings that differ from what words over the table say: key, what is set, the words with their line."""
     out = []
     for key, words in raw.stated.items():
-        one = settings.get(key)
+        one = settings.get(POINT_OF if key == POINT_FROM else key)
         if one is None or not words.offered or words.contradicted or key.startswith(("source.", "coefficients.")):
             continue
         if isinstance(words.value, float) and key in _SIZES:
@@ -298,6 +300,13 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             same = bool(
                 np.array_equal(parse_axes(one.value).rotation, parse_axes(read_setting(key, words.value)).rotation)
             )
+        elif key == POINT_FROM:
+            _, point, x = point_by_words(raw, settings)
+            datum = settings.get("axes.datum")
+            near = SAME_SIZE * (
+                quantity(settings["scaling.length"].value, "length") if "scaling.length" in settings else 1.0
+            )
+            same = x is None or datum is None or not of_datum(str(datum.value), point) or abs(one.value[0] - x) <= near
         elif key == "table.centre":
             same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
         elif key == "table.contains_inertia":
@@ -306,8 +315,32 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             continue
         if not same:
             said = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
-            out.append((key, said, words.place))
+            out.append((POINT_OF if key == POINT_FROM else key, said, words.place))
     return out
+
+
+def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float | None]:
+    """What words over the table say of the point of the moments: as people say it, its datum, and x in m.
+
+    Shares of the length have no x while it is open: ``-0.45 L from nose``. Empty texts where no words give a number.
+    """
+    said = raw.stated.get(POINT_FROM)
+    if said is None:
+        return "", "", None
+    number, unit, named = str(said.value).split()
+    datum = named.rstrip("?")
+    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    known = unit == "m" or (length is not None and not getattr(length, "contradicted", ""))
+    if not known:
+        return f"{number} L from {datum}", datum, None
+    by = 1.0 if unit == "m" else quantity(length.value, "length")  # type: ignore[union-attr]
+    return f"{float(number) * by:.6g} from {datum}", datum, float(f"{float(number) * by:.12g}")
+
+
+def of_datum(said: str, point: str) -> bool:
+    """Whether a datum that a person named is a point of the body by its plain name: midships is midship."""
+    found = of_the_test([("", f"reference point {said}")]).get("axes.datum")
+    return said.casefold() == point.casefold() or (found is not None and found.value == point)
 
 
 def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
@@ -351,6 +384,12 @@ def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting],
             line = file.line(("columns", name))
             complaints.append(InputError(why.found, why.expected, file=path, line=line, key=f"columns.{name}"))
     importer = ""
+    each = content.pop(EACH, {})
+    for key, said in each.items() if isinstance(each, dict) else ():
+        try:
+            settings[key] = Setting(read_setting(key.rpartition("/")[2], said), f"from {path.name}")
+        except InputError as why:
+            complaints.append(file.fail(EACH, why.found, why.expected, why.advice))
     for section, inner in content.items():
         keys = inner[0] if isinstance(inner, list) and inner else inner
         for name, said in keys.items() if isinstance(keys, dict) else {section: keys}.items():

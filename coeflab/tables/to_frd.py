@@ -512,7 +512,7 @@ def _exclusions(
                 usable[component][row] = False
                 reason = BLANK if np.isnan(value) else 'digit doubtful in the source ("uncertain")'
                 reason = f"{status[row]}, {BLANK if np.isnan(value) else MARKED}" if status[row] else reason
-                out.append(Exclusion(row, line, component, reason, not np.isnan(value), status[row]))
+                out.append(Exclusion(row, line, component, reason, not np.isnan(value), status[row], True))
             elif np.isnan(value):
                 raise columns.fail(
                     "a blank cell", "a number", row=row, name=column,
@@ -520,7 +520,8 @@ def _exclusions(
                 )  # fmt: skip
         for label, wanted in table.selected.items():
             if columns.labels[label][row] != wanted:
-                out.append(Exclusion(row, line, "", f"{label} {columns.labels[label][row]}: {table.select_reason}"))
+                why = f"{label} {columns.labels[label][row]}: {table.select_reason}"
+                out.append(Exclusion(row, line, "", why, of_source=True))
                 for mask in usable.values():
                     mask[row] = False
     return usable, tuple(out)

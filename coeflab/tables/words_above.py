@@ -76,6 +76,7 @@ _TURNS = re.compile(
     r"(?:(?:are|were|made|to|the|nach|zu|zur|à|sur|gefahren|turning)\s+)*(?P<one>starboard|stbd|port|steuerbord|backbord|tribord|b[âa]bord|right|left)(?![^\W_])"
     r"|cent(?:re|er)\s+of\s+(?:the\s+|a\s+)?(?:circle|turn\w*|rotation)\s+(?:\w+\s+){0,2}?(?:to\s+)?(?P<two>starboard|port|right|left)(?![^\W_])"
 )
+POINT_OF = "axes.reference_point"
 CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
 POINTED = Marks()
@@ -111,12 +112,42 @@ _KINDS = {
 }
 _POINT = re.compile(
     r"(?i)\b(?:moments?\s+(?:are\s+)?(?:taken\s+)?(?:about|around|at|to|ref\w*(?:\s+to)?)|reference\s+point|moment\w*\s+(?:um|bezogen\s+auf)|"
-    r"bezugspunkt(?:\s+der\s+momente)?|point\s+de\s+r[ée]f[ée]rence|moments?\s+(?:au|par\s+rapport\s+[àa]u?))"
-    r"(?:[=:\s]|(?:is|ist|est|the|la|le|den|das|dem)(?![^\W_]))*+(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
+    r"m\.?r\.?[pc]|(?:momenten)?bezugspunkt(?:\s+der\s+momente)?|point\s+de\s+r[ée]f[ée]rence|moments?\s+(?:au|par\s+rapport\s+[àa]u?))"
+    r"(?:[=:\s]|(?:is|ist|est|the|la|le|den|das|dem|at|bei|am)(?![^\W_]))*+(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
     r"cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée])\b"
 )
+_MOMENTS_AT = re.compile(
+    r"(?i)(?<![^\W_])(?:moments?\s+(?:(?:are|is|were|being|taken|given|computed|referred|reduced|r[ée]duits|calcul[ée]s|pris|bezogen)\s+)*"
+    r"(?:about|around|at|to|ref\w*(?:\s+to)?|auf|au|en|[àa]|par\s+rapport\s+[àa]u?)|moment\w*\s+(?:um|bezogen\s+auf)|moment[es]*(?=\W*\d)|x_?(?:ref|mrp|mrc|cofr)"
+    r"|(?:moments?\s+)?ref(?:erence|\.)?\s+(?:point|cent(?:re|er))|m\.?r\.?[pc]\.?|cofr|(?:momenten)?bezugspunkt|(?:point|centre)\s+de\s+r[ée](?:f[ée]rence|duction))"
+    r"(?:[\s=:,]|(?:x_?(?:ref|mrp|mrc|cofr)|is|ist|est|the|point|cent(?:re|er)|located|lies|liegt|at|of|for|moments?|der|den|dem|das|momente[ns]?|bei|le|la|un|du|des|situ[ée]|[aàx])(?!/|[^\W_]))*+"
+)
+_TRIPLE = re.compile(r"[(\[]\s*" + r"[\s,;]+".join([r"([-+]?(?:\d[\d.]*|\.\d+)(?:[eE][-+]?\d+)?)"] * 3) + r"\s*[)\]]")
+_AT = re.compile(
+    r"(?i)(?P<share>x\s*/\s*l\w{0,2}\s*[=:]?\s*)?(?P<number>[-+\u2212]?\d[\d.,]*)\s*[\[(]?(?P<unit>mm|cm|m|ft|in|%\s*(?:of\s+|von\s+|de\s+)?(?:the\s+|der\s+|la\s+)?l(?:ength|[äa]e?nge|ongueur|oa|pp|bp)?|l(?:oa|pp|bp)?)?"
+    r"(?![^\W_])[\])]?(?:[\s,]|(?:measured|gemessen|counted|en)(?![^\W_]))*+"
+    r"(?P<side>aft|behind|abaft|astern|after|hinter|achterlich|achtern|arri[èe]re|derri[èe]re|forward|fwd|ahead|before|in\s+front|vor|avant|devant|from|off|von|vom|ab|du|de|depuis)?"
+    r"(?:\s|(?:of|from|the|dem|der|von|vom|le|la|du|de|l')(?![^\W_]))*+"
+    r"(?P<point>midships?|amidships?|nose|bow|stem|stern|tail|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase"
+    r"|heck|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée]|nez|[ée]trave|f\.?p\.?|a\.?p\.?|(?:forward|fore|aft|after)\s+perpendicular|v\.?l\.?|h\.?l\.?)?(?![^\W_])"
+)
+_HEIGHT = re.compile(
+    r"(?i)(?<![^\W_])(?:below|above|under|over|unter\w*|[üu]e?ber|oberhalb|sous|dessus|dessous|[yz])(?![^\W_])"
+)
+_ENDS = {
+    "nose": -1.0,
+    "FP": -1.0,
+    "stern": 1.0,
+    "AP": 1.0,
+}  # points at an end of the body, and to which side of them it lies
+POINT_FROM = (
+    "axes.from"  # no key of campaign.toml: x, its unit or L, and the point that the words count the moments' point from
+)
+UNSAID = "nose?"  # in its place where a share of the length has no point
 _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "midship", "mait": "midship", "nose": "nose", "bow": "nose",
-           "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg"}  # fmt: skip
+           "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg",
+           "nez": "nose", "stem": "nose", "etra": "nose", "étra": "nose", "ster": "stern", "tail": "stern", "heck": "stern", "fp": "FP", "forw": "FP",
+           "fore": "FP", "vl": "FP", "ap": "AP", "aft": "AP", "afte": "AP", "hl": "AP"}  # fmt: skip
 _DIRECTION = re.compile(
     r"(?i)(?<![\w'])(?P<axis>[xyz])"
     r"(?:[-\s=:>→+]|(?:axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_]))*+"
@@ -172,10 +203,13 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
         for kind, words in _KINDS.items():
             if m := re.search(rf"(?i)(?<![^\W_])(?:{words})(?![^\W_])", text):
                 note("source.kind", kind, place, m[0])
-        if m := _POINT.search(text):
-            short = m["point"].casefold().replace(".", "")
-            named = "cb" if "buoy" in short else _POINTS.get(short, _POINTS.get(short[:4], "cg"))
-            note("axes.datum", named, place, m[0])
+        if where := _moments_at(place, text, marks):
+            if "axes.datum" not in found:
+                found |= {key: one for key, one in where.items() if key not in found}
+            if (one := found.get(POINT_FROM)) and (other := where.get(POINT_FROM, one)).value != one.value:
+                found[POINT_FROM] = replace(one, contradicted=f"{one.place}, but {other.place}")
+        elif m := _POINT.search(text):
+            note("axes.datum", _named_point(m["point"]), place, m[0])
         for key, said in _of_the_turn(place, text, marks):
             one = found.setdefault(key, said)
             if one.value != said.value and not one.contradicted:
@@ -193,6 +227,50 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
             "", f"{first}: {named}", offered=True, contradicted=f"{first} is left-handed: {named}"
         )
     return found
+
+
+def _named_point(words: str) -> str:
+    """The point of the body that words name."""
+    short = words.casefold().replace(".", "")
+    return "cb" if "buoy" in short else _POINTS.get(short, _POINTS.get(short[:4], "cg"))
+
+
+def _moments_at(place: str, text: str, marks: Marks) -> dict[str, Stated]:
+    """What a line says of the point of the moments by a number: "about x = 1.2 m aft of the nose", "CofR (2 0 0)", "0.45 L"."""
+    begun = _MOMENTS_AT.search(text)
+    if begun is None:
+        return {}
+    if triple := _TRIPLE.match(text, begun.end()):
+        words = f'{place}: "{" ".join(text[begun.start() : triple.end()].split())}"'
+        return {POINT_OF: Stated(tuple(map(float, triple.groups())), words, offered=True)}
+    m = _AT.match(text, begun.end())
+    number = None if m is None else _number(m["number"].replace("\u2212", "-"), marks)
+    bare = re.fullmatch(r"(?i)moment[es]*\W*", begun[0]) is not None
+    if m is None or number is None or not (m["unit"] or m["share"]) or (bare and not m["point"]):
+        return {}
+    words = f'{place}: "{" ".join(text[begun.start() : m.end()].split())}"'
+    unit = (m["unit"] or "").casefold()
+    share = bool(m["share"]) or unit.startswith(("l", "%"))
+    if not share:
+        x, counted = quantity(f"{number!r} {m['unit']}", "length"), "m"
+    else:
+        x, counted = number / (100.0 if unit.startswith("%") else 1.0), "L"
+    point = _named_point(m["point"]) if m["point"] else ""
+    side = (m["side"] or "").casefold()
+    ahead = side.startswith(("f", "ah", "be", "in", "vor", "av", "dev")) and side not in ("from", "behind")
+    if side and side not in ("from", "off", "von", "vom", "ab", "du", "de", "depuis"):
+        x, open_ = (abs(x) if ahead else -abs(x)), "" if point else "from which point?"
+    elif point in _ENDS:
+        x, open_ = _ENDS[point] * abs(x), ""
+    elif point:
+        open_ = "" if m["number"][0] in "+-\u2212" or not x else f"to which side of {point}?"
+    else:
+        x, open_ = (-abs(x), "") if share else (x, "from which point?")
+    if _HEIGHT.search(re.split(r"[;]|\.\s", text[m.end() :])[0]):
+        open_ = "and its height: say x, y, z"
+    against = f"{words}, {open_}" if open_ else ""
+    said = Stated(f"{x:.12g} {counted} {point or UNSAID}", words, offered=True, contradicted=against)
+    return {POINT_FROM: said} | ({"axes.datum": Stated(point, words, offered=True)} if point else {})
 
 
 def _density(texts: Sequence[tuple[str, str]], marks: Marks) -> Stated | None:

@@ -23,6 +23,7 @@ from coeflab.core.provenance import InputFile
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
+from coeflab.fits.glide_polar import with_munk
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.law.added_mass import AddedMass, potential_part
@@ -33,6 +34,7 @@ from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivati
 from coeflab.law.terms import Factor
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.force_law import full_force, points_of, spoken
+from coeflab.vehicle.from_shape import equipped
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_model import ModelArea, ModelDomain, ModelTerm, ModelVariable, ParameterModel
@@ -319,7 +321,7 @@ def assemble(
 ) -> ParameterFile:
     """Build the parameter file of a group of campaigns.
 
-    Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
+    A body that states both centres of the configuration gives buoyancy, thrusters and limits of controls, too. Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
     the earlier in the plan counts, and a note says so; a fitted value comes before literature, and a symbol that
     neither gives is written with its status.
 
@@ -365,6 +367,11 @@ def assemble(
     coefficients, covariance, notes = gathered(group, chosen, missing, references)
     models, repeated = recorded(chosen)
     notes += repeated
+    notes += [
+        f"Mw and Mwww, and M of the points: {f.campaign} holds no Munk moment, {float(f.settings['munk']):g} kg u w is added"
+        for f in chosen
+        if "munk" in f.settings
+    ]
     if first.datum.note:
         notes.append(f"points are measured from {first.datum}")
     configuration = body.configuration(group.body) if body else None
@@ -423,7 +430,17 @@ def assemble(
             notes=tuple(notes),
         ),
     )
-    about = [t.about(first.reference_point) for t in tables if t.datum == first.datum]
+    if (
+        body is not None
+        and configuration is not None
+        and configuration.mass is not None
+        and configuration.mass.centre is not None
+    ):
+        made = equipped(made, body, configuration)
+    munk = {f.campaign: float(f.settings["munk"]) for f in chosen if "munk" in f.settings}
+    about = [
+        with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
+    ]
     return with_points(made, [t for t in about if any(t.campaign in f.campaigns for f in chosen)], chosen)
 
 

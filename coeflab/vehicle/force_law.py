@@ -165,6 +165,14 @@ def _used(parameters: ParameterFile, derivatives: tuple[ForceTerm, ...], tables:
     return tuple(used)
 
 
+def by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
+    """Whether coefficients of the file state the force components of a table; lift and drag are X and Z."""
+    name = model.response.removesuffix("/V^2").removesuffix("'")
+    needed = set("XZ") if name in ("L", "D") else {name}
+    stated = {derivative(c.symbol).component for c in parameters.coefficients if c.value is not None}
+    return needed <= stated
+
+
 def _of_motion(term: ForceTerm) -> bool:
     return not term.variables or any(v not in CONTROLS for v in term.variables)
 
@@ -199,7 +207,7 @@ def _fitted(
     statements = [
         f"the table of {m.response} is not a force that a motion needs; left out"
         for m in parameters.models
-        if not _components(m)
+        if not _components(m) and not by_coefficients(m, parameters)
     ]
     for m in used:
         component, scale, power = _place(m, parameters)

@@ -92,10 +92,29 @@ def test_tables_of_the_text_show_their_last_column(visit, written, width):
     assert [name for name in hidden if width == 1440 or not name.startswith("Primes")] == []
 
 
+def test_on_a_phone_a_wide_table_is_a_block_a_row_that_names_its_cells(visit, written):
+    page = visit(written("plain"), 390)
+    boxes = page.evaluate(
+        """() => [...document.querySelectorAll('.scroll:has(> table)')].filter(s => s.clientWidth).map(s => [
+        s.scrollWidth <= s.clientWidth + 1, s.classList.contains('stacked')])"""
+    )
+    assert all(fits for fits, _ in boxes)
+    assert any(stacked for _, stacked in boxes)
+    shown = page.locator(".stacked").first.evaluate(
+        """s => { const t = s.querySelector('table'); return [t.role, t.rows[1].role, [...t.tHead.rows[0].cells].map(c => c.textContent),
+        [...t.rows[1].cells].map(c => c.dataset.name ?? '')]; }"""
+    )
+    assert shown[:2] == ["table", "row"]
+    assert [n.strip() for n in shown[2][1:]] == shown[3][1:]
+    page.set_viewport_size({"width": 1440, "height": 900})
+    assert page.locator(".stacked").count() == 0
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_table_that_scrolls_has_a_shadow_at_the_edge_that_hides_something(visit, written, scheme):
     page = visit(written("plain"), 390, scheme)
     box = page.locator(".scroll:has(> table)").first
+    box.evaluate("s => s.classList.remove('stacked')")
     assert box.evaluate("s => s.scrollWidth > s.clientWidth + 20")
 
     def edges() -> list[float]:

@@ -14,7 +14,9 @@ from typer.testing import CliRunner
 from coeflab.cli import app, import_
 from coeflab.cli.import_ import _first_slopes
 from coeflab.law.scaling import beyond_ends
+from coeflab.report.tables.results import unused
 from coeflab.study.checks import coverage
+from coeflab.tables.campaign import read_campaign
 from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -203,6 +205,29 @@ def test_the_point_that_a_file_states_is_turned_to_frd() -> None:
     assert (open_frame.default, open_frame.shown) == ("", "(1.2, 0, 0.3) in its axes")
 
 
+@pytest.mark.parametrize(
+    ("words", "typed"),
+    [("moments about x = 1.2 m aft of the nose", "-1.2 nose"), ("Momentenbezugspunkt 0.45 L", "-1.8 nose"),
+     ("MRP at midships", "0 midship"), ("MRP 0.25 m forward of midships", "0.25 midship"), ("CofR : (2.0 0 0)", "-2 origin_drift")],
+)  # fmt: skip
+def test_a_point_of_moments_in_words_is_proposed_with_its_line(
+    drift: Path, tmp_path: Path, words: str, typed: str
+) -> None:
+    """Shown in the form, nothing taken without --accept; two commands to a campaign."""
+    drift.write_text(drift.read_text().replace("# tank", f"# {words}"))
+    said = [a for a in sets()[1::2] if not a.startswith(("axes.reference_point", "axes.datum"))]
+    known = [a for text in said for a in ("--set", text)]
+    form = invoke("import", drift, "--out", tmp_path / "out", *known)
+    assert left_open(form) == [], form.output
+    assert words in flat(form.output)
+    assert not (tmp_path / "out").exists()
+    done = invoke(*command_of(form.output))
+    assert done.exit_code == 0, done.output
+    x, datum = typed.split()
+    read = read_campaign(tmp_path / "out" / "campaign.toml")
+    assert (read.reference_point.tolist(), read.datum.id) == ([float(x), 0.0, 0.0], datum)
+
+
 def test_marked_rows_are_kept_out_of_fits_and_named(tmp_path: Path) -> None:
     """A mark column, a star behind a run's name and one behind a number."""
     file = tmp_path / "marks.csv"
@@ -211,8 +236,10 @@ def test_marked_rows_are_kept_out_of_fits_and_named(tmp_path: Path) -> None:
     form = invoke("import", file, "--out", tmp_path / "out", *sets(axes__frame="FRD"))
     done = invoke(*command_of(form.output))
     assert done.exit_code == 0, done.output
-    assert "kept out of fits, marked or without a number in the file: 3, 5*, 6" in flat(done.output)
+    assert "Left out: 3, 5* marked in the file; 6 blank in the source." in flat(done.output)
     assert table_of(tmp_path / "out").usable["Y"].tolist() == [True, True, False, True, False, False]
+    said = unused([table_of(tmp_path / "out")])  # the line of `coeflab fit`
+    assert said == "Left out: 3, 5* marked in the file; 6 blank in the source."
 
 
 def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Path) -> None:

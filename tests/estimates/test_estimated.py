@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.estimates import METHODS, Estimates, Water, estimated
+from coeflab.estimates import METHODS, Contribution, Estimates, Forces, Water, combined, estimated, shifted
 from coeflab.law.coefficient import Status
 from tests.estimates.bodies import (
     DOWN,
     LENGTH,
+    PORT,
     RING,
     SAIL,
     STARBOARD,
@@ -166,15 +169,69 @@ def test_boxes_have_drag_in_every_motion_and_more_when_they_are_apart() -> None:
 
 def test_alternatives_count_by_their_mean_and_widen_u95(cross: Estimates) -> None:
     lifts = [c for c in cross.contributions if c.kind == "hull lift"]
-    assert len(lifts) == 3
+    assert len(lifts) == 6  # three works, fins behind as NACA 1307 has them and in what the hull sheds
     yv = cross.coefficients.scaling.unit("Yv", WATER.density, WATER.speed)
     nu = np.array([[WATER.speed, 1e-6, 0, 0, 0, 0]])
     slopes = [c.forces(nu, {})[0, 1] / 1e-6 / yv for c in lifts]
     parts = cross.coefficients["Yv"].parts
-    assert parts.model_form == pytest.approx((max(slopes) - min(slopes)) / np.sqrt(3.0), rel=1e-4)
+    streams = {c.method: 0.0 for c in cross.contributions if c.kind == "fin lift"}
+    for c in cross.contributions:
+        if c.kind == "fin lift":
+            streams[c.method] += c.forces(nu, {})[0, 1] / 1e-6 / yv
+    apart = [max(x) - min(x) for x in (slopes, list(streams.values()))]
+    assert parts.model_form == pytest.approx(np.linalg.norm(apart) / np.sqrt(3.0), rel=1e-4)
     assert parts.model_form
     assert parts.input
     assert cross.coefficients["Yv"].u95 == pytest.approx(np.hypot(parts.model_form, parts.input), rel=1e-9)
+
+
+def test_groups_err_apart_and_their_places_make_moments() -> None:
+    def force(sign: float) -> Forces:
+        return lambda nu, angles: np.outer(sign * nu[:, 1], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+
+    seen, made = outline(), []
+    for sign in (1.0, -1.0):
+        made.append(
+            Contribution(
+                f"fin {sign:g}", "lift", "m", force(sign), 0.5, "hoerner1965", "p", "", 0.1, 0.2, f"g {sign:g}"
+            )
+        )
+    both = combined(body_of(seen), seen, tuple(made), WATER)
+    scaling = both.coefficients.scaling
+    size, turn = (1.0 / scaling.unit(s, WATER.density, WATER.speed) for s in ("Yv", "Nv"))
+    assert "Yv" in both.coefficients
+    assert both.coefficients["Yv"].value == pytest.approx(0.0, abs=1e-12)
+    assert both.coefficients["Yv"].u95 == pytest.approx(np.sqrt(2.0) * 0.1 * size, rel=1e-6)  # the common 50 % goes out
+    at_point = 0.1 * LENGTH / 2.0  # the forces act at the datum
+    assert both.coefficients["Nv"].u95 == pytest.approx(np.sqrt(2.0) * np.hypot(0.2, at_point) * turn, rel=1e-6)
+    same = combined(body_of(seen), seen, tuple(replace(c, group="one") for c in made), WATER)
+    assert "Yv" not in same.coefficients
+
+
+def test_a_turning_foil_has_the_incidence_of_its_three_quarter_chord() -> None:
+    # About its quarter chord: q c / 2 over u; astern the quarters change places.
+    halves = (foil("right", STARBOARD, 0.0, 0.0, 0.5, 0.5), foil("left", PORT, 0.0, 0.0, 0.5, 0.5))
+    wing, ring = outline(*halves, hulls=()), outline(rings=(RING,), hulls=())
+    for method, seen, at, half in (("fins", wing, (0.0, 0.0, 0.0), 0.25), ("ring_wing", ring, RING.centre, 0.1)):
+        lifts = [c for c in METHODS.load(method).contributions(seen, WATER) if c.kind.endswith("lift")]
+        slide, turn, back = (
+            sum(shifted(c.forces, np.array(at))(np.array([row]), {})[0] for c in lifts)
+            for row in ([3.0, 0, 0.1, 0, 0, 0], [3.0, 0, 0, 0, 0.1, 0], [-3.0, 0, 0.1, 0, 0, 0])
+        )
+        assert turn[2] == pytest.approx(slide[2] * half, rel=1e-9)
+        assert slide[4] == pytest.approx(0.0, abs=1e-9)
+        assert back[2] == pytest.approx(slide[2], rel=1e-9)
+        assert back[4] == pytest.approx(half * back[2], rel=1e-9)  # behind the point: M = -x Z
+
+
+def test_the_tail_takes_roll_out_of_the_sails_wash(appended: Estimates) -> None:
+    rolled = {k: v for k, v in appended.shares["Kv"].items() if "behind sail" in k}
+    assert len(rolled) == 2
+    assert all(v * appended.shares["Kv"]["sail, fin lift"] < 0.0 for v in rolled.values())
+    slant = np.sqrt(0.5)
+    ways = {"a": (slant, -slant), "b": (slant, slant), "c": (-slant, slant), "d": (-slant, -slant)}
+    crossed = estimates_of(outline(SAIL, *(foil(n, w, -3.5, 0.1, 0.25, 0.2) for n, w in ways.items())))
+    assert sum(v for k, v in crossed.shares["Yv"].items() if "behind sail" in k) > 0.0
 
 
 def test_a_roughened_hull_drags_more() -> None:

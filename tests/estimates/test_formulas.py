@@ -13,6 +13,7 @@ from coeflab.bodies.hull_flow import FLAT, STERN, fin_groups, foil_on_body, fric
 from coeflab.core.errors import InputError
 from coeflab.estimates import bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
 from tests.estimates.bodies import (
+    DOWN,
     LENGTH,
     RADIUS,
     RING,
@@ -243,7 +244,14 @@ def test_induced_drag_of_a_fin_by_hand() -> None:
 
 def test_tip_vortex_by_hand() -> None:
     # NACA 1307: height r + pi/4 (s - r); strength lift over (h - r^2/h); behind: psi_hull - psi_foils.
-    wash = next(c for c in fins.contributions(outline(SAIL, *tail()), WATER) if c.kind == "sidewash")
+    free, wash = (
+        next(
+            c
+            for c in fins.contributions(outline(SAIL, *tail()), WATER)
+            if (c.kind, c.method) == ("sidewash", f"fins, {s}")
+        )
+        for s in ("free stream", "boundary layer")
+    )
     sail, pair = (
         next(g for g in fin_groups(outline(SAIL, *tail())) if f in [x.name for x in g.foils]) for f in ("sail", "upper")
     )
@@ -256,6 +264,21 @@ def test_tip_vortex_by_hand() -> None:
     area = lift * (height - 0.01 / height - past) * pair.finite * share[1]
     force = wash.forces(np.array([[3.0, 0.01, 0.0, 0.0, 0.0, 0.0]]), {})[0, 1]
     assert force == pytest.approx(0.5 * WATER.density * 3.0 * 0.01 * area, rel=1e-9)
+    assert free.forces(np.array([[3.0, 0.01, 0.0, 0.0, 0.0, 0.0]]), {})[0, 1] == pytest.approx(
+        force / share[0] / share[1], rel=1e-9
+    )
+
+
+def test_strips_in_a_vortex_and_its_image_by_hand() -> None:
+    # On the line of both vortices, between and beyond them; circulation 1/2 of the strength.
+    for way, sign in ((UP, 1.0), (DOWN, -1.0)):
+        (group,) = fin_groups(outline(foil("short", way, -3.5, 0.1, 0.1001, 0.2)))
+        force, roll = fins._strips(group, np.array([0.0, *UP]), 0.4, 2.0)
+        arm, image = 0.10005, 0.1**2 / 0.4
+        flow = (1.0 / (0.4 - sign * arm) + sign / (arm - sign * image)) / (4.0 * np.pi)
+        area = 2.0 * 0.2 * 0.0001 * flow
+        assert force == pytest.approx([0.0, area, 0.0], rel=1e-6, abs=1e-12)  # x cross UP is starboard
+        assert roll == pytest.approx(sign * area * arm, rel=1e-6)
 
 
 def test_rings_and_parts_across_the_flow_by_hoerner() -> None:

@@ -289,3 +289,43 @@ def test_stated_errors_weigh_the_polar() -> None:
             assert value == pytest.approx(printed("01")[name], rel=1e-4)
     with pytest.raises(InputError, match="no standard errors of L"):
         fitted(t, noise="stated")
+
+
+@pytest.mark.parametrize("munk", [0.0, 236.7])
+def test_the_series_is_the_polar_along_the_body_axes(munk: float) -> None:
+    """At 8 degrees to 2e-4 of the largest force, with and without the Munk moment (m3 - m1) u w."""
+    t = table("01")
+    found = fitted(with_polar(t, *exact(t)), munk=munk).coefficients
+    s = np.sin(np.radians([-8.0, -3.0, 0.0, 3.0, 8.0]))
+    alpha = np.arcsin(s)
+    lift, drag, moment = PRINTED["01"][0:2], PRINTED["01"][2:4], PRINTED["01"][4:6]
+    degrees = np.degrees(alpha)
+    x, _, z = body_forces(alpha, 0.0 * s, drag[0] + drag[1] * degrees**2, 0.0 * s, lift[0] + lift[1] * degrees)
+    expected = {"X": x, "Z": z, "M": moment[0] + moment[1] * degrees + munk * s * np.cos(alpha)}
+    for component, force in expected.items():
+        ours = sum(
+            c.value * t.scaling.unit(c.symbol, t.conditions.density) * s ** c.symbol.count("w")
+            for c in found.coefficients
+            if c.symbol[0] == component
+        )
+        assert ours == pytest.approx(force, abs=2e-4 * np.abs(force).max())
+
+
+def test_derivatives_of_the_series_have_the_intervals_of_the_polar() -> None:
+    t = table("01")
+    found = fitted(t)
+    lift, drag = law(found, "L", "rad"), law(found, "D", "rad")
+    unit = t.scaling.unit("Zw", t.conditions.density)
+    slope, at_rest = lift.named("K_L [1/rad]"), drag.named("K_D0")
+    zw = found.coefficients["Zw"]
+    assert zw.value == pytest.approx(-(slope[0] + at_rest[0]) / unit)
+    assert zw.u95 == pytest.approx(np.hypot(slope[1], at_rest[1]) / unit)
+    assert found.coefficients["X0"].u95 == pytest.approx(at_rest[1] / unit)
+    spread = np.sqrt(np.diag(found.coefficients.covariance))
+    assert spread * 2.0 == pytest.approx([c.u95 for c in found.coefficients.coefficients])
+
+
+def test_a_moment_that_is_not_there_gives_no_derivative_of_it() -> None:
+    t = table("01")
+    bare = fitted(replace(t, forces={c: f for c, f in t.forces.items() if c != "M"}))
+    assert {s[0] for s in bare.coefficients.symbols} == {"X", "Z"}

@@ -75,7 +75,7 @@ URV = (
     arm("sign of w x v in the controller", control.wanted_accelerations, "- kane.cross", "+ kane.cross"),
     arm("righting of the controller +5 %", control.wanted_accelerations, "2.0 * place**2 * _turn_left", "2.1 * place**2 * _turn_left"),
     arm("sign of the quaternion that is left", control._turn_left, "else -vector", "else vector"),
-    arm("pull of the joints +5 %", control.wanted_accelerations, "controller.joints**2", "1.05 * controller.joints**2"),
+    arm("pull of the joints +5 %", control.wanted_accelerations, "controller.joint_frequency**2", "1.05 * controller.joint_frequency**2"),
     arm("sign of the acceleration that a track asks for", control.wanted_accelerations, "change + pace", "-change + pace"),
     arm("sign of all forces in computed torque", control._Loop.asked, "m @ changes - force", "m @ changes + force"),
     arm("sign of the weight in station keeping", control._Loop.asked, "- kane.weight", "+ kane.weight"),

@@ -217,7 +217,7 @@ def fish() -> FlyingFish:
 
 
 def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> Verdicts:
-    """All but the searches for trims."""
+    """All but searches for trims and the bench."""
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     made = flyingfish_file(fish) if file is None else file
     tables = (
@@ -225,6 +225,17 @@ def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> 
         *motions.without_trims(fish),
     )  # fmt: skip
     return of_tables(tables, plausibility(made))
+
+
+def validate_fish_trims(fish: FlyingFish, *names: str) -> Verdicts:
+    """What trims are searched for, by name: hovering, both_readings, tracks."""
+    made = motions.craft(fish, 0 if names == ("hovering",) else None)
+    return of_tables(tuple(getattr(motions, name)(made) for name in names))
+
+
+def validate_fish_bench(fish: FlyingFish) -> Verdicts:
+    """Rotor curves identified from the synthetic bench tests."""
+    return of_tables((motions.bench(fish),))
 
 
 # ---- HUUV ----------------------------------------------------------------------------------------------------------

@@ -13,16 +13,19 @@ import numpy as np
 from coeflab.core.files import shipped
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
-from coeflab.motion import dynamics, media, steady_state
+from coeflab.motion import media, steady_state
 from coeflab.motion.glider import motion as glider_motion
 from coeflab.motion.glider import space
 from coeflab.motion.glider.glider import Glider
 from coeflab.motion.glider.masses import MassModel
 from coeflab.motion.glider.space import SpaceBody
+from coeflab.motion.identify import thruster
 from coeflab.motion.integrators.adaptive import _Phase
+from coeflab.motion.manoeuvres import steady_motion
 from coeflab.published import parameter_files
 from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
+from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish
 from coeflab.published.huuv import five_dof, five_dof_file
 from coeflab.published.huuv import model as huuv_model
@@ -37,6 +40,8 @@ from tests.mutations.harness import (
     in_five,
     refusals,
     steered,
+    validate_fish_bench,
+    validate_fish_trims,
     validate_five,
     validate_flyingfish,
     validate_huuv,
@@ -205,7 +210,42 @@ def constant(name: str, factor: float) -> Callable[[Suboff], Verdicts]:
     return of_fish(lambda f: replace(f, constants=f.constants | {name: f.constants[name] * factor}))
 
 
-RATES, ONE = dynamics.Dynamics.rates, dynamics.rates_of_one
+def trims_law(names: str, function: Any, old: str, new: str) -> Callable[[Suboff], Verdicts]:
+    """Another law under the trims and what is flown from them."""
+    return lambda _: in_place_of(function, old, new, lambda: validate_fish_trims(fish(), *names.split()))
+
+
+def bench_law(old: str, new: str) -> Callable[[Suboff], Verdicts]:
+    """Another identification of the bench tests."""
+    return lambda _: in_place_of(thruster.bench_test, old, new, lambda: validate_fish_bench(fish()))
+
+
+TRIMS = (
+    (
+        "rotors in air push down",
+        trims_law("hovering", flyingfish_model.thrusters, "1.0 if wet else -1.0", "1.0 if wet else 1.0"),
+    ),
+    ("thrust in the parameter file +5 %, hovering", trims_law("hovering", flyingfish_model.thrusters, "map(float, factors)", "map(float, 1.05 * factors)")),
+    (
+        "damping in air +5 %, flight ahead",
+        lambda _: refusals(lambda: validate_fish_trims(replace(fish(), air=fish().air * TWENTIETH), "hovering")),
+    ),
+    ("sides of the rotors in the parameter file", trims_law("both_readings", flyingfish_model.thrusters, "y * length", "-y * length")),
+    ("height of the rotors in the parameter file +5 %", trims_law("both_readings", flyingfish_model.thrusters, "-height)", "-1.05 * height)")),
+    ("trims by equation 40 as printed", trims_law("both_readings", motions.craft, "x[None, 4:], -1.0)", "x[None, 4:], 1.0)")),
+    ("sign of the turn of a helix", trims_law("tracks", steady_motion.helix, "north * aside + east", "-north * aside + east")),
+    ("rate of heading of a helix +5 %", trims_law("tracks", steady_motion.helix, "turned = yaw_rate", "turned = 1.05 * yaw_rate")),
+    ("sign of m v x r under the tracks", trims_law("tracks", momentum_quadratics, "out[:3, 3:, :] -= ", "out[:3, 3:, :] += ")),
+)  # fmt: skip
+BENCHES = (
+    ("equations 41 and 43: thrust of the bench +5 %", bench_law("table[:, k]))", "(1.05 if load == 'thrust' else 1.0) * table[:, k]))")),
+    ("equations 41 and 43: sign of the thrust of the bench", bench_law("table[:, k]))", "(-1.0 if load == 'thrust' else 1.0) * table[:, k]))")),
+    ("equations 42 and 44: torque of the bench +5 %", bench_law("table[:, k]))", "(1.05 if load == 'torque' else 1.0) * table[:, k]))")),
+    ("equations 42 and 44: sign of the torque of the bench", bench_law("table[:, k]))", "(-1.0 if load == 'torque' else 1.0) * table[:, k]))")),
+    ("equations 41 to 44: square of the rotor speed +5 %", bench_law("command, squares = table[:, 0], table[:, 1]", "command, squares = table[:, 0], 1.05 * table[:, 1]")),
+    ("equations 41 to 44: n^3 for n^2", bench_law("np.column_stack([command, squares])", "np.column_stack([command, command * squares])")),
+)  # fmt: skip
+
 FLYINGFISH = (
     ("Yv|v| +5 %", rotors("quadratic", 1, TWENTIETH)),
     ("Kp|p| x10", rotors("quadratic", 3, 10.0)),
@@ -264,6 +304,8 @@ FLYINGFISH = (
         "speed lost at the surface",
         fish_law(media.through_media, "velocity=part.velocity[-1]", "velocity=0.95 * part.velocity[-1]"),
     ),
+    *TRIMS,
+    *BENCHES,
 )
 
 
@@ -476,7 +518,11 @@ def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
             plane, turned = validate_thauv(lambda g: g), validate_thauv_in_space()
             return Verdicts({**plane.rows, **turned.rows}, plane.checks)
         case "flyingfish":
-            return validate_flyingfish(fish())
+            quick, trims = (
+                validate_flyingfish(fish()),
+                validate_fish_trims(fish(), "hovering", "both_readings", "tracks"),
+            )
+            return replace(quick, rows=quick.rows | trims.rows | validate_fish_bench(fish()).rows)
         case "huuv":
             level, five = validate_huuv(steered()), validate_five(in_five())
             return replace(level, rows=level.rows | five.rows)

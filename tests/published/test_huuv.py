@@ -11,7 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.steady_state import features, level_forces, steady_motions, steady_turns, wrenches
 from coeflab.motion.vehicle import Vehicle, vehicle
-from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv, thrust, thrust_rates
+from coeflab.published.huuv.model import Huuv, commands, parameter_file, read_huuv, thrust, thrust_rates
 from coeflab.vehicle.parameter_file import read_parameter_file
 
 FILE = shipped("cfd_data") / "huuv" / "huuv.parameters.json"
@@ -46,6 +46,14 @@ def test_thrust_of_the_two_sides(huuv: Huuv) -> None:
     assert x == pytest.approx(force + port)
     assert n == pytest.approx(0.1 * (port - force))
     assert not y.any()
+
+
+def test_two_inputs_give_two_commands_within_their_limits() -> None:
+    """Equations 35 and 36: a positive difference turns to port; beyond 100 % a thruster stays there."""
+    left, right = commands(np.array([50.0, 80.0, -30.0, 95.0]), np.array([10.0, -20.0, 80.0, 15.0]))
+    assert left == pytest.approx([40.0, 100.0, -100.0, 80.0])
+    assert right == pytest.approx([60.0, 60.0, 50.0, 100.0])
+    assert thrust(left[:1], right[:1], 0.1654, -2.338, 0.1, 14.0)[0, 2] < 0.0
 
 
 def test_thrust_rates(huuv: Huuv) -> None:

@@ -48,7 +48,7 @@ def file(five: FiveDof) -> ParameterFile:
 def test_every_row_without_a_motion_in_time_holds(five: FiveDof, file: ParameterFile) -> None:
     tables = stated_rows(five, file)
     assert [r.quantity for t in tables for r in t.rows if not r.holds] == []
-    assert [len(t.rows) for t in tables] == [16, 9, 9]
+    assert [len(t.rows) for t in tables] == [23, 9, 9]
 
 
 def test_the_shipped_file_is_what_its_maker_writes(file: ParameterFile) -> None:

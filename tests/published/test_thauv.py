@@ -183,7 +183,7 @@ def test_a_dive_s_parameter_file_goes_through_the_common_simulator(thauv: Accept
 
 @pytest.mark.parametrize("to", ["mss", "fmi", "xdyn"])
 def test_simulators_hold_the_whole_force_of_a_dive_and_lose_the_thrusters_alone(thauv: Acceptance, to: str) -> None:
-    file = next(p for p in thauv.parameter_files if p.name == "thauv_case_02_dive")
+    file = next(p for p in thauv.parameter_files if p.name == "thauv_case_02_dive_1")
     loss = export(file, to).loss
     assert loss is not None
     assert [s for s in loss.not_held if "thrusters" not in s] == []

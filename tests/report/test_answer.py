@@ -16,6 +16,8 @@ from coeflab.report.answer import answer, answer_table
 from coeflab.report.content import document, verdict
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
+from coeflab.report.figures.panel import SIZE
+from coeflab.report.figures.svg import text_width
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.report.summary import study_summary
 from coeflab.study.study import PlannedTow, Study
@@ -293,7 +295,10 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
         == "Boat: 1 of 3 numbers outside the tolerance; 2 of the 3 are validation: printed and recomputed."
     )
     assert made.rows == ()
-    assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
+    assert [(r[0], *r[2:]) for r in answer_table(made).rows] == [
+        ("printed and recomputed", "2 of 2", "50 %", "pass"),
+        ("calibration", "0 of 1", "500 %", "fail"),
+    ]
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within the tolerance;")
@@ -302,12 +307,32 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     assert "arrow" not in answer(found(2.05)).forest.caption
 
 
-def test_long_names_are_cut_on_a_terminal_only():
-    long = found(2.05)
-    long = replace(long, tables=(replace(long.tables[0], title="Steady turns " * 12),))
-    made = answer(long, drawn=False)
-    assert made.table.rows[0][0] == "Steady turns " * 12
+def test_what_a_number_is_compared_with_is_cut_on_a_terminal_only():
+    made = answer(found(2.05), drawn=False)
+    assert made.table.rows[1][1] == "our model was fitted to these numbers, so agreement proves nothing"
     assert max(map(len, plain_lines(answer_table(made)))) <= 80
+
+
+def test_a_number_that_is_met_twice_counts_once_by_basis():
+    made = found(2.05)
+    again = replace(made.tables[0], key="again", repeats="turns_a")
+    made = answer(replace(made, tables=(*made.tables, again)), drawn=False)
+    assert [r[2] for r in made.table.rows] == ["2 of 2", "1 of 1"]
+    assert made.table.notes == ("3 more comparisons repeat these numbers in another way: 3 within the tolerance.",)
+
+
+def test_bars_of_the_tables_have_names_of_their_own_width():
+    """A name stands above its bar, whole where it fits; the line of the tolerance keeps clear of the counts."""
+    long = found(2.05)
+    long = replace(long, tables=(*long.tables, replace(long.tables[0], title="Steady turns " * 12)))
+    figure = answer(long).forest
+    assert "Turns<" in figure.svg
+    assert "Steady turns Steady turns" in figure.svg
+    (panel,) = figure.panels
+    tolerance = panel.frame[0] + panel.frame[2] / panel.across[1]
+    counts = [float(x) for x in re.findall(r'<text [^>]*text-anchor: end[^>]*x="([\d.]+)"[^>]*>3 of 3', figure.svg)]
+    assert len(counts) == 2
+    assert tolerance + text_width("3 of 3", SIZE) < min(counts)
 
 
 def test_a_drawing_under_another_anchor_refers_to_itself():

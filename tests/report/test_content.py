@@ -118,7 +118,7 @@ def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():
     table = next(s for s in document(study).sections if s.anchor == "coefficients").tables[0]
     said = [n for n in table.notes if "form is chosen" in n]
     assert said == [
-        "U95 of Yv|v|': scatter, and the uncertainty of the slope, only. The form is chosen, its error is not assessed."
+        "U95 of Yv|v|' holds only the scatter and the uncertainty of the slope. The form is chosen, its error is not assessed."
     ]
     assert form_not_assessed([replace(tied, parts=Parts(random=1e-5, model_form=0.0))]) == ""
 

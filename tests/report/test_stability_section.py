@@ -130,7 +130,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     (said,) = in_words(study)
     start = "With controls fixed, straight motion is unstable at high speed (no restoring moment), no U95: synthetic"
     assert said.startswith(start)
-    assert ", at 1.50 m/s not determined, as BG is not known; stable, no U95: synthetic (G_h" in said
+    assert ", at 1.50 m/s not determined, as BG is not known. It is stable, no U95: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)

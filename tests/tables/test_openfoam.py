@@ -223,6 +223,15 @@ def test_coefficients_whose_comments_say_nothing_stay_coefficients(case: Callabl
     assert "state no liftDir" in remarks(read(folder))
 
 
+def test_coefficients_by_a_speed_beyond_numbers_stay_coefficients(case: Callable[[str], Path]) -> None:
+    folder = case("coefficients_old")
+    edit(
+        folder / "postProcessing/forceCoeffs/0/forceCoeffs.dat",
+        ("# magUInf    : 2.000000e+00", "# magUInf    : 2e+200"),
+    )
+    assert "magUInf 2e+200 and Aref 0.5 make a force beyond" in remarks(read(folder))
+
+
 def test_kinematic_density_is_said_and_turned(case: Callable[[str], Path]) -> None:
     run = read(SAMPLES / "org_v4_porous")
     assert run.history.stated["conditions.density"].value == 1.0

@@ -17,7 +17,7 @@ from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, against_words
-from coeflab.tables.words_above import water_density, words_above
+from coeflab.tables.words_above import POINT_FROM, water_density, words_above
 
 
 def said(*lines: str, marks: Marks | None = None) -> dict[str, Stated]:
@@ -216,6 +216,38 @@ def test_a_setting_against_the_words_is_marked(key: str, value: object, said_of:
     [(marked, _, place)] = against_words(raw, {key: Setting(value, "confirmed")})
     assert marked == key
     assert place.startswith("line 1")
+
+
+@pytest.mark.parametrize(
+    ("line", "point", "is_open"),
+    [("Bezugspunkt der Momente: 1,2 m hinter dem Bug", "-1.2 m nose", False), ("moments about 2.013 m from FP", "-2.013 m FP", False),
+     ("moments réduits au point x = 1.2 m du nez", "-1.2 m nose", False), ("Momente um x/L = 0.45", "-0.45 L nose?", False),
+     ("Momentenbezugspunkt 45 % der Länge", "-0.45 L nose?", False), ("reference point 1.9 m forward of AP", "1.9 m AP", False),
+     ("moments about 2100 mm aft of bow", "-2.1 m nose", False), ("reference point 0.2 m from midships", "0.2 m midship", True),
+     ("reference point x = 1.2 m", "1.2 m nose?", True), ("moments about 1.2 m aft of the nose, 0.1 m below the axis", "-1.2 m nose", True),
+     ("Moments about midships, length 4.3 m", "", False), ("moments about midships; model mass 820 kg", "", False)],
+)  # fmt: skip
+def test_a_number_for_the_point_of_the_moments(line: str, point: str, is_open: bool) -> None:
+    """A side that no word says is open; a share of the length without a point counts aft of the nose, which is said."""
+    found = said(line, marks=Marks(",") if "1,2" in line else None)
+    assert str(found[POINT_FROM].value) == point if point else POINT_FROM not in found
+    if point:
+        one = asked({**found, "scaling.length": Stated(4.0, "line 9", offered=True)})["axes.reference_point"]
+        assert one.open is is_open
+        assert "line 1" in (one.choices if is_open else one.why)
+        assert ("it does not say" in one.why) is (point.endswith("?") and not is_open)
+
+
+def test_a_point_that_two_lines_give_differently_is_open_and_another_datum_is_not_mixed_in() -> None:
+    two = said("moments about 1.2 m aft of the nose", "MRP 1.4 m aft of the nose")
+    assert "line 2" in asked(two)["axes.reference_point"].choices
+    assert asked(two)["axes.reference_point"].open
+    one = said("moments about 1.2 m aft of the nose")
+    assert asked(one, axes__datum="midship")["axes.reference_point"].open
+    assert asked(one, axes__datum="bow")["axes.reference_point"].default == "-1.2, 0, 0"
+    known = {"axes.datum": Setting("nose", "said"), "axes.reference_point": Setting([-1.0, 0.0, 0.0], "said")}
+    [(marked, _, place)] = against_words(RawTable(Path("t.csv"), (), stated=one), known)
+    assert (marked, place[:6]) == ("axes.reference_point", "line 1")
 
 
 def test_left_handed_axes_are_named() -> None:

@@ -16,6 +16,7 @@ from coeflab.bodies.arm_keys import (
     DIMENSIONS,
     ArmKeys,
     ArmPhaseKeys,
+    ControllerKeys,
     LinkKeys,
     PropulsorKeys,
     StartKeys,
@@ -52,6 +53,8 @@ class File(BodyFile):
         Joints and links, from the vehicle outwards.
     thruster : array of tables
         Thrusters of the vehicle.
+    controller : table
+        Of phases whose vehicle is kept.
     start : table
         How a motion begins.
     phase : array of tables
@@ -65,6 +68,7 @@ class File(BodyFile):
     arm: ArmKeys
     link: tuple[LinkKeys, ...] = ()
     thruster: tuple[PropulsorKeys, ...] = ()
+    controller: ControllerKeys = field(default_factory=ControllerKeys)
     start: StartKeys = field(default_factory=StartKeys)
     phase: tuple[ArmPhaseKeys, ...] = ()
     basis: dict[str, takes.Text] = field(default_factory=dict)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,8 +17,10 @@ from coeflab.core.errors import shown
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array
 from coeflab.law.transforms import moved
-from coeflab.motion.manoeuvre import Manoeuvre, Phase
+from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
+from coeflab.motion.multibody.control import Controller
+from coeflab.motion.multibody.manoeuvres import PHASES, ordered
 from coeflab.motion.multibody.thrusters import (
     Thruster,
     TorqueThruster,
@@ -27,7 +31,24 @@ from coeflab.motion.multibody.thrusters import (
 
 BODY = "body.toml"
 ALIKE = 0.02  # of the hull's volume: no word about less
-FREE = 10.0  # s of free motion where no phase is given
+
+
+class Arm(NamedTuple):
+    """What a body.toml states, and what it is to do.
+
+    Attributes
+    ----------
+    chain : Chain
+    manoeuvre : Manoeuvre
+    controller : Controller
+    places : tuple of str
+        Of each phase of the manoeuvre: ``phase[2]`` of the file, or nothing where options of the manoeuvre order it.
+    """
+
+    chain: Chain
+    manoeuvre: Manoeuvre
+    controller: Controller
+    places: tuple[str, ...]
 
 
 def is_arm(path: Path) -> bool:
@@ -47,16 +68,24 @@ def read_chain(path: Path) -> Chain:
     InputError
         No body.toml of an arm; everything that is wrong with it, by line and key.
     """
-    return read_arm(path)[0]
+    return read_arm(path).chain
 
 
-def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
-    """The same, and the motion that its phases order; without a phase it moves freely for 10 s.
+def read_arm(path: Path, manoeuvre: str = PHASES, options: Mapping[str, Any] | None = None) -> Arm:
+    """The same, and a motion: the phases of the file, or a manoeuvre by name; without a phase it moves freely for 10 s.
+
+    Parameters
+    ----------
+    path : Path
+    manoeuvre : str
+        Of `coeflab.motion.multibody.manoeuvres.MANOEUVRES`.
+    options : mapping of str to value, optional
+        Of the manoeuvre.
 
     Raises
     ------
     InputError
-        No body.toml of an arm; everything that is wrong with it, by line and key.
+        No body.toml of an arm; everything that is wrong with it, by line and key; options of the manoeuvre.
     """
     toml = read_toml(path / BODY if path.is_dir() else path)
     head = toml.content.get("body")
@@ -88,25 +117,8 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
         assumed=tuple(assumed),
         datum=-origin,
     )
-    return chain, _motion(file, chain)
-
-
-def _motion(file: File, chain: Chain) -> Manoeuvre:
-    """Phases with their orders, by the names of joints and thrusters."""
-    joints = [joint.name for joint in chain.joints]
-    phases = []
-    for one in file.phase:
-        orders = {"vehicle.held": float(one.vehicle == "held")}
-        orders |= dict(zip(joints, file.positions(one), strict=False))
-        orders |= {f"{name}.torque": value for name, value in zip(joints, file.torques(one), strict=False)}
-        orders |= {t.name: value for t, value in zip(chain.thrusters, file.commands(one), strict=False)}
-        if one.end is not None:
-            place = one.end - file.vehicle.centre_of_mass
-            orders |= {f"end.{axis}": float(value) for axis, value in zip("xyz", place, strict=True)}
-        phases.append(Phase(one.name, orders, one.lasts))
-    started = {f"{name}.rate": value for name, value in zip(joints, file.rates(), strict=False)}
-    made = tuple(phases) or (Phase("free motion", {"vehicle.held": 0.0}, FREE),)
-    return Manoeuvre("arm_motion", made, np.array(file.start.velocity), orders=started)
+    motion, places = ordered(manoeuvre, file, chain, {} if options is None else options)
+    return Arm(chain, motion, Controller(**asdict(file.controller)), places)
 
 
 def _base(name: str, keys: VehicleKeys, density: float) -> Base:

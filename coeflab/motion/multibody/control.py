@@ -69,25 +69,25 @@ class Controller:
     ----------
     law : {"computed_torque", "station"}
         Computed torque knows the whole model; station keeping M at the start, and weight and buoyancy.
-    vehicle, joints : float
+    vehicle_frequency, joint_frequency : float
         Natural frequency of an error, rad/s.
     damping : float
         Over the critical one.
-    propeller : float
+    propeller_rate : float
         How fast a propeller is brought to its speed, 1/s.
     knows_current : bool
         Whether the model of computed torque has the current.
     """
 
     law: Literal["computed_torque", "station"] = "computed_torque"
-    vehicle: float = 1.0
-    joints: float = 4.0
+    vehicle_frequency: float = 1.0
+    joint_frequency: float = 4.0
     damping: float = 1.0
-    propeller: float = 10.0
+    propeller_rate: float = 10.0
     knows_current: bool = True
 
     def __post_init__(self) -> None:
-        for name in ("vehicle", "joints", "damping", "propeller"):
+        for name in ("vehicle_frequency", "joint_frequency", "damping", "propeller_rate"):
             if not getattr(self, name) > 0.0:
                 raise InputError(f"{getattr(self, name):g}", "a value above zero", column=name)
 
@@ -108,6 +108,8 @@ class ControlledRun:
         As `coeflab.motion.multibody.kane.right_hand_side` has it.
     wanted : (k, n) array
         Joint positions that were asked for, rad or m.
+    propellers : (k, p) array
+        States of the thrusters' models, one after the other.
     ordered, thrust : (k, m) array
         Thrusts, N: asked for, and given.
     torque : (k, n) array
@@ -115,9 +117,10 @@ class ControlledRun:
     end, end_wanted : (k, 3) array
         End effector, and where it is with vehicle and joints at their references; NED, m.
     ended : Ended
-    status : tuple of str
-        What was out of reach, each with its time: thrusters or drives at their limits, a joint at its end; empty where
-        nothing was.
+    why : str
+        In words, with its time, where it did not reach its end.
+    saturated : tuple of str
+        Thrusters and drives that were asked for more than they give, each with its time.
     """
 
     chain: Chain
@@ -126,17 +129,24 @@ class ControlledRun:
     time: Array
     state: Array
     wanted: Array
+    propellers: Array
     ordered: Array
     thrust: Array
     torque: Array
     end: Array
     end_wanted: Array
     ended: Ended
-    status: tuple[str, ...] = ()
+    why: str = ""
+    saturated: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("time", "state", "wanted", "ordered", "thrust", "torque", "end", "end_wanted"):
+        for name in ("time", "state", "wanted", "propellers", "ordered", "thrust", "torque", "end", "end_wanted"):
             object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def status(self) -> tuple[str, ...]:
+        """What was out of reach: drives at their limits, a joint at its end; empty where nothing was."""
+        return (*self.saturated, *((self.why,) if self.why else ()))
 
     @property
     def apart(self) -> Array:
@@ -172,8 +182,12 @@ def controlled(
     *,
     station: Station | None = None,
     start: Array | None = None,
+    propellers: Array | None = None,
+    begins: float = 0.0,
     flow: Flow = STILL,
     rows: float = ROWS,
+    tolerance: float = TOLERANCE,
+    method: str = METHOD,
 ) -> ControlledRun:
     """Keep the vehicle on its station while the joints follow a track.
 
@@ -189,10 +203,17 @@ def controlled(
     station : Station, optional
         The origin, level, heading north, unless given.
     start : (13 + 2 n,) array, optional
-        On station at rest, with the joints where the track begins, unless given. Propellers stand still.
+        On station at rest, with the joints where the track begins, unless given.
+    propellers : (p,) array, optional
+        States of the thrusters' models; they stand still unless given.
+    begins : float
+        Time at the start, s.
     flow : Flow
+        At time zero.
     rows : float
         s between rows.
+    tolerance, method
+        As `coeflab.motion.multibody.motion.march` takes them.
 
     Raises
     ------
@@ -201,13 +222,15 @@ def controlled(
     """
     station = Station() if station is None else station
     if start is None:
-        start = at_rest(chain, track.at(0.0)[0])
+        start = at_rest(chain, track.at(begins)[0])
         start[:7] = np.concatenate([station.position, station.attitude])
     loop = _Loop(chain, controller, track, station, flow, start)
-    states = sum(t.order for t in chain.thrusters)
+    if propellers is None:
+        propellers = np.zeros(sum(t.order for t in chain.thrusters))
     found = march(
-        chain, loop.rates, loop.control, np.concatenate([start, np.zeros(states)]), 0.0, lasts, rows, TOLERANCE, METHOD
-    )
+        chain, loop.rates, loop.control, np.concatenate([start, propellers]), begins, begins + lasts, rows, tolerance,
+        method,
+    )  # fmt: skip
     asked = [loop.asked(t, y) for t, y in zip(found.time, found.state, strict=True)]
     size, n = 13 + 2 * chain.count, chain.count
     thrusts = [loop.thrusts(y, a) for y, a in zip(found.state, asked, strict=True)]
@@ -215,10 +238,10 @@ def controlled(
     ideal = np.array([np.concatenate([station.position, station.attitude, q, np.zeros(6 + n)]) for q in wanted])
     ordered = np.array([loop.inverse @ a[:6] for a in asked])
     torque = np.array([a[6:] for a in asked])
-    status = (*_at_limits(loop, found.time, ordered, torque), *((found.why,) if found.why else ()))
+    saturated = tuple(_at_limits(loop, found.time, ordered, torque))
     return ControlledRun(
-        chain, controller, station, found.time, found.state[:, :size], wanted, ordered, np.array(thrusts),
-        np.array([limited(chain, a) for a in torque]), np.array([kane.end_in_earth(chain, s) for s in found.state]), np.array([kane.end_in_earth(chain, s) for s in ideal]), found.ended, status,
+        chain, controller, station, found.time, found.state[:, :size], wanted, found.state[:, size:], ordered, np.array(thrusts),
+        np.array([limited(chain, a) for a in torque]), np.array([kane.end_in_earth(chain, s) for s in found.state]), np.array([kane.end_in_earth(chain, s) for s in ideal]), found.ended, found.why, saturated,
     )  # fmt: skip
 
 
@@ -235,14 +258,15 @@ class _Loop:
         self.size = 13 + 2 * chain.count
         self.at_start = kane.mass_matrix(chain, start[7 : 7 + chain.count])
         self.gains = tuple(gain_of(t, chain.density) for t in chain.thrusters)
-        self.known = flow if controller.knows_current else STILL
 
     def asked(self, time: float, state: Array) -> Array:
         """(6 + n,) control forces that the law asks for."""
         n, chain = self.chain.count, self.chain
         changes = wanted_accelerations(self.controller, self.station, self.track, n, time, state)
         if self.controller.law == "computed_torque":
-            m, force = self.equations(state[: self.size], self.known)
+            m, force = self.equations(
+                state[: self.size], self.flow.at(time) if self.controller.knows_current else STILL
+            )
             return np.asarray(m @ changes - force)
         down = np.array(axes_in_earth(*state[3:7])[2::3])
         q = state[7 : 7 + n]
@@ -253,7 +277,7 @@ class _Loop:
         ordered, out, at = self.inverse @ asked[:6], np.zeros(len(self.gains)), self.size
         for i, (thruster, gain) in enumerate(zip(self.chain.thrusters, self.gains, strict=True)):
             here = state[at : at + thruster.order]
-            out[i] = demand(thruster, gain, float(ordered[i]), here, self.controller.propeller, self.chain.density)
+            out[i] = demand(thruster, gain, float(ordered[i]), here, self.controller.propeller_rate, self.chain.density)
             at += thruster.order
         return out
 
@@ -274,7 +298,7 @@ class _Loop:
         commands = self.commands(state, asked)
         density, propellers = self.chain.density, state[self.size :]
         pushed = self.matrix @ thruster_forces(self.chain.thrusters, propellers, commands, density)
-        m, force = self.equations(state[: self.size], self.flow)
+        m, force = self.equations(state[: self.size], self.flow.at(time))
         changed = np.linalg.solve(m, force + np.concatenate([pushed, limited(self.chain, asked[6:])]))
         moved = kane.displacement_rates(self.chain.count, state)
         return np.concatenate([moved, changed, thruster_rates(self.chain.thrusters, propellers, commands, density)])
@@ -290,13 +314,13 @@ def wanted_accelerations(
     """
     q, s = state[7 : 7 + count], state[7 + count : 13 + 2 * count]
     turn = rotations(state[None, 3:7])[0]
-    place, pace = controller.vehicle, 2.0 * controller.damping
+    place, pace = controller.vehicle_frequency, 2.0 * controller.damping
     out = np.empty(6 + count)
     pulled = place**2 * (turn.T @ (station.position - state[:3])) - pace * place * s[:3]
     out[:3] = pulled - kane.cross(s[3:6], s[:3])
     out[3:6] = 2.0 * place**2 * _turn_left(state[3:7], station.attitude) - pace * place * s[3:6]
     wanted, rate, change = track.at(time)
-    out[6:] = change + pace * controller.joints * (rate - s[6:]) + controller.joints**2 * (wanted - q)
+    out[6:] = change + pace * controller.joint_frequency * (rate - s[6:]) + controller.joint_frequency**2 * (wanted - q)
     return out
 
 

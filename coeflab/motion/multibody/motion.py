@@ -349,9 +349,10 @@ def track_to(
     """
     for joint, value in zip(chain.joints, to, strict=True):
         if not joint.low <= value <= joint.high:
-            unit = "rad" if joint.turns else "m"
+            factor, unit = (180.0 / np.pi, "deg") if joint.turns else (1.0, "m")
             raise InputError(
-                f"{value:g} {unit}", f"{joint.low:g} to {joint.high:g} {unit}, the limits of joint {joint.name}",
+                f"{factor * value:.6g} {unit}",
+                f"{factor * joint.low:.6g} to {factor * joint.high:.6g} {unit}, the limits of joint {joint.name}",
                 column="joints",
             )  # fmt: skip
     return Track(begins, ends, np.array([q, to]), np.zeros(chain.count) if rates is None else rates)

@@ -15,6 +15,7 @@ LETTERS = "XYZKMN"
 WEAK = 1e-9
 BLADE = 0.7  # of the radius, where the blade is taken
 HALVINGS = 200
+WITHOUT = "A free or a held vehicle needs none."
 
 
 @brief
@@ -258,11 +259,15 @@ def require_all_directions(thrusters: Sequence[Thruster]) -> Array:
     InputError
         Thrusters that cannot make every force and moment, with those that are lost.
     """
+    if not thrusters:
+        raise InputError(
+            "no thrusters", "thrusters that make every force and moment", column="thruster", advice=WITHOUT
+        )
     matrix = thruster_matrix(thrusters)
     if lost := lost_directions(matrix):
         raise InputError(
             f"thrusters that make no {', no '.join(lost)}", "a thruster matrix of rank 6", column="thruster",
-            advice="Add or turn a thruster, or control fewer directions.",
+            advice=f"Add or turn a thruster. {WITHOUT}",
         )  # fmt: skip
     return np.asarray(np.linalg.pinv(matrix))
 

@@ -19,7 +19,7 @@ from coeflab.published.huuv.five_dof import (
     turning_laws,
 )
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
-from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, thrust
+from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, commands, thrust
 from coeflab.published.huuv.tuning import IN_WORDS
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import body_figure
@@ -191,10 +191,11 @@ def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
     )  # fmt: skip
 
 
-def straight_speeds(huuv: Huuv, commands: Array, drag_left_out: float = 0.0) -> Array:
-    """(n,) m/s of the straight runs of Fig. 18, both thrusters alike; ``drag_left_out`` N/(m/s)^2."""
+def straight_speeds(huuv: Huuv, total: Array, drag_left_out: float = 0.0) -> Array:
+    """(n,) m/s of the straight runs of Fig. 18, ``total`` per cent for both thrusters; ``drag_left_out`` N/(m/s)^2."""
     c = huuv.constants
-    push = thrust(commands, commands, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)[:, 0]
+    left, right = commands(total, np.zeros(len(total)))
+    push = thrust(left, right, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)[:, 0]
     return np.asarray(np.sqrt(push / (c["d0"] - drag_left_out)))
 
 

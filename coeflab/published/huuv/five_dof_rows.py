@@ -21,6 +21,9 @@ from coeflab.published.huuv.five_dof import (
     angles,
     assumed_body,
     coriolis,
+    damping,
+    elevator_damping,
+    elevator_laws,
     hull_damping,
     hull_laws,
     inertia,
@@ -29,7 +32,7 @@ from coeflab.published.huuv.five_dof import (
     thrusts,
     unbalanced,
 )
-from coeflab.published.huuv.model import MATLAB, Turns, thrust
+from coeflab.published.huuv.model import MATLAB, Turns, commands, thrust
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -100,14 +103,34 @@ def _row(
 
 def _by_hand(five: FiveDof) -> list[Compared]:
     rows = []
-    for i, (nu, pitch, delta, commands, forces) in enumerate(BY_HAND, start=1):
-        left, right = (np.array([c]) for c in commands)
+    for i, (nu, pitch, delta, ordered, forces) in enumerate(BY_HAND, start=1):
+        left, right = (np.array([c]) for c in ordered)
         found = unbalanced(five, np.array([nu]), np.array([pitch]), np.array([delta]), thrusts(five, left, right))[0]
         rows += [
             _row(f"state {i}, worked out apart", name, "N" if name in "XYZ" else "N m", against, float(one), 1e-5)
             for name, against, one in zip(ROWS, forces, found, strict=True)
         ]
     return rows
+
+
+def _commanded(five: FiveDof) -> list[Compared]:
+    """Thrusters by their two inputs, and elevators beyond their largest angle, at 1 m/s; numbers by hand."""
+    ahead, none = np.array([[1.0, 0.0, 0.0, 0.0, 0.0]]), np.zeros(1)
+    tau = thrusts(five, *commands(np.array([50.0]), np.array([10.0])))[0]
+    held = -elevator_damping(five, ahead, np.radians([40.0]))[0]
+    still = float(elevator_laws(five, none)[0][0])
+    moved = replace(five, constants={**five.constants, "C_D0": 2.0 * still})
+    apart = float(np.max(np.abs(damping(moved, ahead, np.array([0.3])) - damping(five, ahead, np.array([0.3])))))
+    told, beyond = "inputs 50 % and 10 %", "elevators ordered to 40 deg, held at 30 deg"
+    return [
+        _row(told, "X", "N", 11.864, float(tau[0]), 1e-5),
+        _row(told, "N", "N m", -0.3308, float(tau[4]), 1e-5),
+        _row(beyond, "X", "N", -6.031425, float(held[0]), 1e-5),
+        _row(beyond, "Z", "N", 20.826314, float(held[2]), 1e-5),
+        _row(beyond, "M", "N m", -4.436358, float(held[3]), 1e-5),
+        _row("Fig. 15, elevators at 0 deg", "C_D", "1", 0.03, still, 1e-4),
+        _row("C_D at 0 deg doubled", "force apart", "N", 0.0, max(apart, FINEST), EXACT),
+    ]
 
 
 def _matrices(five: FiveDof) -> tuple[Compared, ...]:
@@ -136,7 +159,7 @@ def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
     level = nu * (1.0, 0.0, 1.0, 1.0, 1.0)
     cases = (("elevators deflected, no drift", level, delta), ("elevators neutral, drift", nu, np.zeros(MOTIONS)))
     made, none = vehicle(file, free=FREE), np.zeros((MOTIONS, 5))
-    rows = [*_by_hand(five), *_matrices(five)]
+    rows = [*_by_hand(five), *_commanded(five), *_matrices(five)]
     for case, motion, angle in cases:
         whole, controls = np.zeros((MOTIONS, 6)), np.zeros((MOTIONS, 3))
         whole[:, AT], controls[:, 2] = motion, angle
@@ -153,7 +176,8 @@ def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
         ("Two states with attack, drift, rates, pitch, elevators and unequal thrusts: what accelerates, worked out apart from this package.",
          "C in the printed pattern, with the moments of the added masses where the paper prints m_z z_CG, against the kinetic energy of M. "
          "Lift and side force do no work by equations 5-7 as corrected; as printed they do. The file reads V^2 where equations 15-17 have "
-         "V_xz^2 = V^2 cos^2(beta): at 21 deg of drift 15 % more of the elevators.",),
+         "V_xz^2 = V^2 cos^2(beta): at 21 deg of drift 15 % more of the elevators.",
+         "The elevators' drag at 0 deg is in the hull's tables with neutral elevators already: it moves no force, and Fig. 15 alone shows it.",),
     )  # fmt: skip
 
 
@@ -197,9 +221,9 @@ def _geometry(five: FiveDof) -> ComparedTable:
 
 def _straight(five: FiveDof) -> ComparedTable:
     """Nine straight runs in five degrees of freedom, beside the horizontal model's closed form."""
-    commands = np.array(STRAIGHT)
+    ordered = np.array(STRAIGHT)
     c = five.level.constants
-    push = thrusts(five, commands, commands)
+    push = thrusts(five, *commands(ordered, np.zeros(len(ordered))))
     speed = np.sqrt(push[:, 0] / c["d0"])
     start = np.column_stack([speed, np.zeros((len(speed), 4))])
     neutral = replace(five, constants={**five.constants, "displaced": c["m"] / five.density})
@@ -207,7 +231,7 @@ def _straight(five: FiveDof) -> ComparedTable:
     floating, _ = steady(five, np.zeros(len(speed)), push, start)
     rows = tuple(
         _row(f"{command:g} %", "u, neutrally buoyant", "m/s", float(u), float(ours), 1e-9, True)
-        for command, u, ours in zip(commands, speed, found[:, 0], strict=True)
+        for command, u, ours in zip(ordered, speed, found[:, 0], strict=True)
     )
     up = floating[:, 2] * np.cos(floating[:, 3]) - floating[:, 0] * np.sin(floating[:, 3])
     light = five.buoyancy - five.weight

@@ -160,6 +160,18 @@ def _rows(columns: list[Array], wanted: NDArray[np.bool_]) -> Turns:
     return Turns(left, right, np.column_stack([u, np.radians(beta), radius]))
 
 
+LIMIT = 100.0  # per cent, either way
+
+
+def commands(total: Array, difference: Array) -> tuple[Array, Array]:
+    """Commands (n,) of the left and the right thruster, per cent, from their mean and half their difference (equations 35 and 36).
+
+    A positive difference turns to port. Beyond 100 % a thruster stays at its largest, so that a turn near full thrust slows down.
+    """
+    left, right = (np.clip(c, -LIMIT, LIMIT) for c in (total - difference, total + difference))
+    return left, right
+
+
 def thrust(left: Array, right: Array, slope: float, intercept: float, arm: float, dead_zone: float) -> Array:
     """(n, 3) X, Y and N of both thrusters ahead, FRD, and nothing within the dead zone (equations 34, 37 and 38)."""
     unit = thrust_rates(left, right, slope, intercept, arm, dead_zone)
@@ -254,8 +266,8 @@ def _thruster(huuv: Huuv, name: str, side: float) -> dict[str, Any]:
         "curve": {
             "command": "part of the largest thrust", "unit": "%",
             "segments": (
-                {"low": -100.0, "high": -huuv.dead_zone, "coefficients": (reverse_intercept, reverse_slope)},
-                {"low": -intercept / slope, "high": 100.0, "coefficients": (intercept, slope)},
+                {"low": -LIMIT, "high": -huuv.dead_zone, "coefficients": (reverse_intercept, reverse_slope)},
+                {"low": -intercept / slope, "high": LIMIT, "coefficients": (intercept, slope)},
             ),
         },
     }  # fmt: skip

@@ -159,16 +159,16 @@ def tasks() -> dict[str, ControlledRun]:
 def control(runs: dict[str, ControlledRun]) -> ComparedTable:
     """What the runs under control do, and what their law says that they do."""
     offset, law, heavy, pushed = runs["offset"], Controller(), runs["heavy"], runs["current"]
-    fades = _fading(law.vehicle, offset.time, float(np.linalg.norm(OFFSET)))
-    joints = ASIDE * _fading(law.joints, offset.time, 1.0)[:, None]
+    fades = _fading(law.vehicle_frequency, offset.time, float(np.linalg.norm(OFFSET)))
+    joints = ASIDE * _fading(law.joint_frequency, offset.time, 1.0)[:, None]
     mass, towed = kane.equations(pushed.chain, pushed.state[-1], Flow(CURRENT))
-    steady = np.linalg.solve(mass, towed)[:3] / law.vehicle**2
+    steady = np.linalg.solve(mass, towed)[:3] / law.vehicle_frequency**2
     turned, angle = at_rest(wet()), 0.3
     turned[3:7] = np.cos(angle / 2.0), 0.0, 0.0, np.sin(angle / 2.0)
     still = track_to(wet(), wet().home, wet().home, BEGINS, ENDS)
-    asked = wanted_accelerations(Controller(vehicle=1.5), Station(), still, 3, 0.0, turned)
+    asked = wanted_accelerations(Controller(vehicle_frequency=1.5), Station(), still, 3, 0.0, turned)
     other = wanted_accelerations(
-        Controller(vehicle=1.5), Station(attitude=-turned[3:7] * [1.0, 1.0, 1.0, -1.0]), still, 3, 0.0, turned
+        Controller(vehicle_frequency=1.5), Station(attitude=-turned[3:7] * [1.0, 1.0, 1.0, -1.0]), still, 3, 0.0, turned
     )
     excess = (heavy.chain.base.mass - heavy.chain.density * heavy.chain.base.volume) * heavy.chain.gravity
     lifted = thruster_matrix(heavy.chain.thrusters) @ heavy.ordered[0]

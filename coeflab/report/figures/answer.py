@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -203,7 +203,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
         svg = svg_text(figure, "answer-forest", title, said)
     outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
-    caption = "Bars: U95 of ours." + (f" The line is {compared}." if compared else "")
+    caption = "Bars: our U95." + (f" Line: {compared}." if compared else "")
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (
@@ -281,12 +281,13 @@ def _drawing(
     rows: Sequence[str] = (),
     beyond: Sequence[str] = (),
     steps: int = 5,
-    size: float = SIZE,
+    height: float = HEIGHT,
+    above: bool = False,
 ) -> tuple[Drawing, Axes]:
-    """A figure of one column's width and its ruled axes; with ``rows`` their names at the left and ``beyond`` at the right."""
-    figure = Drawing(figsize=(WIDTH / POINTS, HEIGHT / POINTS))
-    wide, high = WIDTH - left - right, HEIGHT - BOTTOM - 8.0 - LEGEND / 4.0 - legend_rows * ROW
-    axes = bare(figure, (left / WIDTH, BOTTOM / HEIGHT, wide / WIDTH, high / HEIGHT))
+    """A figure of one column's width and its ruled axes; with ``rows`` their names and ``beyond``, beside the frame or ``above`` each row."""
+    figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
+    wide, high = WIDTH - left - right, height - BOTTOM - 8.0 - LEGEND / 4.0 - legend_rows * ROW
+    axes = bare(figure, (left / WIDTH, BOTTOM / height, wide / WIDTH, high / height))
     axes.set_xlim(*across)
     axes.set_ylim(*up)
     at_x, at_y = ticks(across, steps), ticks(up, 5)
@@ -294,23 +295,23 @@ def _drawing(
     if rows:
         strokes(axes, (at_x, at_x), up, color=COLOURS["rule"], linewidth=0.5, zorder=0)
         levels = BOTTOM + high * (np.arange(len(rows), 0.0, -1.0) - up[0]) / (up[1] - up[0])
+        place, lift = (left, 5.0) if above else (left - 6.0, -2.9)
+        side: Literal["left", "right"] = "left" if above else "right"
         for k, name, said in zip(levels, rows, beyond, strict=True):
-            label(figure, (left - 6.0) / WIDTH, (k - 2.9) / HEIGHT, name, "right", fontsize=size)
-            label(
-                figure, (WIDTH - 3.0) / WIDTH, (k - 2.9) / HEIGHT, said, "right", color=COLOURS["muted"], fontsize=size
-            )
+            label(figure, place / WIDTH, (k + lift) / height, name, side)
+            label(figure, (WIDTH - 3.0) / WIDTH, (k + lift) / height, said, "right", color=COLOURS["muted"])
     else:
         strokes(axes, across, (at_y, at_y), color=COLOURS["rule"], linewidth=0.5, zorder=0)
         levels = BOTTOM + high * (at_y - up[0]) / (up[1] - up[0])
         for k, said in zip(levels, tick_texts(at_y), strict=True):
-            label(figure, (left - 5.0) / WIDTH, (k - 2.9) / HEIGHT, said, "right")
-        label(figure, (7.5 + 0.35 * SIZE) / WIDTH, (BOTTOM + high / 2.0) / HEIGHT, name_up, rotation=90)
+            label(figure, (left - 5.0) / WIDTH, (k - 2.9) / height, said, "right")
+        label(figure, (7.5 + 0.35 * SIZE) / WIDTH, (BOTTOM + high / 2.0) / height, name_up, rotation=90)
     axes.add_artist(
         Line2D([across[0], across[1]], [up[0], up[0]], color=COLOURS["muted"], linewidth=0.9, clip_on=False, zorder=1.5)
     )
     for place, said in zip(x, tick_texts(at_x), strict=True):
-        label(figure, place / WIDTH, (BOTTOM - 12.5) / HEIGHT, said)
-    label(figure, (left + wide / 2.0) / WIDTH, (BOTTOM - 26.5) / HEIGHT, name_across)
+        label(figure, place / WIDTH, (BOTTOM - 12.5) / height, said)
+    label(figure, (left + wide / 2.0) / WIDTH, (BOTTOM - 26.5) / height, name_across)
     return figure, axes
 
 
@@ -388,14 +389,14 @@ def _head(axes: Axes, tip: Array, along: Array, colour: str) -> None:
     )
 
 
-TEXT, LETTERING = 126.0, 7.75
+LINE, INSET = 19.5, 6.0  # points: a name and its bar below; left of both
 GOES_ON: dict[str, Any] = {
     "linestyle": "none", "marker": ">", "markersize": 6.0, "color": COLOURS["b"], "markeredgewidth": 0.0, "zorder": 3,
 }  # fmt: skip
 
 
 def shares_figure(found: Acceptance) -> Figure:
-    """Of every table of a publication the largest difference over what is allowed, as a bar; 1 is all of it."""
+    """Of every table of a publication the largest difference over its tolerance, as a bar."""
     title = "Largest difference over tolerance, by table"
     shares = [[abs(s) for r in t.rows if not np.isnan(s := share(r))] for t in found.tables]
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
@@ -405,38 +406,36 @@ def shares_figure(found: Acceptance) -> Figure:
     said = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
+        counts = [f"{sum(r.holds for r in t.rows)} of {len(t.rows)}" for t in found.tables]
+        right = 12.0 + max(text_width(count, SIZE) for count in counts)
+        names = [_cut(t.title, 0.93 * (WIDTH - INSET - right)) for t in found.tables]
         figure, axes = _drawing(
-            TEXT, 32.0, 0, across=across, up=(0.4, n + 0.6), name_across="of the tolerance  [-]",
-            rows=[_cut(t.title) for t in found.tables],
-            steps=2,
-            size=LETTERING,
-            beyond=[f"{sum(r.holds for r in t.rows)}/{len(t.rows)}" for t in found.tables],
+            INSET, right, 0, across=across, up=(0.6, n + 0.8), name_across="worst / tolerance  [-]", rows=names, beyond=counts,
+            steps=2, height=BOTTOM + 12.0 + LINE * (n + 0.2), above=True,
         )  # fmt: skip
         level = np.arange(n, 0.0, -1.0)
         colours = [COLOURS["a"] if t.holds else COLOURS["b"] for t in found.tables]
         for k, s, colour in zip(level, largest, colours, strict=True):
-            tagged(strokes(axes, ([0.0], [s]), ([k], [k]), color=colour, linewidth=5.0, zorder=2), "share")
+            tagged(strokes(axes, ([0.0], [s]), ([k], [k]), color=colour, linewidth=4.5, zorder=2), "share")
         cut = np.array([s > WIDEST for s in found_largest])
         if np.any(cut):
             tagged(axes.plot(largest[cut], level[cut], clip_on=False, **GOES_ON), "cut")
         axes.axvline(1.0, color=COLOURS["ink"], linewidth=1.2, linestyle=DOTTED, zorder=3)
         notes = [f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True)]
         panel = numbers(
-            axes, [points("share", "share", largest, level, notes)], "of the tolerance  [-]", "table", bars="across"
+            axes, [points("share", "share", largest, level, notes)], "worst / tolerance  [-]", "table", bars="across"
         )
         svg = svg_text(figure, "answer-shares", title, said)
-    caption = "Right: numbers that hold, of all in that table. A number holds up to 1, the dotted line."
+    caption = "A bar is the worst number of a table, at the right how many are within the tolerance; the dotted line is the tolerance."
     if np.any(cut):
         caption += f" A bar with an arrow goes on beyond {WIDEST:g}: the table has its length."
     return Figure("answer-shares", svg, title, caption, said, (panel,))
 
 
-def _cut(text: str) -> str:
-    """As many words as fit beside the bars."""
+def _cut(text: str, room: float) -> str:
+    """As many words as fit above a bar."""
     words = text.split()
-    kept = next(
-        n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]), LETTERING) <= TEXT - 18.0 or n <= 1
-    )
+    kept = next(n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]) + " …", SIZE) <= room or n <= 1)
     return text if kept == len(words) else " ".join(words[:kept]).rstrip(",") + " …"
 
 

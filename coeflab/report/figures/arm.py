@@ -25,7 +25,7 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.multibody import kane
 from coeflab.motion.multibody.chain import Chain, Joint
-from coeflab.motion.multibody.control import ControlledRun
+from coeflab.motion.multibody.control import ControlledRun, gain_of, most_thrust
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
@@ -316,16 +316,19 @@ def joint_plots(
             continue
         found = [Trace(joints[k].name, time, scale * positions[:, k], k % len(STYLES)) for k in own]
         if asked is not None:
-            found += [
-                Trace("asked for", time[::8], scale * asked[::8, k], -1, "filled", (joints[k].name,) * len(time[::8]))
-                for k in own
-            ]
+            found += [_asked(joints[k].name, time, scale * asked[:, k]) for k in own]
         acting = [Trace(joints[k].name, time, efforts[:, k], k % len(STYLES)) for k in own]
         plots += [
             Plot(place, "time  [s]", tuple(found), 90.0, is_scaled=False),
             Plot(effort, "time  [s]", tuple(acting), 90.0, is_scaled=False),
         ]
     return (*plots[:-1], replace(plots[-1], is_scaled=True)) if plots else ()
+
+
+def _asked(name: str, time: Array, values: Array) -> Trace:
+    """Dots, one in eight rows, where something was asked for: elsewhere it is not a number."""
+    there = np.flatnonzero(np.isfinite(values))[::8]
+    return Trace("asked for", time[there], values[there], -1, "filled", (name,) * len(there))
 
 
 def joints_figure(run: ControlledRun, anchor: str, title: str) -> Figure:
@@ -358,18 +361,22 @@ def station_figure(runs: Sequence[tuple[str, ControlledRun]], anchor: str, title
 
 def thrust_figure(run: ControlledRun, anchor: str, title: str, caption: str) -> Figure:
     """Thrusts given, and those asked for as dots: the first half of the thrusters above the others."""
-    names, half = [t.name.replace("_", " ") for t in run.chain.thrusters], -(-len(run.chain.thrusters) // 2)
-    plots = []
+    names = [one.name for one in run.chain.thrusters]
+    plots = _thrust_plots(names, run.time, run.thrust, run.ordered)
+    said = f"Thrusts of {len(names)} thrusters over time: {', '.join(names).replace('_', ' ')}."
+    return laws_figure(anchor, title, caption, said, plots)
+
+
+def _thrust_plots(names: Sequence[str], time: Array, thrust: Array, ordered: Array) -> list[Plot]:
+    """Thrusts (k, m), and those asked for as dots."""
+    shown, half, plots = [name.replace("_", " ") for name in names], -(-len(names) // 2), []
     for part in (range(half), range(half, len(names))):
-        lines = [Trace(names[k], run.time, run.thrust[:, k], k % len(STYLES)) for k in part]
-        dots = [
-            Trace("asked for", run.time[::8], run.ordered[::8, k], -1, "filled", (names[k],) * len(run.time[::8]))
-            for k in part
-        ]
-        plots.append(Plot("thrust  [N]", "time  [s]", (*lines, *dots), 96.0, is_scaled=part.stop == len(names)))
-    return laws_figure(
-        anchor, title, caption, f"Thrusts of {len(names)} thrusters over time: {', '.join(names)}.", plots
-    )
+        lines = [Trace(shown[k], time, thrust[:, k], k % len(STYLES)) for k in part]
+        dots = [_asked(shown[k], time, ordered[:, k]) for k in part if np.isfinite(ordered[:, k]).any()]
+        if lines:
+            last = part.stop == len(names)
+            plots.append(Plot("thrust  [N]", "time  [s]", (*lines, *dots), 96.0, is_scaled=last))
+    return plots
 
 
 def path_figure(found: Array, asked: Array | None, anchor: str, title: str, caption: str) -> Figure:
@@ -384,7 +391,8 @@ def path_figure(found: Array, asked: Array | None, anchor: str, title: str, capt
     for k in others:
         traces = [Trace("end effector", found[:, across], found[:, k], 0)]
         if asked is not None:
-            traces.append(Trace("asked for", asked[::6, across], asked[::6, k], -1, "filled"))
+            there = np.flatnonzero(np.isfinite(asked[:, k]))[::6]
+            traces.append(Trace("asked for", asked[there, across], asked[there, k], -1, "filled"))
         plots.append(Plot(f"{names[k]}  [m]", f"{names[across]}  [m]", tuple(traces), is_scaled=k == 2))
     said = f"The path of the end effector: {names[others[0]]} and {names[others[1]]} over {names[across]}."
     return laws_figure(anchor, title, caption, said, plots)
@@ -399,20 +407,23 @@ def simulated(chain: Chain, hull: Array, trajectory: Trajectory) -> ArmMotion:
 
 
 def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
-    """Joints, their torques, thrusts and the path of the end effector of a `coeflab simulate` as one SVG file."""
+    """A motion of a `coeflab simulate` as one SVG file: poses, vehicle, joints, path of the end effector, thrusts.
+
+    Dots where a controller asks for joints, path and thrusts; how near thrusters are to their largest steady thrust.
+    """
     joints, t = motion.chain.joints, motion.time
     columns = trajectory.controls
+    kept = "end.north.wanted [m]" in columns
+    dots = ", with dots where the controller asks for them" if kept else ""
 
-    def traces(names: Sequence[str], suffixes: Sequence[str], factors: Sequence[float]) -> tuple[Trace, ...]:
-        return tuple(
-            Trace(name, t, factor * columns[name + suffix], k % len(STYLES))
-            for k, (name, suffix, factor) in enumerate(zip(names, suffixes, factors, strict=True))
-        )
+    def stacked(names: Sequence[str]) -> Array:
+        return np.column_stack([columns[name] for name in names])
 
-    named = [j.name for j in joints]
-    positions = np.column_stack([columns[f"{j.name} [{'rad' if j.turns else 'm'}]"] for j in joints])
-    efforts = np.column_stack([columns[EFFORT[j.turns].format(j.name)] for j in joints])
-    plots = joint_plots(joints, t, positions, efforts)
+    named = [f"{j.name}{{}} [{'rad' if j.turns else 'm'}]" for j in joints]
+    efforts = stacked([EFFORT[j.turns].format(j.name) for j in joints])
+    asked = stacked([name.format(".wanted") for name in named]) if kept else None
+    plots = joint_plots(joints, t, stacked([name.format("") for name in named]), efforts, asked)
+    to = stacked([f"end.{axis}.wanted [m]" for axis in ("north", "east", "down")]) if kept else None
     figures = [
         poses_figure(
             motion,
@@ -420,24 +431,48 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
             "Poses, and the path of the end effector",
             "At the beginning, halfway in time and at the end.",
         ),
+        _vehicle_figure(trajectory, kept),
         laws_figure(
             "arm-joints",
             "Joints",
-            "Positions, and torques and forces, over time.",
-            f"{len(plots)} panels over time: {', '.join(named)}.",
+            f"Positions{dots}, and torques and forces, over time.",
+            f"{len(plots)} panels over time: {', '.join(j.name for j in joints)}.",
             plots,
         ),
-        path_figure(motion.ends, None, "arm-path", "Path of the end effector", "North, east and down."),
+        path_figure(motion.ends, to, "arm-path", "Path of the end effector", f"North, east and down{dots}."),
     ]
-    thrusters = [x.name for x in motion.chain.thrusters]
-    if any(np.ptp(columns[f"{name} [N]"]) > 0.0 for name in thrusters):
-        pushed = [
-            Plot("thrust  [N]", "time  [s]", traces(thrusters, [" [N]"] * len(thrusters), [1.0] * len(thrusters)))
-        ]
-        figures.append(
-            laws_figure("arm-thrust", "Thrust", "Thrusts over time.", f"Thrusts of {', '.join(thrusters)}.", pushed)
-        )
+    names = [one.name for one in motion.chain.thrusters]
+    thrust = stacked([f"{name} [N]" for name in names]) if names else np.zeros((len(t), 0))
+    if np.any(thrust != 0.0):
+        wanted = stacked([f"{name}.wanted [N]" for name in names]) if kept else np.full(thrust.shape, np.nan)
+        pushed = _thrust_plots(names, t, thrust, wanted)
+        density = motion.chain.density
+        most = np.array([most_thrust(one, gain_of(one, density), density) for one in motion.chain.thrusters])
+        caption = f"Thrusts over time{dots}."
+        if kept and np.isfinite(most).all():
+            share = Trace("largest of all", t, np.max(100.0 * np.abs(wanted) / most, axis=1), 0)
+            pushed[-1] = replace(pushed[-1], is_scaled=False)
+            pushed.append(Plot("asked for  [% of largest]", "time  [s]", (share,), 84.0))
+            caption += " Below, of the thruster that is nearest to its largest steady thrust, which is 100 %."
+        figures.append(laws_figure("arm-thrust", "Thrust", caption, f"Thrusts of {', '.join(names)}.", pushed))
     return sheet([[f] for f in figures])
+
+
+def _vehicle_figure(trajectory: Trajectory, kept: bool) -> Figure:
+    """Place and attitude of the vehicle over time."""
+    t, scale, unit = trajectory.time, 1e3 if kept else 1.0, "mm" if kept else "m"
+    angles = np.degrees(trajectory.angles)
+    plots = [
+        Plot(
+            f"place  [{unit}]", "time  [s]",
+            tuple(Trace(n, t, scale * trajectory.position[:, k], k) for k, n in enumerate(("north", "east", "down"))), is_scaled=False,
+        ),
+        Plot(
+            "attitude  [deg]", "time  [s]", tuple(Trace(n, t, angles[:, k], k) for k, n in enumerate(("roll", "pitch", "yaw"))),
+        ),
+    ]  # fmt: skip
+    caption = "Place of its centre of mass from where that began, and attitude, over time."
+    return laws_figure("arm-vehicle", "Vehicle", caption, "Two panels over time: place, attitude.", plots)
 
 
 # ---- a page that plays it ------------------------------------------------------------------------------------------

@@ -232,7 +232,7 @@ def _in_percent(u95: float | None, value: float | None) -> str:
     if u95 is None or not value:
         return ABSENT
     share = 100.0 * abs(u95 / value)
-    return f"{share:.0f}" if share <= LARGEST_SHARE else f"> {LARGEST_SHARE:.0f}"
+    return f"> {LARGEST_SHARE:.0f}" if share > LARGEST_SHARE else f"{share:.0f}" if share >= 9.95 else f"{share:.1f}"
 
 
 @dataclass(frozen=True, slots=True)

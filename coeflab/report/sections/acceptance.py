@@ -188,8 +188,8 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
 
 SUBTITLE = "A publication reproduced: every number and its reference"
 DIFFERENCES = (
-    "Reference: the paper prints it only where the column basis says so. Difference: found minus reference, or with a % sign its "
-    "share of the reference. A number passes when the difference is within the tolerance."
+    "Reference: the paper prints it only where the column basis says so. Difference: found minus reference; with a % sign, in % "
+    "of the reference. A number passes when the difference is within the tolerance."
 )
 PROVENANCE = "The files below are identified by the sha256 of their bytes."
 
@@ -202,8 +202,7 @@ def verdict(found: Acceptance) -> Section:
         failed = [f"{r.quantity} of {r.case}" for r in t.rows if not r.holds]
         if failed:
             text.append(f"Outside, {t.title}: {', '.join(failed)}.")
-    kinds = [f"{b}: {meaning}" for b, meaning in BASES.items() if found.counts[b]]
-    text.append(f"What they are compared with. {'; '.join(kinds)[:1].upper()}{'; '.join(kinds)[1:]}.")
+    text += [f"{b.value.capitalize()}: {meaning}." for b, meaning in BASES.items() if found.counts[b]]
     drawn = (allowance_figure(found, "allowances"),) if rows else ()
     return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
 
@@ -213,7 +212,7 @@ def headline(found: Acceptance) -> tuple[str, ...]:
     again = found.repeated
     first, *others = acceptance_tables.headline(acceptance_tables.held(found))
     if again:
-        first += f" {sum(r.holds for r in again)} of {len(again)} comparisons repeat one of these numbers in another way, and do not count."
+        first += f" {len(again)} more comparisons repeat these numbers in another way and do not count: {sum(r.holds for r in again)} within."
     return first, *others
 
 

@@ -44,7 +44,7 @@ WIDTH, TALLEST, GAP, CAPTION = 340.0, 90.0, 12.0, 16.0
 
 
 @as_users_wrote
-def hull_figure(body: Body, anchor: str) -> Figure:
+def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
     """Side and top views at one scale.
 
     Parameters
@@ -53,28 +53,30 @@ def hull_figure(body: Body, anchor: str) -> Figure:
         With a closed shape.
     anchor : str
         Unique in the document.
+    width : float, optional
+        Points.
     """
     shape = body.require_shape()
     surface = picture_surface(shape if isinstance(shape, TriangleMesh) else meshed(shape, PANELS))
     size = np.ptp(surface[0], axis=0)
-    scale = float(min((WIDTH - 2.0 * MARGIN) / size[0], TALLEST / max(size[1], size[2])))
+    scale = float(min((width - 2.0 * MARGIN) / size[0], TALLEST / max(size[1], size[2])))
     rows = [CAPTION + scale * size[2], CAPTION + scale * size[1]]
     height = sum(rows) + GAP + 2.0 * MARGIN + CAPTION
     marks = {"centre of buoyancy": (shape.centre_of_volume, "o"), "reference point": (body.reference_point, "+")}
     title = f"{body.name}: outline"
     said = f"Outlines of {body.name} from starboard and from above, {size[0]:.3g} by {size[1]:.3g} by {size[2]:.3g} m."
     with settings():
-        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
+        figure = Drawing(figsize=(width / POINTS, height / POINTS))
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()
-        axes.set_xlim(0.0, WIDTH)
+        axes.set_xlim(0.0, width)
         axes.set_ylim(0.0, height)
         top = height - MARGIN
         for view, row in zip((SIDE, TOP), rows, strict=True):
-            _view(axes, view, surface, scale, top, marks)
+            _view(axes, view, surface, scale, width, top, marks)
             top -= row + GAP
         for k, (name, (_, marker)) in enumerate(marks.items()):
-            at = MARGIN + 6.0 + 170.0 * k
+            at = MARGIN + 6.0 + 0.5 * width * k
             axes.plot(
                 at, MARGIN, marker=marker, markersize=6.0, color=COLOURS["ink"], fillstyle="none", linestyle="none"
             )
@@ -85,10 +87,16 @@ def hull_figure(body: Body, anchor: str) -> Figure:
 
 
 def _view(
-    axes: Axes, view: View, surface: Surface, scale: float, top: float, marks: dict[str, tuple[Array, str]]
+    axes: Axes,
+    view: View,
+    surface: Surface,
+    scale: float,
+    width: float,
+    top: float,
+    marks: dict[str, tuple[Array, str]],
 ) -> None:
     flat = surface[0] @ view.axes[:2].T * scale
-    corner = np.array([MARGIN + (WIDTH - 2.0 * MARGIN - np.ptp(flat[:, 0])) / 2.0, top - CAPTION])
+    corner = np.array([MARGIN + (width - 2.0 * MARGIN - np.ptp(flat[:, 0])) / 2.0, top - CAPTION])
     move = np.array([corner[0] - flat[:, 0].min(), corner[1] - flat[:, 1].max()])
     sheet = Sheet(axes, view, scale, move, float(np.ptp(surface[0], axis=0).max()))
     axes.text(MARGIN, top - 9.0, view.title, fontsize=8.75, color=COLOURS["muted"])

@@ -312,8 +312,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Coefficients of the bodies that we tow by CFD ourselves; a missing one says why. Grid: the part of U95 that the grid "
-        "study gives, in % of the value.",
+        "Coefficients of the bodies that we tow by CFD ourselves. Grid: the part of U95 that the grid study gives, in % of the value.",
         "E = S - D is compared with U_V (ASME V&V 20). There is a verdict only where the same body was tested, at steady angles.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]

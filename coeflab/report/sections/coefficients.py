@@ -23,9 +23,10 @@ FLIPS = {
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
-    "the points. Nobody chooses a form or a window, and no published value is used: docs/slope_at_origin.md.",
-    f"U95 covers {COVERS}. Its parts, in % of the value: random, the scatter of the points; form, the unknown shape of the curve; input, "
-    "the declared inputs and the grid, and for a term tied to a slope the uncertainty of that slope. A dash: not assessed, not in U95.",
+    "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
+    f"U95 covers {COVERS}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
+    "Input: declared errors of the inputs, and the grid; for a term of higher degree, the uncertainty of its slope. A dash: not assessed, so "
+    "not in U95.",
 )
 
 
@@ -80,7 +81,7 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     if not without:
         return ""
     named = listed([primed(c.symbol) for c in without])
-    return f"U95 of {named}: scatter, and the uncertainty of the slope, only. The form is chosen, its error is not assessed."
+    return f"U95 of {named} holds only the scatter and the uncertainty of the slope. The form is chosen, its error is not assessed."
 
 
 def coefficients_section(study: Study) -> Section:

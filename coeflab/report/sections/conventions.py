@@ -238,8 +238,8 @@ POTENTIAL = (
     "simulator that adds C_A(nu) nu must not count them twice."
 )
 REST = (
-    "A real model may have a force at zero angle: every curve has a constant, and with points on both sides of zero an odd curve "
-    "has an even term too, and an even one an odd term."
+    "A real model may have a force at zero angle, so every curve has a constant. With points on both sides of zero an odd curve "
+    "also has an even term, and an even curve an odd one."
 )
 
 
@@ -255,7 +255,7 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
     text = (
         f"{AXES_ROWS} Tables in other axes are turned into these as they are read.",
         f"{ANGLES} A table declares its own sign; figures show this one, in degrees.",
-        CONTROLS,
+        CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),
         POTENTIAL,

@@ -18,6 +18,7 @@ from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
+from coeflab.report.sections.body import hull_figure
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
 from coeflab.study.study import FromShape, Study
@@ -26,6 +27,7 @@ from coeflab.vehicle.merge import Merged, estimates_of
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+COLUMN = 244.0  # points: 86 mm
 FIRST = (
     "tactical diameter",
     "advance",
@@ -254,12 +256,18 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
-    made = Answer(sentence(study), rows=tuple(rows), chips=chips, notes=(by, *shape.said[:2]))
+    made = Answer(
+        sentence(study),
+        rows=tuple(rows),
+        chips=chips,
+        notes=(by, *(f"{s[:1].upper()}{s[1:]}." for s in shape.said[:2])),
+    )
     if not drawn:
         return made
     first = next(iter(study.manoeuvres), None)
     left = track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
-    return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"))
+    outline = hull_figure(shape.weighed.body, "answer-body", COLUMN)
+    return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
 
 def _exports(study: Study) -> Chip:

@@ -74,7 +74,7 @@ def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
             panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
         legend(figure, handles, bottom + UPPER)
         svg = svg_text(figure, anchor, title, description)
-    caption = f"Speed held. Above zero the motion grows. {locus.statement}"
+    caption = f"At constant speed. Above zero the motion grows. {locus.statement}"
     return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
@@ -99,11 +99,10 @@ def _said(part: str, values: Array) -> str:
 
 
 TEXT = (
-    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: with controls fixed "
-    "positive is stable, negative unstable; where the interval contains zero, not determined.",
-    "U95 is that of the derivatives; mass and centre of gravity are not in it. G_v is the limit of high speed, without the restoring moment of "
-    "weight and buoyancy.",
-    "Roots: eigenvalues of small motions about a straight course, speed held, by the force law and added mass of the file.",
+    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
+    "Positive: stable. Negative: unstable. Interval with zero in it: not determined.",
+    "U95 is that of the derivatives, without mass and centre of gravity. G_v holds at high speed: it has no restoring moment of weight and buoyancy.",
+    "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
 )
 
 
@@ -124,7 +123,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     mixed = [_from_literature(p, d.name) for p in study.parameter_files.values() for d in stability(p)]
     by_others = dict.fromkeys(s for stated in mixed if len(stated) < len(INDICES["G_h"]) - 1 for s in stated)
     stated = f" From literature: {', '.join(map(primed, by_others))}." if by_others else ""
-    return [f"With controls fixed, straight motion is {'; '.join(out)}.{stated}"] if out else []
+    return [f"With controls fixed, straight motion is {'. It is '.join(out)}.{stated}"] if out else []
 
 
 def _from_literature(parameters: ParameterFile, index: str) -> list[str]:
@@ -258,7 +257,7 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
     title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
     text = []
     if made.undetermined:
-        text.append(f"Nothing is drawn, as the file determines nothing of this motion. {made.undetermined}")
+        text.append(f"Nothing is drawn: the file does not determine this motion. {made.undetermined}")
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
     length = made.vehicle.length
@@ -275,8 +274,8 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
 
 
 EXPORTED = (
-    "Every written file is read again. Forces and accelerations by the target's own force law are compared with those of the "
-    "parameter file: a difference is the error of a simulation with that target.",
+    "Every written file is read back. Forces and accelerations by the target's own force law are compared with those of the "
+    "parameter file. The difference is the error of a simulation with that target.",
     "A target that adds -C_A(nu) nu itself gets first-order derivatives without their potential part, so that nothing counts twice.",
 )
 

@@ -75,14 +75,14 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
     )  # fmt: skip
     notes = [
-        "In % of the largest measured force of the component in that table. A force at zero angle and rate that the "
-        "law has no term for, an offset of the set-up, is subtracted from the points."
+        "In % of the largest measured force of the component in that table. Where the law has no constant, the measured force at "
+        "zero angle and rate, an offset of the set-up, is subtracted from the points."
     ]
     if not controls:
-        notes.append("points with a control off zero are left out: no force of controls is compared")
+        notes.append("Points with a deflected control are left out: no force of controls is compared.")
     notes += [
-        f"{f.component}, {f.table}: outside the range in which the law holds: {', '.join(f.beyond)}; largest difference there "
-        f"{percent(f.worst_beyond / f.largest if f.largest else 0.0)}"
+        f"{f.component}, {f.table}: outside the range of the law lie {', '.join(f.beyond)}; the largest difference there is "
+        f"{percent(f.worst_beyond / f.largest if f.largest else 0.0)}."
         for f in found
         if f.beyond
     ]

@@ -29,6 +29,8 @@ from coeflab.motion.tune.tuning import STATUSES, Tuning, largest_correlations
 
 DEGREES = {"rad": "deg", "rad/s": "deg/s"}
 
+NOTHING = 1e-3  # mm, deg, N: less is not printed
+
 
 def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Table:
     """Value, unit, the value in body lengths, interval, status and definition of every figure."""
@@ -119,6 +121,8 @@ def arm_phases(trajectory: Trajectory, name: str) -> Table:
         rows.append((f"vehicle, {angle}", "deg", *(f"{np.degrees(t.angles[i, k]) + 0.0:.2f}" for i in at)))
     for key, values in t.controls.items():
         what, _, unit = key.removesuffix("]").partition(" [")
+        if what.endswith(".wanted"):
+            continue
         if what.startswith("end."):
             rows.append((f"end effector, {what[4:]}", unit, *(f"{values[i]:.4f}" for i in at)))
         elif what.endswith((".torque", ".force")):
@@ -128,11 +132,39 @@ def arm_phases(trajectory: Trajectory, name: str) -> Table:
         elif "." not in what and unit in ("rad", "m"):
             factor, shown = (180.0 / np.pi, "deg") if unit == "rad" else (1.0, unit)
             rows.append((what, shown, *(f"{factor * values[i]:.2f}" for i in at)))
+    if "end.north.wanted [m]" in t.controls:
+        rows += [
+            (name, unit, "", *(_largest(values[t.phase == k]) for k in range(len(ends))))
+            for name, unit, values in _missed(t)
+        ]
     headers = ("", "unit", "start", *(f"after {t.phases[k]}" for k in range(len(ends))))
     notes = (
         "vehicle, north, east, down: of its centre of mass, the arm not counted; places count from where that began.",
     )
     return Table(f"Motion of {name}", headers, tuple(rows), notes, frozenset({0, 1}))
+
+
+def _missed(t: Trajectory) -> tuple[tuple[str, str, Array], ...]:
+    """How far a vehicle under control is from its station, its end effector from its track, and what that takes."""
+    wanted = [
+        t.controls[f"end.{axis}.wanted [m]"] - t.controls[f"end.{axis} [m]"] for axis in ("north", "east", "down")
+    ]
+    turned = 2.0 * np.degrees(np.arccos(np.clip(np.abs(t.attitude @ t.attitude[0]), 0.0, 1.0)))
+    names = [key.removesuffix(".wanted [N]") for key in t.controls if key.endswith(".wanted [N]")]
+    thrusts = [np.abs(t.controls[f"{name} [N]"]) for name in names]
+    return (
+        ("off station, largest", "mm", 1e3 * np.linalg.norm(t.position - t.position[0], axis=1)),
+        ("turned off, largest", "deg", turned),
+        ("end effector off its track, largest", "mm", 1e3 * np.linalg.norm(wanted, axis=0)),
+        ("thrust, largest", "N", np.max(thrusts, axis=0)),
+    )
+
+
+def _largest(values: Array) -> str:
+    if not np.isfinite(values).any():
+        return ""
+    most = float(np.nanmax(values))
+    return f"{most:.3g}" if most > NOTHING else f"below {NOTHING:g}"
 
 
 def _degrees(angle: float) -> str:

@@ -178,7 +178,7 @@ def own_tow(found: Towed) -> Table:
     every = len(found.rows) > 1 and len(said) == 1
     reasons = [f"{'All' if every else ', '.join(symbols)}: {why}." for why, symbols in said.items() if why]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
-    grid = "" if assessed else "No grid study: not in U95."
+    grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
     notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
     headers = ("", "tow", "U95" if not grid else "U95 without grid", "grid", *found.columns)
     return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
@@ -349,20 +349,29 @@ def _of(components: Sequence[str], table: ForceTable) -> str:
     return "row" if whole else " ".join(components)
 
 
+NAMED = 12  # rows that a line names; of more the first
+
+
 def unused(tables: Sequence[ForceTable]) -> str:
-    """In one line what the tables say of runs that no fit uses, or not whole, by their status; empty without such."""
+    """In one line the rows that no fit uses, or not whole, because their source or the state of their run says so; empty without such."""
     by: dict[str, list[str]] = {}
     for t in tables:
         rows: dict[int, list[Exclusion]] = {}
         for e in t.exclusions:
-            if e.status:
+            if e.of_source:
                 rows.setdefault(e.row, []).append(e)
         for row, found in rows.items():
-            of = _of(list(dict.fromkeys(e.component for e in found)), t)
-            part = "" if of == "row" else f" in {of}"
-            by.setdefault(f"{found[0].status}{part}", []).append(t.labels[row])
-    said = [f"{', '.join(rows) if len(rows) < 3 else len(rows)} {status}" for status, rows in by.items()]
-    return f"Left out: {', '.join(said)}." if said else ""
+            components = list(dict.fromkeys(e.component for e in found))
+            of = "row" if set(components) >= set(t.forces) else _of(components, t)
+            first = found[0]
+            kind = first.status or ("marked in the file" if first.uncertain else first.reason)
+            name = t.labels[row] + f" of {t.name.rpartition('/')[2]}" * (len(tables) > 1)
+            by.setdefault(kind, []).append(name if of == "row" else f"{name} ({of})")
+    said = [
+        f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)} {why}"
+        for why, rows in by.items()
+    ]
+    return f"Left out: {'; '.join(said)}." if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:

@@ -362,8 +362,9 @@ def _rescaled(config: _Config, conditions: Mapping[str, Stated], monitor: Monito
         density, speed = ((config.numbers(key, 1) or (1.0,))[0] for key in keys)
     elif math.isnan(density):
         own = density = 1.0
+    towed = float(cast(float, conditions["U"].value))
     with np.errstate(all="ignore"):
-        factor = float(np.divide(density * speed**2, own * float(cast(float, conditions["U"].value)) ** 2))
+        factor = float(np.divide(density * np.square(speed), own * np.square(towed)))
     if abs(factor - 1.0) < 1e-9:
         return ""
     if not (math.isfinite(factor) and factor > 0.0):

@@ -214,7 +214,7 @@ def test_thruster_matrix_says_what_it_loses() -> None:
 
 
 def test_shipped_phases() -> None:
-    chain, manoeuvre = read_arm(shipped("geometry") / "urv_puma")
+    chain, manoeuvre, *_ = read_arm(shipped("geometry") / "urv_puma")
     found = arm.simulate(chain, manoeuvre, {"record": 0.5, "north": 0.2})
     assert found.ended is Ended.COMPLETE
     last = {name: values[-1] for name, values in found.controls.items()}

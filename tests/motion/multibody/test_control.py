@@ -64,7 +64,7 @@ def test_a_turned_vehicle_comes_back_the_shorter_way(chain: Chain) -> None:
     state = at_rest(chain)
     half = 0.15
     state[3:7] = np.cos(half), 0.0, 0.0, np.sin(half)
-    asked = wanted_accelerations(Controller(vehicle=2.0), station, still, 3, 0.0, state)
+    asked = wanted_accelerations(Controller(vehicle_frequency=2.0), station, still, 3, 0.0, state)
     assert asked[3:6] == pytest.approx([0.0, 0.0, -8.0 * np.sin(half)])
 
 
@@ -136,7 +136,7 @@ def test_the_largest_thrust_is_that_of_the_strongest_drive(chain: Chain, kind: s
     assert demand(without, gain_of(without, DENSITY), 7.0, np.zeros(0), 10.0, DENSITY) == 7.0
 
 
-@pytest.mark.parametrize("name", ["vehicle", "joints", "damping", "propeller"])
+@pytest.mark.parametrize("name", ["vehicle_frequency", "joint_frequency", "damping", "propeller_rate"])
 def test_gains_are_above_zero(name: str) -> None:
     with pytest.raises(InputError, match="a value above zero"):
         Controller(**{name: 0.0})

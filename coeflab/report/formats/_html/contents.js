@@ -42,3 +42,26 @@ const contents = document.querySelector("details.contents"), list = contents.que
   const up = document.querySelector(".up");
   new IntersectionObserver(([{isIntersecting}]) => { up.hidden = isIntersecting; }).observe(document.getElementById("top"));
 }
+
+// On a phone every row of a table that is wider than the page is a block of its own, which names its cells. A long table scrolls.
+{
+  const MOST = 64, phone = matchMedia("(max-width: 45rem)");
+  const boxes = [...document.querySelectorAll(".scroll")].filter(b => b.querySelector("table")?.tBodies[0].rows.length <= MOST);
+  const roles = {THEAD: "rowgroup", TBODY: "rowgroup", TR: "row", TH: "columnheader", TD: "cell"};
+  const named = table => {
+    if (table.hasAttribute("role")) return;
+    table.setAttribute("role", "table");
+    for (const e of table.querySelectorAll("thead, tbody, tr, th, td")) e.setAttribute("role", roles[e.tagName]);
+    const names = [...table.tHead.rows[0].cells].map(c => c.textContent.trim());
+    for (const {cells} of table.tBodies[0].rows) [...cells].forEach((c, i) => { if (i && names[i]) c.dataset.name = names[i]; });
+  };
+  const stack = () => {
+    for (const b of boxes) b.classList.remove("stacked");
+    if (!phone.matches) return;
+    const wide = boxes.filter(b => b.scrollWidth > b.clientWidth + 1);
+    for (const b of wide) { named(b.querySelector("table")); b.classList.add("stacked"); }
+  };
+  phone.addEventListener("change", stack);
+  for (const fold of document.querySelectorAll(".fold")) fold.addEventListener("toggle", stack);
+  stack();
+}

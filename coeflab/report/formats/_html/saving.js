@@ -185,7 +185,7 @@ for (const t of drawnTables) if (!first?.contains(t)) {
   after.after(row);
 }
 if (first) {
-  const place = made("div", "downloads", first.querySelector(".aside") ?? first), names = ["Left figure", "Right figure", "Axes"];
+  const place = made("div", "downloads", first.querySelector(".aside") ?? first), names = ["Left figure", "Right figure", document.getElementById("answer-axes") ? "Axes" : "Body"];
   made("h3", "", place).textContent = "Save";
   for (const t of first.querySelectorAll("table")) saver(place, "Table", said(t.caption.textContent), tableKinds(t));
   [...first.querySelectorAll("figure:not(.space)")].forEach((f, i) => saver(place, names[i], title(f), figureKinds(f)));

@@ -1,0 +1,507 @@
+"""Several tables of one campaign: sheets of a workbook, tables of a folder, runs whose names follow several patterns.
+
+What all of them share is said once; what one of them has of its own has its name before it: ``Arm/table.centre``, ``Arm/Fy``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.types import brief
+from coeflab.core.wording import natural
+from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
+from coeflab.tables.conditions import BETWEEN, SPELT, UNNAMED, NoConditionError, name_pattern
+from coeflab.tables.evidence import Evidence
+from coeflab.tables.form import (
+    UNSHOWN,
+    Line,
+    argument,
+    column_lines,
+    form,
+    question_line,
+    setting_line,
+)
+from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.mapping import known_as
+from coeflab.tables.proposals import proposals
+from coeflab.tables.questions import Question, Understood, understood
+from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
+from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
+from coeflab.tables.runs import NoRunsError
+from coeflab.tables.settings import Setting, Settings, against_words, read_settings, stated_settings
+from coeflab.tables.words_above import POINT_OF
+
+Progress = Callable[[str], None]
+Value = TypeVar("Value")
+MOST = 40  # tables of a folder
+SPLIT = (
+    "conditions.speed",
+    "conditions.density",
+    POINT_OF,
+    "table.",
+    "coefficients.",
+    "columns.",
+)  # each table may have its own
+ALONE = ("table.", "coefficients.")  # what one table has is no proposal for another
+_FORCE = re.compile(r"-?(?:[XYZKMN]|lift|drag|side)\b")
+_SETS = ("angle", "velocity", "radius", "control")  # what a row of a table of means has, and a record over time has not
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """One table of the campaign.
+
+    Attributes
+    ----------
+    name : str
+        By which a person names it; empty where it is the only one.
+    raw : RawTable
+    importer : str
+    options : mapping
+        Those it was read with.
+    """
+
+    name: str
+    raw: RawTable
+    importer: str
+    options: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """An option of reading that nobody said and somebody has to accept.
+
+    Attributes
+    ----------
+    key, value : str
+    why, about : str
+        In short, and whole.
+    left : tuple of str
+        What is not taken, each with its reason.
+    """
+
+    key: str
+    value: str
+    why: str
+    about: str
+    left: tuple[str, ...] = ()
+
+
+def read_parts(
+    path: Path, importer: str, options: Mapping[str, Any], progress: Progress | None = None
+) -> tuple[tuple[Part, ...], tuple[Chosen, ...]]:
+    """The tables that a file or folder holds, and what was chosen in reading them.
+
+    Parameters
+    ----------
+    path : Path
+    importer : str
+        The one that a person names, or empty.
+    options : mapping
+        Of the importer; ``sheet`` may name several with commas between, ``names`` several patterns with `BETWEEN`.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        By file and line.
+    """
+    try:
+        name = importer_of(path, importer)
+    except NoRunsError:
+        found = _of_folder(path, options) if not importer else None
+        if not found:
+            raise
+        return found
+    given = dict(options)
+    if BETWEEN in str(given.get("names", "")):
+        tables = read_groups(path, name, given, progress)
+        named = _called([_word_of(t.dialect["names"]) for t in tables])
+        own = [{**given, "names": t.dialect["names"]} for t in tables]
+        return tuple(Part(n, t, name, o) for n, t, o in zip(named, tables, own, strict=True)), ()
+    try:
+        return (Part("", read_raw(path, name, given, progress), name, given),), ()
+    except SeveralError as several:
+        if not several.choices:
+            raise
+        return _of_sheets(path, name, given, several.choices)
+    except NoConditionError as unsaid:
+        if given.get("names") or not unsaid.patterns or any(UNNAMED in pattern for pattern in unsaid.patterns):
+            raise
+        given["names"] = BETWEEN.join(unsaid.patterns)
+        parts, _ = read_parts(path, importer, given, progress)
+        return parts, (_by_names(unsaid),)
+    except InputError:
+        if "," not in str(given.get("sheet", "")):
+            raise
+        return _of_sheets(path, name, given, [s.strip() for s in str(given["sheet"]).split(",")], said=True)
+
+
+def _of_sheets(
+    path: Path, name: str, options: Mapping[str, Any], sheets: Sequence[str], said: bool = False
+) -> tuple[tuple[Part, ...], tuple[Chosen, ...]]:
+    """The sheets with forces, or those that somebody said."""
+    tables: dict[str, RawTable] = {}
+    left: dict[str, str] = {}
+    complaints: list[InputError] = []
+    for sheet in sheets:
+        try:
+            tables[sheet] = read_raw(path, name, {**options, "sheet": sheet})
+        except InputError as unread:
+            complaints.append(unread)
+            left[sheet] = str(unread)
+    if said and complaints:
+        raise together(complaints)
+    if not said:
+        bare = [s for s, raw in tables.items() if why_no_table(raw)]
+        left |= {s: why_no_table(tables[s]) for s in bare}
+        tables = {s: raw for s, raw in tables.items() if s not in bare} or dict(list(tables.items())[:1])
+    if not tables:
+        raise together(complaints)
+    others = tuple(f"sheet {sheet}: {why}" for sheet, why in left.items() if sheet not in tables)
+    value = ", ".join(tables)
+    why = f"{'those' if len(tables) > 1 else 'the one'} with forces" + f"; others: {', '.join(left)}" * bool(left)
+    about = f"Sheets with numbers: {', '.join(sheets)}. One or several with commas between; each becomes a table of the campaign"
+    chosen = () if said else (Chosen("sheet", value, why, about, others),)
+    names = _called(list(tables)) if len(tables) > 1 else [""]
+    return tuple(
+        Part(n, raw, name, {**options, "sheet": sheet}) for n, (sheet, raw) in zip(names, tables.items(), strict=True)
+    ), chosen
+
+
+def why_no_table(raw: RawTable) -> str:
+    """Why a table is none of forces over settings, by its names and units; empty where it is."""
+    texts = [one.text for one in proposals(raw)]
+    if not any(_FORCE.match(text) for text in texts):
+        return "no force or moment by its names"
+    names = [read_column_map(text.partition(" [")[0]).name for text in texts if text]
+    known = ROLES.keys() & set(names)
+    return "" if any(ROLES[name] in _SETS for name in known) else "no angle, velocity, rate or radius by its names"
+
+
+def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...], tuple[Chosen, ...]] | None:
+    """The tables of a folder that holds no runs; None where it holds none."""
+    if not path.is_dir():
+        return None
+    found: list[tuple[str, RawTable, str, Mapping[str, Any]]] = []
+    left: list[str] = []
+    wanted = [name.strip() for name in str(options.get("files", "")).split(",") if name.strip()]
+    every = sorted(
+        (f for f in path.iterdir() if f.is_file() and not f.name.startswith(".")), key=lambda f: natural(f.name)
+    )
+    if absent := [name for name in wanted if name not in [f.name for f in every]]:
+        raise InputError(
+            f"no file {', '.join(map(shown, absent))}", f"of {', '.join(f.name for f in every[:MOST])}", file=path
+        )
+    own = {key: value for key, value in options.items() if key != "files"}
+    for file in (f for f in every if not wanted or f.name in wanted):
+        known = [n for n in recognised(file) if IMPORTERS.load(n).raw]
+        if len(known) != 1:
+            left += [f"{file.name}: no table by its content"] * (file.suffix != ".toml")
+            continue
+        try:
+            parts, chosen = read_parts(file, known[0], own)
+        except InputError as unread:
+            left.append(str(unread))
+            continue
+        left += [f"{file.name}, {text}" for one in chosen for text in one.left]
+        for part in parts:
+            if why := why_no_table(part.raw):
+                left.append(f"{file.name}: {why}")
+            else:
+                found.append((f"{file.stem} {part.name}".strip(), part.raw, part.importer, part.options))
+        if len(found) > MOST:
+            raise InputError(
+                f"more than {MOST} tables", "a table of means with a row a condition, or runs that an importer knows", file=path,
+                advice="Records over time are averaged first, or read by --as NAME (coeflab formats importers).",
+            )  # fmt: skip
+    if not found:
+        if left:
+            raise InputError(
+                "no table of forces over settings", "tables with a row a condition, or runs of a solver", file=path,
+                advice=" ".join(f"{text}." for text in left[:5]),
+            )  # fmt: skip
+        return None
+    names = _called([name for name, *_ in found]) if len(found) > 1 else [""]
+    taken = dict.fromkeys(raw.path.name for _, raw, _, _ in found)
+    why = f"the tables of the folder{f'; {len(left)} not taken' * bool(left)}"
+    about = "Files of the folder that are read, with commas between; each becomes a table of the campaign"
+    return tuple(
+        Part(n, raw, importer, given) for n, (_, raw, importer, given) in zip(names, found, strict=True)
+    ), () if wanted else (Chosen("files", ", ".join(taken), why, about, tuple(left)),)
+
+
+def _by_names(unsaid: NoConditionError) -> Chosen:
+    """The patterns of names of runs, with what they make of them."""
+    patterns = [name_pattern(text) for text in unsaid.patterns]
+    read = []
+    for run in unsaid.runs:
+        found = next((c for p in patterns if (c := p.conditions(run)) is not None), {})
+        read.append(f"{run}: " + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in found.items()))
+    several = f"{len(patterns)} patterns, a table each; what a name does not say is zero there. " * (len(patterns) > 1)
+    firsts = [
+        next(t for t, run in zip(read, unsaid.runs, strict=True) if p.conditions(run) is not None) for p in patterns
+    ]
+    shown_first = "; ".join(firsts if len(patterns) > 1 else read[:2])
+    return Chosen("names", BETWEEN.join(unsaid.patterns), shown_first,
+                  f"Conditions by the names of the runs. {several}{'; '.join(read)}. {SPELT}.")  # fmt: skip
+
+
+def _word_of(pattern: str) -> str:
+    """The text before the first number of a pattern, or the setting that it gives."""
+    found = re.match(r"[^{*]*", pattern)
+    word = found[0].strip("_-. /") if found else ""
+    return word or pattern.partition("{")[2].partition(":")[0] or "runs"
+
+
+def _called(names: Sequence[str]) -> list[str]:
+    """Names without slashes, brackets and equals, each once."""
+    out: list[str] = []
+    for name in names:
+        plain = re.sub(r"[/=;?\[\]\s]+", "_", name).strip("_") or "table"
+        out.append(plain if plain not in out else f"{plain}_{1 + sum(o.startswith(plain) for o in out)}")
+    return out
+
+
+def own(said: Mapping[str, Value], part: Part, parts: Sequence[Part]) -> dict[str, Value]:
+    """What is said of one part: of all together, and under its name."""
+    others = tuple(f"{p.name}/" for p in parts if p.name)
+    out = {key: value for key, value in said.items() if not key.startswith(others)} if others else dict(said)
+    if part.name:
+        out |= {key.removeprefix(f"{part.name}/"): v for key, v in said.items() if key.startswith(f"{part.name}/")}
+    return out
+
+
+def require_parts(keys: Iterable[str], parts: Sequence[Part]) -> None:
+    """Refuse keys of parts that are not there.
+
+    Raises
+    ------
+    InputError
+        All of them.
+    """
+    names = [p.name for p in parts if p.name]
+    strange = [key for key in keys if "/" in key and key.rpartition("/")[0] not in names]
+    if strange:
+        expected = (
+            f"one of {', '.join(names)} before the slash" if names else "a key without a slash: there is one table"
+        )
+        raise together([InputError(shown(key), expected, column="--set") for key in strange])
+
+
+def stated_together(parts: Sequence[Part]) -> dict[str, Setting]:
+    """What the files state with certainty: plain where all agree, under the names of the parts where they differ."""
+    each = [stated_settings(p.raw) for p in parts]
+    out: dict[str, Setting] = {}
+    for key in dict.fromkeys(k for one in each for k in one):
+        values = {str(one[key].value) for one in each if key in one}
+        if len(values) == 1 and (all(key in one for one in each) or not key.startswith(SPLIT)):
+            out[key] = next(one[key] for one in each if key in one)
+        else:
+            out |= {f"{p.name}/{key}": one[key] for p, one in zip(parts, each, strict=True) if key in one}
+    return out
+
+
+def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
+    """Words over one table count for all, and are open where those of two tables differ; speeds and densities may differ."""
+    if len(parts) < 2:
+        return tuple(parts)
+    stated = [dict(p.raw.stated) for p in parts]
+    for key in dict.fromkeys(k for one in stated for k in one):
+        have = [(p, one[key]) for p, one in zip(parts, stated, strict=True) if key in one]
+        if not all(s.offered for _, s in have):
+            continue
+        placed = {p.name: replace(s, place=f"{p.name}, {s.place}") for p, s in have}
+        if key.startswith("table."):
+            for p, one in zip(parts, stated, strict=True):
+                if p.name in placed:
+                    one[key] = placed[p.name]
+            continue
+        values = {str(s.value) for _, s in have}
+        split = key in ("conditions.speed", "conditions.density")
+        for p, one in zip(parts, stated, strict=True):
+            first = placed.get(p.name) or next(iter(placed.values()))
+            if len(values) > 1 and (not split or p.name not in placed):
+                a, b = (next(s for s in placed.values() if str(s.value) == v) for v in sorted(values)[:2])
+                first = replace(first, contradicted=f"{a.place}, but {b.place}")
+            one[key] = first
+    return tuple(replace(p, raw=replace(p.raw, stated=one)) for p, one in zip(parts, stated, strict=True))
+
+
+def understood_together(
+    parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool = False
+) -> tuple[Understood, ...]:
+    """`understood` of every part, by what is said of all and of it."""
+    out = []
+    for part in parts:
+        said = own(columns, part, parts)
+        if part.name:
+            known = {n for c in part.raw.columns for n in (c.name, *known_as(c))}
+            said = {name: one for name, one in said.items() if name in known}
+        found = understood(part.raw, said, own(settings, part, parts), accept)
+        if part.name:
+            found = replace(found, shows=tuple(_placed(part.name, e) for e in found.shows))
+        out.append(found)
+    return tuple(out)
+
+
+def _placed(name: str, shows: Evidence) -> Evidence:
+    head = "warning: " * shows.text.startswith("warning: ")
+    return replace(shows, text=f"{head}{name}: {shows.text.removeprefix('warning: ')}")
+
+
+def questions_together(
+    parts: Sequence[Part], founds: Sequence[Understood], whole: str = ""
+) -> list[tuple[str, Question]]:
+    """What is not said yet: one question a key where the parts agree, else one a part, or one that names what differs.
+
+    Parameters
+    ----------
+    parts, founds : sequences
+    whole : str
+        Name of what was imported, for the citation.
+    """
+    out: list[tuple[str, Question]] = []
+    for key in dict.fromkeys(q.key for found in founds for q in found.questions):
+        have = [(p, q) for p, f in zip(parts, founds, strict=True) for q in f.questions if q.key == key]
+        strong = [(p, q) for p, q in have if not q.why.startswith(("median", "it cancels"))] or have
+        if len({q.why.startswith("it cancels") for _, q in have}) > 1 and not key.startswith(ALONE):
+            have = strong
+        values = {q.default for _, q in strong if q.default}
+        named = [q for _, q in strong if q.default and q.short not in ("not stated", "not stated: LOA, LBP ...")]
+        if key == "source.citation" and whole:
+            out.append((key, replace(strong[0][1], default=whole)))
+        elif len(values) > 1 and strong[0][1].harmless and len({q.default for q in named}) == 1:
+            out.append((key, named[0]))
+        elif len(values) > 1 and key.startswith(SPLIT):
+            out += [(f"{p.name}/{key}", q) for p, q in have]
+        elif len(values) > 1:
+            each = "; ".join(f"{p.name}: {q.default} ({q.short or q.why})" for p, q in strong if q.default)
+            one = strong[0][1]
+            out.append(
+                (key, replace(one, default="", shown="", harmless=False, choices=f"{each}; {one.choices}".rstrip("; ")))
+            )
+        elif key.startswith(ALONE) and len({(q.default, q.shown) for _, q in have}) > 1:
+            out += [(f"{p.name}/{key}", q) for p, q in have]
+        else:
+            out.append(
+                (key, next((q for _, q in strong if q.default), next((q for _, q in strong if q.shown), strong[0][1])))
+            )
+    return out
+
+
+def settled_together(
+    parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool, whole: str = ""
+) -> tuple[tuple[Understood, ...], dict[str, Setting]]:
+    """What follows when proposals are accepted, one from the other until nothing more does; else of harmless ones alone.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+    columns : mapping of str to ColumnMap
+    settings : mapping of str to Setting
+    accept : bool
+    whole : str
+        See `questions_together`.
+    """
+    out = dict(settings)
+    while True:
+        founds = understood_together(parts, columns, out, accept)
+        fresh: dict[str, Setting] = {}
+        for key, q in questions_together(parts, founds, whole):
+            if q.default and (accept or q.harmless):
+                fresh |= {k: Setting(v, q.why) for k, v in read_in(key, q.default).items() if k not in out}
+        if not fresh:
+            return founds, out
+        out |= fresh
+
+
+def read_in(key: str, text: str) -> dict[str, Any]:
+    """`read_settings` of a key that may have the name of a part before it."""
+    part, slash, plain = key.rpartition("/")
+    return {f"{part}{slash}{k}": value for k, value in read_settings(plain, text).items()}
+
+
+def complaints_of(founds: Sequence[Understood]) -> list[InputError]:
+    """Those of all parts."""
+    return [one for found in founds for one in found.complaints]
+
+
+def is_pending(parts: Sequence[Part], founds: Sequence[Understood]) -> bool:
+    """Whether something is open or waits to be accepted."""
+    waits = any(found.doubts or found.open for found in founds)
+    return waits or any(not q.harmless for _, q in questions_together(parts, founds))
+
+
+def form_together(
+    parts: Sequence[Part], founds: Sequence[Understood], settings: Settings, read_by: Sequence[Line] = (),
+    numbers: dict[str, int] | None = None, whole: str = "",
+) -> tuple[Line, ...]:  # fmt: skip
+    """All lines of the form, open ones first: one for what the parts share.
+
+    Parameters
+    ----------
+    parts, founds : sequences
+    settings : mapping of str to Setting
+        What is known, with names of parts where it is said of one.
+    read_by : sequence of Line
+    numbers : dict of str to int, optional
+        See `coeflab.tables.form.form`.
+    whole : str
+        See `questions_together`.
+    """
+    if len(parts) == 1:
+        return form(parts[0].raw, founds[0], settings, read_by, numbers)
+    out = [*read_by, *_columns(parts, founds)]
+    out += [replace(question_line(q), key=key, argument=argument("--set", key, q.default or "?")) for key, q in
+            questions_together(parts, founds, whole)]  # fmt: skip
+    words: dict[str, str] = {}
+    for part in parts:
+        words |= {key: f"{part.name}, {place}" for key, _, place in against_words(part.raw, own(settings, part, parts))}
+    about = {key: text for found in founds for key, text in found.about.items()}
+    for key, one in settings.items():
+        plain = key.rpartition("/")[2]
+        if not plain.startswith(UNSHOWN):
+            line = setting_line(plain, one, about.get(plain, plain), words.get(plain, ""))
+            out.append(replace(line, key=key))
+    taken: dict[str, int] = {} if numbers is None else numbers
+    ordered = sorted(out, key=lambda line: line.group)
+    return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
+
+
+def _columns(parts: Sequence[Part], founds: Sequence[Understood]) -> Iterator[Line]:
+    """One line for columns of one name that are the same in all parts, else one a part."""
+    have: dict[str, list[tuple[Part, Line]]] = {}
+    for part, found in zip(parts, founds, strict=True):
+        for line in column_lines(part.raw, found):
+            have.setdefault(line.key, []).append((part, line))
+    for name, lines in have.items():
+        if len({(line.value, line.group) for _, line in lines}) == 1:
+            first, where = lines[0][1], ""
+            if len(lines) < len(parts):
+                where = "; " + ", ".join(p.name for p, _ in lines)
+            head, _, span = first.why.partition(";")
+            yield replace(first, why=f"{head}{where};{span}".rstrip(";"))
+            continue
+        for part, line in lines:
+            said = line.argument.replace(f"{name}=", f"{part.name}/{name}=", 1)
+            yield replace(line, key=f"{part.name}/{name}", argument=said)
+
+
+def columns_by_name(parts: Sequence[Part]) -> dict[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]]:
+    """By every name that a person may type for a column, with and without that of a part: its key, and where it stands."""
+    out: dict[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]] = {}
+    for part in parts:
+        for column in part.raw.columns:
+            for name in (column.name, *known_as(column)):
+                key, places = out.get(name, (column.name, ()))
+                out[name] = (key, (*places, (part.raw, column)))
+                if part.name:
+                    out[f"{part.name}/{name}"] = (f"{part.name}/{column.name}", ((part.raw, column),))
+    return out
