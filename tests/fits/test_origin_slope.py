@@ -323,7 +323,7 @@ def test_terms_that_noise_half_hides_are_covered_by_what_is_printed(case: str, m
     y = truth + noise * np.abs(truth).max() * np.random.default_rng(15).standard_normal((16, len(x)))
     design = prepare(x, odd=odd)
     with_it = estimate_many(design, y, deletions=False)
-    monkeypatch.setattr(slope_mixture, "SUPPORTED", -1.0)
+    monkeypatch.setattr(slope_mixture, "DOUBTED", (1.0, 0.0))
     mixture = estimate_many(design, y, deletions=False)
     hidden = with_it.u95 > mixture.u95
     assert 0.1 < hidden.mean() < 1.0
@@ -342,7 +342,7 @@ def test_terms_that_noise_half_hides_are_covered_by_what_is_printed(case: str, m
 def test_a_curve_that_is_beyond_doubt_has_the_interval_of_the_mixture_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     design, y = prepare(X), np.stack([Y, force(X) - 2.0 * X**3 + NOISE * SHOCKS])
     ours = estimate_many(design, y, deletions=False).u95
-    monkeypatch.setattr(slope_mixture, "SUPPORTED", -1.0)
+    monkeypatch.setattr(slope_mixture, "DOUBTED", (1.0, 0.0))
     assert np.array_equal(ours, estimate_many(design, y, deletions=False).u95)
 
 

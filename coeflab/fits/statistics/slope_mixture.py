@@ -13,9 +13,9 @@ No interval adapts to every truth (Low 1997): where noise can hide a cancellatio
 its deletion is a further member, by bordering, without a second fit.
 
 Where noise half hides terms of opposed signs, such a mixture is too sure: it draws each of them towards nothing. So where
-the whole polynomial beats the straight line by Akaike's criterion (1974), and the line still has some support (within 10,
-Burnham & Anderson 2002), value +- U95 takes in that polynomial's slope by least squares, to 90 % on either side: with
-the mixture wholly to one side of the truth, that end alone covers in nine of ten.
+an F test doubts the straight line (0.25, Bancroft 1964) and does not yet rule it out (0.001), and a polynomial is not ruled
+out (0.05), value +- U95 takes in the slope of the whole polynomial by least squares, to 90 % on either side: with the
+mixture wholly to one side of the truth, that end alone covers in nine of ten.
 
 The constants, the ends of the interval included, were chosen on simulated truths: random curves (signed powers, Gaussian
 processes, kinks, onsets, saturation, even parts) and the families of ``tests/coverage``; none on a measured body.
@@ -49,8 +49,8 @@ SIDES = {"series": 0.9, "p1": 0.6, "on.25": 0.4, "on.55": 0.4, "on.8": 0.4}
 GROWING, SETTING, COMMON, LOOSE = 0.2, 0.2, 0.8, 0.15
 # Power of the likelihood; tail left out at each end: at 1 % noise (of the largest force), per decade of noise, bounds.
 POWER, TAIL, TAIL_PER_DECADE, TAILS = 0.63, 0.016, -0.0085, (0.01, 0.025)
-# Least-squares slope of the whole polynomial: most by which a straight line that has support is worse, share of errors within an end.
-SUPPORTED, ONE_END = 10.0, 0.9
+# Least-squares slope of the whole polynomial: probabilities of the F test, least probability of no remainder, share within an end.
+DOUBTED, LEFT, ONE_END = (0.001, 0.25), 0.05, 0.9
 # Prior probability that a row is wrong.
 WRONG = 0.005
 # Size, in units of the noise, of the constant of a curve that is odd by declaration: next to nothing.
@@ -332,7 +332,7 @@ def _evaluate(
 def _least_squares(
     design: Design, slope: Array, squares: Array, rows: float, least: Array
 ) -> tuple[Array, Array, Array]:
-    """Slope by the whole polynomial, its reach either way, and where it beats a straight line that has support, (b,) each.
+    """Slope by the whole polynomial, its reach either way, and probability of its gain over a straight line, (b,) each.
 
     ``slope`` and ``squares`` (k, b) are those of the member without a remainder: its last sizes leave every term free.
     """
@@ -341,10 +341,10 @@ def _least_squares(
     straight = int(np.flatnonzero(bound == bound.max())[-1])  # of constants the freest
     freedom, more = rows - free[-1], free[-1] - free[straight]
     if freedom < 1.0 or more < 1:
-        return slope[-1], np.zeros(slope.shape[1]), np.zeros(slope.shape[1], dtype=bool)
-    sd = np.sqrt(np.maximum(squares[-1] / freedom, least) * m.inverse[0, -1, 1, 1])
-    gained = rows * np.log(squares[straight] / squares[-1]) - 2.0 * more
-    return slope[-1], special.stdtrit(freedom, ONE_END) * sd, (gained > 0.0) & (gained <= SUPPORTED)
+        return slope[-1], np.zeros(slope.shape[1]), np.ones(slope.shape[1])
+    variance = np.maximum(squares[-1] / freedom, least)
+    reach = special.stdtrit(freedom, ONE_END) * np.sqrt(variance * m.inverse[0, -1, 1, 1])
+    return slope[-1], reach, special.fdtrc(more, freedom, (squares[straight] - squares[-1]) / more / variance)
 
 
 def estimate_many(design: Design, y: Array, stated: float | None = None, *, deletions: bool = True) -> Slopes:
@@ -400,8 +400,9 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
     ends, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
-    polynomial, reach, hidden = _least_squares(design, parts[0][0][1], parts[0][0][3], nu + design.flat, least)
-    reach += np.abs(polynomial - ends[:, 1])
+    polynomial, reach, chance = _least_squares(design, parts[0][0][1], parts[0][0][3], nu + design.flat, least)
+    hidden = (chance > DOUBTED[0]) & (chance < DOUBTED[1]) & (weights[:, : len(parts[0][0][1])].sum(1) > LEFT)
+    reach = reach + np.abs(polynomial - ends[:, 1])
     low = np.where(hidden, np.minimum(ends[:, 0], ends[:, 1] - reach), ends[:, 0])
     high = np.where(hidden, np.maximum(ends[:, 2], ends[:, 1] + reach), ends[:, 2])
     low, value, high = np.stack([low, ends[:, 1], high]) * unit
