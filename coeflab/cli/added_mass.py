@@ -94,13 +94,15 @@ def _share(text: str) -> str:
         return text
 
 
-def _near(
-    body: Body, density: float, method: str, wall: str, distance: str, given: dict[str, int | float | str], json: bool
-) -> None:
+def distances_of(wall: str, distance: str, method: str) -> list[float]:
+    """Distances from a wall, m, as typed.
+
+    Raises
+    ------
+    InputError
+        One without the other, another method than panel, or no numbers.
+    """
     from coeflab.core.errors import InputError, shown
-    from coeflab.report.tables import added_mass as tables
-    from coeflab.report.tables import nouns as noun_tables
-    from coeflab.workbench.hulls import near_walls
 
     if not (wall and distance) or method not in ("all", "panel"):
         raise InputError(
@@ -110,10 +112,19 @@ def _near(
             advice="Only the panel method knows walls; it needs both.",
         )
     try:
-        distances = [float(word) for word in distance.split(",")]
+        return [float(word) for word in distance.split(",")]
     except ValueError:
         raise InputError(shown(distance), "metres with commas, such as 0.5,1,2", column="--distance") from None
-    found = near_walls(body, density, wall, distances, given)
+
+
+def _near(
+    body: Body, density: float, method: str, wall: str, distance: str, given: dict[str, int | float | str], json: bool
+) -> None:
+    from coeflab.report.tables import added_mass as tables
+    from coeflab.report.tables import nouns as noun_tables
+    from coeflab.workbench.hulls import near_walls
+
+    found = near_walls(body, density, wall, distances_of(wall, distance, method), given)
     if json:
         far = found[0]
         walls = [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in far.walls]

@@ -48,6 +48,10 @@ def command(
     method: str = typer.Option(
         "all", metavar="METHOD", autocompletion=complete.methods, help="Of added mass, as in coeflab added-mass."
     ),
+    wall: str = typer.Option(
+        "", "--wall", metavar="WALL", help="bottom, surface_zero, surface_infinite: added mass near it into the file."
+    ),
+    distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
     to: list[str] = typer.Option(
         [], "--to", metavar="TARGET", autocompletion=complete.exporters, help="Export to it; may be given again."
     ),
@@ -66,6 +70,7 @@ def command(
     Writes a parameter file, exports and a report: added mass, estimates with U95, a first turn and zigzag where its body.toml
     gives [[control]] or [[thruster]], else a coast-down and what is missing. Exit code 1 when an export is refused.
     """
+    from coeflab.cli.added_mass import distances_of
     from coeflab.cli.merge import carried_out
     from coeflab.core.files import located, write_all
     from coeflab.workbench import checked, rendered
@@ -74,12 +79,13 @@ def command(
 
     if campaign:
         located(campaign, "cfd_data")  # before minutes of added mass
+    distances = distances_of(wall, distance, "panel") if wall or distance else []
     with show.progress(json) as say:
         say("reading the body")
         found = subject(body, unit, axes, repair)
         plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, to, accept_loss)
         refuse_unknown(plan.exports)
-        study = checked(from_shape(plan, found, stated, say), say)
+        study = checked(from_shape(plan, found, stated, say, wall, distances), say)
     folder = out if out is not None else Path("reports") / plan.name
     merged = None
     if campaign:
@@ -119,6 +125,7 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
 def summarise(study: Study) -> None:
     """The answer first, then estimates, motions, what is missing and what is assumed."""
     from coeflab.report.sections import estimates as tables
+    from coeflab.report.tables.added_mass import near_walls_kept
 
     shape, parameters = study.shape, next(iter(study.parameter_files.values()))
     if shape is None:
@@ -129,6 +136,8 @@ def summarise(study: Study) -> None:
     show.table(tables.estimates_table(parameters, shape.carried, parts, few=not show.whole()))
     show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
     show.table(tables.particulars_table(shape, parameters.added_mass))
+    if parameters.added_mass is not None and parameters.added_mass.walls:
+        show.table(near_walls_kept(parameters.added_mass))
     for line in shape.missing:
         show.marked("lacks", line)
 
@@ -155,7 +164,10 @@ def as_json(study: Study) -> dict[str, Any]:
         "wetted_surface": c.wetted_surface,
         "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
         "reference_point": shape.weighed.body.reference_point.tolist(),
-        "added_mass": None if hull is None else {"method": hull.method, "matrix": hull.matrix.tolist()},
+        "added_mass": None if hull is None else {
+            "method": hull.method, "matrix": hull.matrix.tolist(),
+            "walls": [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in hull.walls],
+        },
         "assumed": list(shape.weighed.assumed),
         "said": list(shape.said),
         "missing": list(shape.missing),

@@ -145,7 +145,7 @@ LEVERS = {4: (2, -1.0), 5: (1, 1.0)}  # M = -x Z, N = x Y
 PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
 
 
-def estimated(body: Body, water: Water) -> Estimates:
+def estimated(body: Body, water: Water, towed: bool = False) -> Estimates:
     """Estimate all that the methods can of a body.
 
     Parameters
@@ -153,6 +153,8 @@ def estimated(body: Body, water: Water) -> Estimates:
     body : Body
         With an outline.
     water : Water
+    towed : bool
+        As fits of a campaign on a course ahead state them, bluff bodies too.
 
     Raises
     ------
@@ -172,10 +174,12 @@ def estimated(body: Body, water: Water) -> Estimates:
     if not found:
         raise InputError(f"{body.name}: no hull, fin or bluff part", "an outline with at least one")
     contributions = tuple(found)
-    return combined(body, outline, contributions, water)
+    return combined(body, outline, contributions, water, towed)
 
 
-def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ...], water: Water) -> Estimates:
+def combined(
+    body: Body, outline: Outline, contributions: tuple[Contribution, ...], water: Water, towed: bool = False
+) -> Estimates:
     """Coefficients, covariance and shares of contributions.
 
     Parameters
@@ -184,6 +188,7 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     outline : Outline
     contributions : tuple of Contribution
     water : Water
+    towed : bool
 
     Notes
     -----
@@ -199,6 +204,8 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     symbols = tuple(f.symbol for f in functionals)
     units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])
     both = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
+    if not towed and outline.bluff and not (outline.hulls or outline.foils or outline.rings):
+        symbols, both = _of_bluff(symbols, contributions, both)
     rows, levered = [b[0] for b in both], [b[1] for b in both]
     kinds: dict[str, dict[str, list[int]]] = {}
     for i, c in enumerate(contributions):
@@ -252,6 +259,30 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
         found, contributions, {symbols[i]: shares[symbols[i]] for i in keep},
         shifted(recommended(contributions), point), _notes(outline, contributions),
     )  # fmt: skip
+
+
+Derived = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def _of_bluff(
+    symbols: tuple[str, ...], contributions: tuple[Contribution, ...], both: list[Derived]
+) -> tuple[tuple[str, ...], list[Derived]]:
+    """The same of a body that goes every way, with no course ahead: its law must hold in sway and astern.
+
+    Drag along x is u|u|, without what X0 V^2 needs beside it in drift; the products of the ideal fluid are of u, not of V.
+    """
+    named = {s: f"{s[0]}u{s[1:]}" for s in ("Yr", "Zq", "Nv", "Mw")}
+    gone = {f"X{m}{m}" for m in ("v", "w", "p", "q", "r")}
+    keep = [i for i, s in enumerate(symbols) if s not in gone]
+    places = [symbols.index(s) for s in named]
+    out = []
+    for c, pair in zip(contributions, both, strict=True):
+        ideal = c.kind == "ideal fluid"
+        moved = [np.where(np.isin(np.arange(len(symbols)), places) & ideal, 0.0, one)[keep] for one in pair]
+        own = [one[places] * ideal for one in pair]
+        out.append((np.concatenate([moved[0], own[0]]), np.concatenate([moved[1], own[1]])))
+    renamed = tuple("Xu|u|" if symbols[i] == "X0" else symbols[i] for i in keep)
+    return (*renamed, *named.values()), out
 
 
 def recommended(contributions: tuple[Contribution, ...]) -> Forces:

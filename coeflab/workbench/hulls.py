@@ -217,15 +217,22 @@ def near_walls(
         raise InputError(
             f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
         )
+    near = beside_walls(body, density, wall, distances, given)
+    far = ADDED_MASS.load("panel").added_mass(_original(body) or body, density, dict(given or {}))
+    walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
+    return replace(far, walls=walls), *near
+
+
+@one_thread()
+def beside_walls(
+    body: Body, density: float, wall: str, distances: Sequence[float], given: Mapping[str, Any] | None = None
+) -> tuple[AddedMass, ...]:
+    """Added mass by the panel method at distances from a wall, rising; as `near_walls`."""
     if not distances:
         raise InputError("no distance", "distances from the reference point to the wall, m", column="--distance")
-    method = ADDED_MASS.load("panel")
-    subject = _original(body) or body
-    options, rising = dict(given or {}), sorted(set(distances))
-    near = [method.added_mass(subject, density, {**options, "wall": wall, "distance": d}) for d in rising]
-    far = method.added_mass(subject, density, options)
-    walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(rising, near, strict=True))
-    return replace(far, walls=walls), *near
+    method, subject = ADDED_MASS.load("panel"), _original(body) or body
+    options = {**(given or {}), "wall": wall}
+    return tuple(method.added_mass(subject, density, {**options, "distance": d}) for d in sorted(set(distances)))
 
 
 def _require_solid(body: Body, method: str) -> None:

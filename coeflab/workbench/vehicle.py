@@ -19,6 +19,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.formats.export import PlannedExport
+from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.approach import along, mirrored, yaw_acceleration
 from coeflab.motion.manoeuvre import Simulation
@@ -35,7 +36,7 @@ from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lack
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
 from coeflab.workbench.exports import exports_of, parameter_files_rendered
-from coeflab.workbench.hulls import added_masses
+from coeflab.workbench.hulls import added_masses, beside_walls
 
 NOTHING = Stated()
 Progress = Callable[[str], None]
@@ -51,7 +52,10 @@ TURNS, LONGER = (
 
 
 @one_thread()
-def from_shape(plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None) -> Study:
+def from_shape(
+    plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
+    distances: Sequence[float] = (),
+) -> Study:  # fmt: skip
     """The study of a body without tables; checks and files are left to what takes it.
 
     Parameters
@@ -64,6 +68,10 @@ def from_shape(plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progr
         What is known of its mass beside the body's file.
     progress : callable
         Takes what is being done, in words.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``; none where empty.
+    distances : sequence of float
+        From the reference point to the wall, m: added mass there, by the panel method, goes into the parameter files.
 
     Raises
     ------
@@ -81,6 +89,11 @@ def from_shape(plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progr
     heavy = weighed(body, stated, conditions.density)
     progress(f"added mass of {body.name}")
     found = added_masses(heavy.body, conditions.density, plan.method, reproducible=True)
+    walls: tuple[NearWall, ...] = ()
+    if wall:
+        progress(f"added mass of {body.name} near a wall")
+        near = beside_walls(heavy.body, conditions.density, wall, distances)
+        walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     progress(f"estimates of {body.name}")
     water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
     made = methods.estimated(heavy.body, water)
@@ -94,6 +107,8 @@ def from_shape(plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progr
             first = assemble(taken, plan.name, [fit], [], [], (), heavy.body, conditions, inputs, found)
             notes = (*first.provenance.notes, *heavy.said, *said, *made.notes)
             first = first.model_copy(update={"provenance": first.provenance.model_copy(update={"notes": notes})})
+            if walls and first.added_mass is not None:
+                first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
             files[group.name] = equipped(first, heavy.body, heavy.configuration)
         hulls[group.name] = found
     exports, refused = exports_of(plan.exports, files.values(), progress)

@@ -167,6 +167,21 @@ def test_boxes_have_drag_in_every_motion_and_more_when_they_are_apart() -> None:
     assert two.forces(nu, {})[1, 1] == pytest.approx(2.0 * drag[1, 1])
 
 
+def test_the_law_of_a_bluff_body_holds_in_sway_and_astern() -> None:
+    long = replace(box("a", (1.0, 0.0, 0.0)), half_extents=np.array([0.5, 0.25, 0.2]))
+    seen = outline(hulls=(), bluff=(long, box("b", (-0.5, 0.0, 0.0))))
+    made, towed = estimates_of(seen, (0.0, 0.0, 0.0)), estimated(body_of(seen, (0.0, 0.0, 0.0)), WATER, towed=True)
+    now, ahead = set(made.coefficients.symbols), set(towed.coefficients.symbols)
+    assert {"Xu|u|", "Nv", "Nuv", "Mw", "Muw", "Yr", "Yur", "Zq", "Zuq"} <= now
+    assert not now & {"X0", "Xvv", "Xww", "Xrr", "Xqq"}
+    assert {"X0", "Xvv", "Nv"} <= ahead
+    assert not ahead & {"Nuv", "Xu|u|"}
+    for whole, parts in (("Nv", ("Nv", "Nuv")), ("Yr", ("Yr", "Yur")), ("X0", ("Xu|u|",))):
+        assert value(towed, whole) == pytest.approx(sum(value(made, s) for s in parts), rel=1e-9)
+    ideal = sum(v for k, v in towed.shares["Nv"].items() if "ideal" in k)
+    assert value(made, "Nuv") == pytest.approx(ideal, rel=1e-9)
+
+
 def test_alternatives_count_by_their_mean_and_widen_u95(cross: Estimates) -> None:
     lifts = [c for c in cross.contributions if c.kind == "hull lift"]
     assert len(lifts) == 6  # three works, fins behind as NACA 1307 has them and in what the hull sheds

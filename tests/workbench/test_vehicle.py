@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from coeflab.bodies.pieces import Control
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.thrusters import Thruster
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
+from coeflab.core.files import shipped, write_all
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
@@ -35,6 +36,8 @@ from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench import run
+from coeflab.workbench import vehicle as workbench_vehicle
+from coeflab.workbench.exports import parameter_files_rendered
 from coeflab.workbench.vehicle import asked, from_shape
 
 VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
@@ -145,6 +148,18 @@ def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: B
     assert "no thruster: write [[thruster]]" in missing
     assert "--mass, --cg, --inertia" in missing
     assert not any(c.symbol.startswith(("Ydr", "Ndr")) for p in found.parameter_files.values() for c in p.coefficients)
+
+
+def test_added_mass_near_a_wall_goes_into_the_file(bare: Body, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    few = partial(workbench_vehicle.beside_walls, given={"panels": 1000})
+    monkeypatch.setattr(workbench_vehicle, "beside_walls", few)
+    made = from_shape(PLAN, bare, wall="bottom", distances=(2.0, 0.5)).parameter_files
+    write_all(tmp_path, parameter_files_rendered(made.values()))
+    hull = read_parameter_file(next(tmp_path.glob("*.parameters.json"))).added_mass
+    assert hull is not None
+    assert [(w.wall, w.distance) for w in hull.walls] == [("bottom", 0.5), ("bottom", 2.0)]
+    close, far = (w.matrix[2, 2] / hull.matrix[2, 2] for w in hull.walls)
+    assert close > 1.05 > far > 0.97
 
 
 def test_a_rudder_turns_it_within_its_limit(steered: Study) -> None:

@@ -8,7 +8,9 @@ on a smooth body the error falls with the square of the panels' size.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from coeflab.bodies.panels.influence import Panels, layer_slopes, panels_of, see
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import moved
 
+Multiply = Callable[[Array], Array]
 TOLERANCE = 5e-7
 MOST_STEPS = 200
 WORKSPACE = 400 * 2**20
@@ -122,9 +125,10 @@ def panel_added_mass(
         diagonal = 4.0 * np.pi - angles.sum(axis=1, dtype=np.float64)
     else:
         angles, right, diagonal = np.zeros((0, 0), np.float32), np.zeros((0, 6)), np.zeros(0)
+    multiply: Multiply = partial(_by_angles, angles)
     if sheet.count:
-        angles, right, diagonal = _with_sheets(panels, sheet, near, angles, right, diagonal)
-    potential, steps, residual = _solved(angles, diagonal, right)
+        multiply, right, diagonal = _with_sheets(panels, sheet, near, angles, right, diagonal)
+    potential, steps, residual = _solved(multiply, diagonal, right)
     area, normal = np.concatenate([panels.area, sheet.area]), np.concatenate([panels.normal, sheet.normal])
     motion = _with_turning(normal, np.concatenate([panels.centre, sheet.centre]))
     raw = -(potential * area[:, None]).T @ motion
@@ -137,11 +141,11 @@ def panel_added_mass(
 
 def _with_sheets(
     panels: Panels, sheet: Panels, near: Wall | None, angles: NDArray[np.float32], right: Array, diagonal: Array
-) -> tuple[NDArray[np.float32], Array, Array]:
+) -> tuple[Multiply, Array, Array]:
     """The system with dipole panels: their columns, and a row each for the velocity through them.
 
     The rows of sheets are multiplied by the inverse of their own block, so that its poor conditioning does not slow the
-    iteration down.
+    iteration down; the blocks stay apart, as their product costs more than all steps.
     """
     n, k = panels.count, sheet.count
     velocity, slope = velocities(sheet.centre, sheet.normal, sheet), np.zeros((k, 6))
@@ -159,15 +163,17 @@ def _with_sheets(
             jump += near.factor * velocities(points, ways, panels)
             slope += near.factor * _slope(points, ways, panels)
     own = -4.0 * np.pi * _with_turning(sheet.normal, sheet.centre) - slope
-    inverse = np.linalg.inv(velocity)
-    whole = np.zeros((n + k, n + k), dtype=np.float32)
-    whole[:n, :n], whole[:n, n:], whole[n:, :n] = angles, back, 2.0 * np.pi * inverse @ jump
-    # The sheets' unknowns keep the unit of the others.
-    return (
-        whole,
-        np.concatenate([right, 2.0 * np.pi * inverse @ own]),
-        np.concatenate([diagonal, np.full(k, 2.0 * np.pi)]),
-    )
+    inverse = 2.0 * np.pi * np.linalg.inv(velocity)  # the sheets' unknowns keep the unit of the others
+
+    def multiply(x: Array) -> Array:
+        return np.concatenate([_by_angles(angles, x[:n]) + back @ x[n:], inverse @ (jump @ x[:n])])
+
+    return multiply, np.concatenate([right, inverse @ own]), np.concatenate([diagonal, np.full(k, 2.0 * np.pi)])
+
+
+def _by_angles(angles: NDArray[np.float32], x: Array) -> Array:
+    """Product in single precision."""
+    return np.asarray(angles @ x.astype(np.float32), dtype=np.float64)
 
 
 def _slope(targets: Array, ways: Array, panels: Panels) -> Array:
@@ -186,7 +192,7 @@ def _with_turning(vector: Array, at: Array) -> Array:
     return np.hstack([vector, np.cross(at, vector)])
 
 
-def _solved(angles: NDArray[np.float32], diagonal: Array, right: Array) -> tuple[Array, int, float]:
+def _solved(multiply: Multiply, diagonal: Array, right: Array) -> tuple[Array, int, float]:
     """GMRES on all right-hand sides at once (Saad & Schultz 1986), each with its own Krylov space.
 
     Returns
@@ -206,7 +212,7 @@ def _solved(angles: NDArray[np.float32], diagonal: Array, right: Array) -> tuple
     start[:, 0] = ~still
     for step in range(MOST_STEPS):
         last = basis[-1]
-        vector = (angles @ last.astype(np.float32)).astype(np.float64) + diagonal[:, None] * last
+        vector = multiply(last) + diagonal[:, None] * last
         for _ in range(2):
             for k, old in enumerate(basis):
                 along = np.einsum("nk,nk->k", old, vector)

@@ -241,6 +241,7 @@ def sharp_points(vertices: Array, faces: Faces, step: float) -> Array:
 REACH = 5.0
 BLOCK = 2**18
 NEAR_BLOCK = 2**15
+WORK = 5
 
 
 def exact_integrals(targets: Array, corners: Array, normals: Array) -> tuple[Array, Array]:
@@ -317,24 +318,19 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
 
     spare: SimpleQueue[Array] = SimpleQueue()
     for _ in range(os.cpu_count() or 1):
-        spare.put(np.empty((6, step, count)))
+        spare.put(np.empty((WORK, step, count)))
 
     def rows(start: int) -> None:
         work = spare.get()
         for k, (points, factor) in enumerate(seen):
             targets = points[start : start + step]
-            solid, inverse, square = far.seen_from(targets, work)
-            i, j = np.nonzero(square < reach)
-            for part in range(0, len(i), NEAR_BLOCK):
-                a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
-                solid[a, b], inverse[a, b] = exact_integrals(targets[a], panels.corners[b], panels.normal[b])
+            solid, layers[k][start : start + step] = far.with_near(targets, panels, reach, work)
             if k == 0:
                 own = np.arange(len(targets))
                 solid[own, start + own] = 0.0
                 angles[start : start + step] = solid
             else:
                 angles[start : start + step] += factor * solid
-            layers[k][start : start + step] = inverse @ panels.normal
         spare.put(work)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
@@ -345,15 +341,12 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
 def seen_by(targets: Array, panels: Panels) -> tuple[Array, Array]:
     """Solid angle of every panel, (m, n), and the integral of n / r, (m, 3), from points that are no centroids of theirs."""
     out, layer = np.empty((len(targets), panels.count)), np.empty((len(targets), 3))
-    far = _Far.of(panels)
+    far, reach = _Far.of(panels), (REACH * panels.size) ** 2
     step = max(1, BLOCK // panels.count)
+    work = np.empty((WORK, step, panels.count))
     for start in range(0, len(targets), step):
-        some = targets[start : start + step]
-        solid, inverse, square = far.seen_from(some)
-        i, j = np.nonzero(square < (REACH * panels.size) ** 2)
-        if len(i):
-            solid[i, j], inverse[i, j] = exact_integrals(some[i], panels.corners[j], panels.normal[j])
-        out[start : start + step], layer[start : start + step] = solid, inverse @ panels.normal
+        here = slice(start, start + step)
+        out[here], layer[here] = far.with_near(targets[here], panels, reach, work)
     return out, layer
 
 
@@ -450,64 +443,78 @@ def _pull(targets: Array, corners: Array, normals: Array) -> Array:
 @brief
 @dataclass(frozen=True, slots=True)
 class _Far:
-    """Panels as sources with their second moments; products with polynomials of the targets."""
+    """Panels as sources with their second moments: polynomials of the target (x x, x, 1), one column a panel.
+
+    Attributes
+    ----------
+    square : (10, n) array
+        Of the distance to the centroid, r^2.
+    inverse, solid : (10, n) arrays
+        Second-moment terms of 1 / r and of 1 / r^3, times r^4 over their first terms.
+    height : (4, n) array
+        Of the plane over the target, times the panel's area.
+    weighted : (n, 3) array
+        Normal times area.
+    """
 
     square: Array
+    inverse: Array
+    solid: Array
     height: Array
-    spread: Array
-    trace: Array
-    area: Array
+    weighted: Array
 
     @classmethod
     def of(cls, panels: Panels) -> _Far:
-        """Columns of the products.
+        """The polynomials.
 
-        The square of the distance and the height over the plane are linear in (x, |x|^2, 1); the second moments along the
-        line of sight, thrice, quadratic in x.
+        With M the second moments over the area and t their trace, the mean of 1 / r over a panel is
+        (1 + (3 d M d / r^2 - t) / (2 r^2)) / r and that of 1 / r^3 is (1 + (15 d M d / r^2 - 3 t) / (2 r^2)) / r^3.
         """
-        c, zero = panels.centre, np.zeros((panels.count, 1))
-        height = np.hstack([-panels.normal, zero, np.sum(panels.normal * c, axis=1)[:, None]]).T
-        square = np.hstack([-2.0 * c, zero + 1.0, np.sum(c**2, axis=1)[:, None]]).T
+        c, area = panels.centre, panels.area[:, None]
+        rows, columns = np.triu_indices(3)
+        even = np.tile((rows == columns).astype(float), (panels.count, 1))
+        square = np.hstack([even, -2.0 * c, np.sum(c**2, axis=1)[:, None]])
         moment = 3.0 * np.einsum("qni,qnj->nij", panels.spread, panels.spread)
         linear = np.einsum("nij,nj->ni", moment, c)
-        rows, columns = np.triu_indices(3)
         quadratic = moment[:, rows, columns] * np.where(rows == columns, 1.0, 2.0)
-        spread = np.hstack([quadratic, -2.0 * linear, np.sum(linear * c, axis=1)[:, None]]).T
-        return cls(square, height, np.ascontiguousarray(spread), np.sum(panels.spread**2, axis=(0, 2)), panels.area)
+        spread = np.hstack([quadratic, -2.0 * linear, np.sum(linear * c, axis=1)[:, None]])
+        trace = np.sum(panels.spread**2, axis=(0, 2))[:, None] * square
+        height = np.hstack([-panels.normal, np.sum(panels.normal * c, axis=1)[:, None]]) * area
+        inverse, solid = 0.5 * (spread - trace), 2.5 * spread - 1.5 * trace
+        square, inverse, solid, height = (np.ascontiguousarray(a.T) for a in (square, inverse, solid, height))
+        return cls(square, inverse, solid, height, panels.normal * area)
 
-    def seen_from(self, targets: Array, work: Array | None = None) -> tuple[Array, Array, Array]:
-        """Solid angle, integral of 1 / r and square of the distance, (m, n) each.
+    def with_near(self, targets: Array, panels: Panels, reach: Array, work: Array) -> tuple[Array, Array]:
+        """Solid angles (m, n) and the integrals of n / r (m, 3): far panels by their moments, near ones exactly.
 
-        Taylor series of 1/r and 1/r^3 about the centroid up to the second moments; the height over a plane is the same
-        for all its points. The results lie in ``work``, (6, m or more, n), where that is given: memory that the system has
-        to hand out anew for every block costs more than the sums.
+        The angles lie in ``work``, (`WORK`, m or more, n): memory that the system has to hand out anew for every block costs
+        more than the sums.
         """
-        m = len(targets)
-        if work is None:
-            work = np.empty((6, m, len(self.area)))
-        square, inverse, along, solid, root, height = (one[:m] for one in work)
-        one = np.ones((m, 1))
-        lifted = np.hstack([targets, np.sum(targets**2, axis=1)[:, None], one])
+        m, n = len(targets), panels.count
+        square, root, solid, height, inverse = (one[:m] for one in work)
         rows, columns = np.triu_indices(3)
+        lifted = np.hstack([targets[:, rows] * targets[:, columns], targets, np.ones((m, 1))])
         np.matmul(lifted, self.square, out=square)
-        np.maximum(square, 1e-30, out=inverse)
-        np.reciprocal(inverse, out=inverse)
-        np.matmul(np.hstack([targets[:, rows] * targets[:, columns], targets, one]), self.spread, out=along)
-        along *= inverse
-        along -= self.trace
-        along *= inverse
-        # ``along`` is now M : grad grad (1/r) over 1/r, for second moments M; of 1/r^3 it is 5 times that plus 2 trace.
-        np.multiply(along, 2.5, out=solid)
-        solid += 1.0
-        along *= 0.5
-        along += 1.0
-        np.sqrt(inverse, out=root)
-        root *= self.area
-        along *= root
-        root *= inverse
-        inverse *= self.trace
-        solid += inverse
-        solid *= root
-        np.matmul(lifted, self.height, out=height)
-        solid *= height
-        return solid, along, square
+        near = np.flatnonzero((square < reach).ravel())
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # at a centroid, which is near
+            np.reciprocal(square, out=square)
+            np.sqrt(square, out=root)
+            np.matmul(lifted, self.solid, out=solid)
+            np.matmul(lifted, self.inverse, out=inverse)
+            np.matmul(lifted[:, 6:], self.height, out=height)
+            height *= root
+            height *= square
+            square *= square
+            solid *= square
+            solid += 1.0
+            solid *= height
+            inverse *= square
+            inverse += 1.0
+            inverse *= root
+        flat, layer = solid.ravel(), inverse.ravel()
+        for part in range(0, len(near), NEAR_BLOCK):
+            place = near[part : part + NEAR_BLOCK]
+            i, j = np.divmod(place, n)
+            flat[place], whole = exact_integrals(targets[i], panels.corners[j], panels.normal[j])
+            layer[place] = whole / panels.area[j]
+        return solid, inverse @ self.weighted

@@ -336,9 +336,10 @@ class Simplification:
             return Table("Parts against mesh", (), ())
         parts, mesh = (np.diag(found.matrix) for found in self.compared)
         error = np.nan_to_num(np.diag(self.compared[1].error)) if self.compared[1].error is not None else np.zeros(6)
+        unknown = self.compared[1].error is None  # too few panels for a family
         entries = (None,) * 6 if self.shape.agreement is None else self.shape.agreement.entries
         rows = [
-            (f"{c}{m}dot", unit, number(-a, 4), number(-b, 4), f"{e / b:.1%}" if b > e else ABSENT, ABSENT if d is None else _percent(d))
+            (f"{c}{m}dot", unit, number(-a, 4), number(-b, 4), ABSENT if unknown or b <= e else f"{e / b:.1%}", ABSENT if d is None else _percent(d))
             for c, m, unit, a, b, e, d in zip(COMPONENTS, MOTIONS, UNITS, parts, mesh, error, entries, strict=True)
         ]  # fmt: skip
         headers = ("", "unit", "parts", "mesh", "error of mesh", "parts over mesh, less one")

@@ -109,6 +109,18 @@ def near_walls(found: tuple[AddedMass, ...]) -> Table:
     return Table(f"{far.body}: added mass near a wall", headers, tuple(rows), notes)
 
 
+def near_walls_kept(far: AddedMass) -> Table:
+    """The table of a parameter file: diagonal entries at distances from a wall, over those far from it."""
+    free = np.diag(far.matrix)
+    rows = []
+    for w in far.walls:
+        ratios = (f"{a / b:.3f}" if b > 0.0 else ABSENT for a, b in zip(np.diag(w.matrix), free, strict=True))
+        rows.append((w.wall, f"{w.distance:g}", *ratios))
+    names = [f"{c}{m}dot" for c, m in zip(COMPONENTS, MOTIONS, strict=True)]
+    note = f"over the value far from walls, by {far.method}; near ones by the panel method; from the reference point, m"
+    return Table(f"{far.body}: added mass near a wall", ("wall", "m", *names), tuple(rows), (note,), frozenset({0}))
+
+
 def remarks(found: Triangulation) -> tuple[str, ...]:
     """Which method is recommended and why, how far it can be trusted, and what each assumed."""
     by_rule = f"{found.recommended.method}, by the rule: {found.rule}"

@@ -68,7 +68,8 @@ def _estimated(tank: Tank, body: TowedBody) -> Estimates:
     if at.viscosity is None:
         raise InputError("no viscosity", "the kinematic viscosity, m^2/s", column="conditions.viscosity")
     seen = replace(body.body, reference_point=tank.reference_point, scaling=tank.scaling)
-    return estimated(seen, Water(at.density, at.viscosity, at.speed, float(tank.options.get("roughness", 0.0))))
+    water = Water(at.density, at.viscosity, at.speed, float(tank.options.get("roughness", 0.0)))
+    return estimated(seen, water, towed=True)
 
 
 def table(tank: Tank, body: TowedBody, folder: Path) -> RawTable:
