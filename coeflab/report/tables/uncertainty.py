@@ -43,9 +43,7 @@ def spread_table(carried: Carried) -> Table:
     notes = [f"{', '.join(names)}: {why}." for why, names in reasons.items()]
     beyond = [s.figure.name for s in carried.spreads if s.extrapolated]
     if beyond:
-        notes.append(
-            f"Beyond the data: {', '.join(beyond)}. The interval does not contain the error of extrapolating."
-        )
+        notes.append(f"Beyond the data: {', '.join(beyond)}. The interval does not contain the error of extrapolating.")
     q = carried.question
     notes.append(
         f"{q.members} members, seed {q.seed}; percentiles 2.275 and 97.725 (two standard uncertainties to both sides); "
