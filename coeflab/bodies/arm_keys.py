@@ -73,9 +73,12 @@ class JointRange(NamedTuple):
     strongest: float
 
 
+_OWN_AXES = "Check units and axes, and that it is not about another point."
+
+
 def _require_inertia(mass: float, inertia: Array) -> None:
     if doubt := inertia_doubt(mass, np.zeros(3), inertia):
-        raise InputError(doubt, INERTIA, column="inertia_matrix")
+        raise InputError(doubt, INERTIA, column="inertia_matrix", advice=_OWN_AXES)
 
 
 def _require_added_mass(matrix: Array | None) -> None:
@@ -229,19 +232,24 @@ class LinkKeys(takes.Declaration):
     def check(self) -> None:
         """Limits in order, and an inertia that a body can have."""
         low, high, home, fastest, strongest = self.range
+        f, unit = (180.0 / np.pi, "deg") if self.joint == "revolute" else (1.0, "m")
         if not low < high:
-            raise InputError(f"low {low:g}, high {high:g} {self._unit}", "low below high", column="low")
+            raise InputError(
+                f"low {f * low:.6g}, high {f * high:.6g} {unit}",
+                "low below high",
+                column="low",
+                advice="Exchange them.",
+            )
         if not low <= home <= high:
-            raise InputError(f"{home:g} {self._unit}", f"{low:g} to {high:g} {self._unit}", column="home")
+            raise InputError(
+                f"{f * home:.6g} {unit}", f"{f * low:.6g} to {f * high:.6g} {unit}, low to high", column="home",
+                advice="Move home, or a limit; without home a joint begins at 0.",
+            )  # fmt: skip
         for key, value in (("fastest", fastest), ("strongest", strongest)):
             if not value > 0.0:
                 raise InputError(f"{value:g}", "a value above zero", column=key)
         _require_inertia(self.mass, self.inertia_matrix)
         _require_added_mass(self.added_mass)
-
-    @property
-    def _unit(self) -> str:
-        return "rad" if self.joint == "revolute" else "m"
 
     @property
     def range(self) -> JointRange:
@@ -372,7 +380,7 @@ class TorqueKeys(takes.Declaration):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VoltageKeys(takes.Declaration):
-    """Two states with slip, by voltage (Healey, Rock, Cody, Miles and Brown 1994).
+    """Two states with slip, by voltage, after Healey, Rock, Cody, Miles and Brown (1994), from memory of their work.
 
     Attributes
     ----------

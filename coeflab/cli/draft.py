@@ -165,13 +165,13 @@ class Draft:
         from coeflab.tables.parts import complaints_of, require_parts, understood_together
 
         if said.options:
-            before = dict(self.said.options)
+            before, chosen = dict(self.said.options), self.chosen
             self.said.options |= said.options
             self.chosen = [replace(one, value=str(self.said.options[one.key])) for one in self.chosen]
             try:
                 self.read()
             except InputError:
-                self.said.options = before
+                self.said.options, self.chosen = before, chosen
                 raise
         require_parts(said.settings, self.parts)
         columns, settings = self.said.columns | said.columns, self.said.settings | said.settings
@@ -241,7 +241,7 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.parts import own
+        from coeflab.tables.parts import JOIN, alike, own
         from coeflab.tables.settings import doubtful_setting
         from coeflab.tables.words_above import POINT_OF
 
@@ -251,7 +251,12 @@ class Draft:
             sizes += [f"warning, {k}: {why}" for k in mine if (why := doubtful_setting(part.raw, mine, k))]
         sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
         shows = [e.text for found in self.founds for e in found.shows if e.text.startswith("warning")]
-        return list(dict.fromkeys([*sizes, *shows]))
+        same = [
+            f"warning: {' and '.join(names)} have the same columns. Parts of one sweep are joined by --option {JOIN}=yes; tests of "
+            "another body are a campaign of their own: name one by --option sheet= or files="
+            for names in alike(self.parts)
+        ]
+        return list(dict.fromkeys([*same, *sizes, *shows]))
 
     def _beyond_ends(self) -> str:
         """Where the reference point is off the body."""

@@ -116,14 +116,15 @@ def _typed_so_far(
     name: Sequence[str], runs: Path | None, state: Path | None, force: bool,
 ) -> list[str]:  # fmt: skip
     """The words of the command as they were typed, without what was left open."""
-    words = [shlex.quote(path)]
+    from coeflab.tables.form import quoted
+
+    words = [quoted(path)]
     for flag, said in (("--as", as_), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
-        words += [f"{flag} {shlex.quote(str(said))}"] if said else []
-    for flag, many in (("--name", name), ("--option", option), ("--map", map_), ("--set", set_)):
-        words += [
-            f"{flag} {shlex.quote(text)}" for text in many if flag == "--name" or "?" not in text.partition("=")[2]
-        ]
-    return [*words, *["--force"] * force, f"--out {shlex.quote(str(out))}"]
+        words += [f"{flag} {quoted(str(said))}"] if said else []
+    words += [f"--name {quoted(text)}" for text in name]
+    for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
+        words += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]
+    return [*words, *["--force"] * force, f"--out {quoted(str(out))}"]
 
 
 def _written(out: Path, files: Sequence[str], tables: Sequence[ForceTable]) -> None:

@@ -47,6 +47,7 @@ def command(
 
 
 REPORTS = "reports"
+FIRST_FIGURES = 3
 
 
 def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False) -> None:
@@ -102,7 +103,29 @@ def summarise(study: Study) -> None:
         _tows(study)
         show.table(model_tables.quality(models))
         show.table(model_tables.campaigns(study.fits))
+    _moved(study)
     show.findings(study.checks)
+
+
+def _moved(study: Study) -> None:
+    """What the planned manoeuvres come to: their first figures with a value; with ``--wide`` all, with their definitions."""
+    from coeflab.core.table import Table
+    from coeflab.report.tables.motion import figure_table
+
+    rows = []
+    for made in study.manoeuvres:
+        name = made.manoeuvre.name.replace("_", " ")
+        found = figure_table(made.figures, f"{name} of {made.vehicle.name}", made.vehicle.length)
+        if show.whole():
+            show.table(found)
+        known = [row for row, figure in zip(found.rows, made.figures, strict=True) if figure.value is not None]
+        rows += [
+            (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
+            for i, row in enumerate(known[:FIRST_FIGURES])
+        ] or [(made.vehicle.name, name, "none", "", "", made.trajectory.ended.value)]
+    if not show.whole():
+        headers = ("file", "manoeuvre", "figure", "value", "unit", "status")
+        show.table(Table("Simulated manoeuvres", headers, tuple(rows), (), frozenset({0, 1, 2, 4, 5})))
 
 
 def answered(found: Answer) -> None:

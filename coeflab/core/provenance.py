@@ -130,9 +130,10 @@ WORKS: dict[str, str] = {
     "urv_kane": "T. J. Tarn, G. A. Shoults, S. P. Yang, A Dynamic Model of an Underwater Vehicle with a Robotic Manipulator using "
     "Kane's Method, Autonomous Robots 3, 1996 (authors and journal from memory: the copy read here names none).",
     "yoerger1990": "D. R. Yoerger, J. G. Cooke, J.-J. E. Slotine, The influence of thruster dynamics on underwater vehicle behavior and "
-    "their incorporation into control system design, IEEE J. Oceanic Engineering 15(3), 1990.",
+    "their incorporation into control system design, IEEE J. Oceanic Engineering 15(3), 167-177, 1990.",
     "healey1994": "A. J. Healey, S. M. Rock, S. Cody, D. Miles, J. P. Brown, Toward an improved understanding of thruster dynamics for "
-    "underwater vehicles, Symposium on Autonomous Underwater Vehicle Technology, 1994.",
+    "underwater vehicles, Proceedings of the 1994 Symposium on Autonomous Underwater Vehicle Technology, 340-352 (as the URV paper "
+    "cites it; its functions are written here from memory, no copy was read).",
     "leonard_graver2001": "N. E. Leonard, J. G. Graver, Model-based feedback control of autonomous underwater gliders, IEEE J. "
     "Oceanic Engineering 26(4), 2001.",
     "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "

@@ -204,29 +204,16 @@ def name_pattern(text: str) -> NamePattern:
     return NamePattern(text, tuple(fields), re.compile("".join(pieces) + _literal(rest)))
 
 
-def likely_pattern(names: Sequence[str]) -> str:
-    """The pattern that names of runs seem to have, to be confirmed: numbers that differ, between texts that do not.
+def likely_patterns(names: Sequence[str]) -> tuple[str, ...]:
+    """The pattern that all names of runs seem to have, or those of groups of alike names; to be confirmed.
 
-    What each number is follows from the word before it, else it is ``{NAME:UNIT}``; letters for signs and decimals are
-    spelt as `NamePattern` takes them.
-
-    Returns
-    -------
-    str
-        Empty where the names are of no one pattern, or of fewer than two.
+    Numbers that differ, between texts that do not. What each is follows from the word before it, else it is ``{NAME:UNIT}``;
+    letters for signs and decimals are spelt as `NamePattern` takes them. Empty where a name belongs to none.
 
     Examples
     --------
-    >>> likely_pattern(["drift_m12", "drift_p4", "drift_0"])
-    'drift_{beta:deg:m=-,p=+}'
-    """
-    return _likely(_texts(names))
-
-
-def likely_patterns(names: Sequence[str]) -> tuple[str, ...]:
-    """The one pattern of all names, or those of groups of alike names, ``drift_{beta:deg}`` and ``yaw_r{r:rad/s}``.
-
-    Empty where a name belongs to none.
+    >>> likely_patterns(["drift_m12", "drift_p4", "yaw_r0.1", "yaw_r0.2"])
+    ('drift_{beta:deg:m=-,p=+}', 'yaw_r{r:rad/s}')
     """
     texts = _texts(names)
     if whole := _likely(texts):
@@ -255,7 +242,7 @@ def _texts(names: Sequence[str]) -> list[str]:
 
 
 def _likely(texts: Sequence[str]) -> str:
-    """`likely_pattern` of names without their folders and extension."""
+    """The one pattern of names without their folders and extension; empty where they have none, or are fewer than two."""
     split = [_DIGITS.split(text) for text in texts]
     if len(texts) < 2 or len({len(parts) for parts in split}) != 1 or len(split[0]) < 3:
         return ""
@@ -294,7 +281,8 @@ class NoConditionError(InputError):
         options = " ".join(f"--name '{pattern}'" for pattern in self.patterns)
         proposed = f" If this is what they mean: {options}." if self.patterns else ""
         if UNNAMED in options:
-            proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT."
+            proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT; "
+            proposed += "what is known anyway goes with it: --set axes.frame=CFD --set 'scaling.length=4.3 LOA' ..."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",

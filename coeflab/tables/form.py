@@ -77,10 +77,14 @@ class Line:
 
 
 def argument(option: str, key: str, text: str) -> str:
-    """An argument of the command line as a shell takes it; primes in double quotes."""
-    said = f"{key}={text}"
-    plain = "'" in said and not set(said) & set('"$`\\!\n')
-    return f'{option} "{said}"' if plain else f"{option} {shlex.quote(said)}"
+    """An argument of the command line as a shell takes it."""
+    return f"{option} {quoted(f'{key}={text}')}"
+
+
+def quoted(text: str) -> str:
+    """A word as a shell takes it; primes in double quotes."""
+    plain = "'" in text and not set(text) & set('"$`\\!\n')
+    return f'"{text}"' if plain else shlex.quote(text)
 
 
 def form(

@@ -8,8 +8,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, TypeVar
+
+import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.types import brief
@@ -27,18 +30,19 @@ from coeflab.tables.form import (
     setting_line,
 )
 from coeflab.tables.importers import IMPORTERS
-from coeflab.tables.mapping import known_as
+from coeflab.tables.mapping import known_as, texts_of
 from coeflab.tables.proposals import proposals
 from coeflab.tables.questions import Question, Understood, understood
-from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
+from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
 from coeflab.tables.settings import Setting, Settings, against_words, read_settings, stated_settings
-from coeflab.tables.words_above import POINT_OF
+from coeflab.tables.words_above import POINT_FROM, POINT_OF
 
 Progress = Callable[[str], None]
 Value = TypeVar("Value")
 MOST = 40  # tables of a folder
+JOIN = "joined"  # option: tables of the same columns become one
 SPLIT = (
     "conditions.speed",
     "conditions.density",
@@ -104,7 +108,7 @@ def read_parts(
     importer : str
         The one that a person names, or empty.
     options : mapping
-        Of the importer; ``sheet`` may name several with commas between, ``names`` several patterns with `BETWEEN`.
+        Of the importer; ``sheet`` may name several with commas between, ``names`` several patterns with `BETWEEN`; `JOIN`.
     progress : callable, optional
 
     Raises
@@ -112,6 +116,10 @@ def read_parts(
     InputError
         By file and line.
     """
+    if JOIN in options:
+        rest = {key: value for key, value in options.items() if key != JOIN}
+        parts, chosen = read_parts(path, importer, rest, progress)
+        return tuple(replace(p, options={**p.options, JOIN: "yes"}) for p in joined_tables(parts)), chosen
     try:
         name = importer_of(path, importer)
     except NoRunsError:
@@ -192,9 +200,10 @@ def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...]
     found: list[tuple[str, RawTable, str, Mapping[str, Any]]] = []
     left: list[str] = []
     wanted = [name.strip() for name in str(options.get("files", "")).split(",") if name.strip()]
-    every = sorted(
-        (f for f in path.iterdir() if f.is_file() and not f.name.startswith(".")), key=lambda f: natural(f.name)
-    )
+    try:
+        every = sorted((f for f in path.iterdir() if f.is_file() and f.name[0] != "."), key=lambda f: natural(f.name))
+    except OSError as shut:
+        raise InputError(f"a folder that cannot be read ({shut.strerror})", "one that can", file=path) from None
     if absent := [name for name in wanted if name not in [f.name for f in every]]:
         raise InputError(
             f"no file {', '.join(map(shown, absent))}", f"of {', '.join(f.name for f in every[:MOST])}", file=path
@@ -308,6 +317,62 @@ def stated_together(parts: Sequence[Part]) -> dict[str, Setting]:
     return out
 
 
+def alike(parts: Sequence[Part]) -> list[tuple[str, ...]]:
+    """Names of tables that have the same columns in the same units: parts of one sweep, or tests of two bodies."""
+    found: dict[tuple[object, ...], list[str]] = {}
+    for p in parts:
+        found.setdefault(tuple((c.name, c.unit, c.means) for c in p.raw.columns), []).append(p.name)
+    return [tuple(names) for names in found.values() if len(names) > 1]
+
+
+def joined_tables(parts: Sequence[Part]) -> tuple[Part, ...]:
+    """Tables of the same columns as one each, with a label that says which file or sheet a row is from.
+
+    Raises
+    ------
+    InputError
+        Their words say different speeds or densities.
+    """
+    by_name = {p.name: p for p in parts}
+    out = {p.name: p for p in parts}
+    for names in alike(parts):
+        own = [by_name[n] for n in names]
+        stated: dict[str, Stated] = {}
+        for p in own:
+            for key, one in p.raw.stated.items():
+                before = stated.setdefault(key, replace(one, place=f"{p.name}, {one.place}"))
+                if before.value != one.value:
+                    raise InputError(
+                        f"{before.value} ({before.place}) and {one.value} ({p.name}, {one.place}) for {key}", "one value in tables that are joined",
+                        file=p.raw.path, advice=f"Leave {JOIN} out: they become tables of their own.",
+                    )  # fmt: skip
+        columns = []
+        for many in zip(*(p.raw.columns for p in own), strict=True):
+            texts = tuple(t for c in many for t in texts_of(c)) if any(c.is_text for c in many) else ()
+            columns.append(replace(many[0], values=np.concatenate([c.values for c in many]), texts=texts))
+        origin = tuple(p.name for p in own for _ in range(len(p.raw)))
+        columns.append(RawColumn("from", "", np.full(len(origin), np.nan), origin, "label"))
+        first = own[0].raw
+        raw = replace(
+            first, columns=tuple(columns), lines=np.concatenate([p.raw.lines for p in own]), stated=stated,
+            row_labels=tuple(f"{p.name} {label}" for p in own for label in p.raw.row_labels),
+            files=tuple(dict.fromkeys(f for p in own for f in p.raw.files)),
+            remarks=tuple(f"{p.name}: {text}" for p in own for text in p.raw.remarks),
+            dialect={**first.dialect, JOIN: ", ".join(names)},
+        )  # fmt: skip
+        out[names[0]] = replace(own[0], name=_common(names), raw=raw)
+        for n in names[1:]:
+            del out[n]
+    found = tuple(out.values())
+    return found if len(found) > 1 else (replace(found[0], name=""),)
+
+
+def _common(names: Sequence[str]) -> str:
+    """What all names begin with, without what separates it from the rest."""
+    alike = takewhile(lambda letters: len(set(letters)) == 1, zip(*names, strict=False))
+    return "".join(letters[0] for letters in alike).rstrip("_-. ") or names[0]
+
+
 def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
     """Words over one table count for all, and are open where those of two tables differ; speeds and densities may differ."""
     if len(parts) < 2:
@@ -379,7 +444,7 @@ def questions_together(
             out.append((key, replace(strong[0][1], default=whole)))
         elif len(values) > 1 and strong[0][1].harmless and len({q.default for q in named}) == 1:
             out.append((key, named[0]))
-        elif len(values) > 1 and key.startswith(SPLIT):
+        elif (len(values) > 1 and key.startswith(SPLIT)) or (key == POINT_OF and not values and _points_differ(parts)):
             out += [(f"{p.name}/{key}", q) for p, q in have]
         elif len(values) > 1:
             each = "; ".join(f"{p.name}: {q.default} ({q.short or q.why})" for p, q in strong if q.default)
@@ -394,6 +459,13 @@ def questions_together(
                 (key, next((q for _, q in strong if q.default), next((q for _, q in strong if q.shown), strong[0][1])))
             )
     return out
+
+
+def _points_differ(parts: Sequence[Part]) -> bool:
+    """Whether words of several tables name several points, so that each has to be said from one of them."""
+    return len(parts) > 1 and any(
+        p.raw.stated[k].contradicted for p in parts for k in ("axes.datum", POINT_FROM) if k in p.raw.stated
+    )
 
 
 def settled_together(

@@ -113,7 +113,10 @@ COEFFICIENTS = {
 TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
-_THOUSAND = re.compile(r"([XYZKMN])['\u2032\u2019]?[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3)")
+_PRIME = r"([XYZKMN])['\u2032\u2019]?"
+_THOUSAND = re.compile(
+    rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
+)
 _MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
@@ -167,7 +170,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal("uncertain", "marks of rows, which no fit then uses")
     name, why, certain = _name(column)
     if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
-        return Proposal(f"{m[1]}' [1e-3]", f"its name: 1000 {m[1]}', a prime by the campaign's length")
+        prime = m[1] or m[2]
+        return Proposal(f"{prime}' [1e-3]", f"its name: 1000 {prime}', a prime by the campaign's length")
     if not name:
         if column.is_text:
             held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))

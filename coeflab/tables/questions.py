@@ -217,7 +217,11 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         shown = f"{_point(own)} in its axes"
         if frame is not None or not any(own):
             here = ", ".join(f"{x + 0.0:.12g}" for x in (frame.rotation @ np.array(own) if frame else np.array(own)))
-    elif datum is not None or "axes.datum" in raw.stated:
+    elif (said := raw.stated.get("axes.datum")) and (
+        said.contradicted or (datum is not None and not of_datum(str(datum.value), str(said.value)))
+    ):
+        choices = f"{said.contradicted or said.place}; {choices}"
+    elif datum is not None or said is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
     yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True)
     asks = "Point of the body that places count from: nose, cg, midship ..."

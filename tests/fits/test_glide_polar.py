@@ -9,7 +9,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
-from coeflab.fits.glide_polar import angle_unit_of
+from coeflab.fits.glide_polar import angle_unit_of, series
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.statistics.least_squares import factorise, solve
@@ -289,6 +289,20 @@ def test_stated_errors_weigh_the_polar() -> None:
             assert value == pytest.approx(printed("01")[name], rel=1e-4)
     with pytest.raises(InputError, match="no standard errors of L"):
         fitted(t, noise="stated")
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_every_number_of_the_series_is_that_of_taylor(number: int) -> None:
+    """One coefficient of the polar is one, the others zero; fifth orders, and the fourth of Z and M, are left out."""
+    polar = np.eye(6)[number]
+    s = np.linspace(-0.25, 0.25, 201)
+    a = np.arcsin(s)
+    x, _, z = body_forces(a, 0.0 * s, polar[2] + polar[3] * a**2, 0.0 * s, polar[0] + polar[1] * a)
+    known = series(polar)
+    for component, force, orders in (("X", x, 5), ("Z", z, 4), ("M", polar[4] + polar[5] * a, 4)):
+        taylor = np.polynomial.polynomial.polyfit(s, force, 12)[:orders]
+        ours = [known.get(component + ("w" * k or "0"), 0.0) for k in range(orders)]
+        assert ours == pytest.approx(taylor, abs=1e-7)
 
 
 @pytest.mark.parametrize("munk", [0.0, 236.7])

@@ -22,7 +22,7 @@ STUDIES = ("thauv", "flyingfish", "huuv", "suboff", "urv", "remus")
 OPEN = {
     "flyingfish": set(),
     "huuv": {f"{name} +5 %" for name in ("inertia", "length", "density", "speed", "rigid_inertia", "largest_drift", "largest_rate",
-                                         "five_dof pitch_inertia", "five_dof largest_angle", "five_dof C_D0")} | {"five_dof C_D0 flipped"},
+                                         "five_dof pitch_inertia")},
     "thauv": set(),
     "suboff": {
         f"{name} +5 %"

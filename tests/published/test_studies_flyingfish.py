@@ -52,11 +52,11 @@ def test_residuals_at_the_printed_rows(made: Acceptance) -> None:
 @pytest.mark.slow
 def test_constants_that_the_table_implies(made: Acceptance) -> None:
     found = {r.quantity: r.found for r in table(made, "constants").rows}
-    assert found["net_weight"] == pytest.approx(-1.6661, abs=5e-5)
+    assert found["net weight"] == pytest.approx(-1.6661, abs=5e-5)
     assert found["mass"] == pytest.approx(2.2297, abs=5e-5)
-    assert found["buoyancy_moment"] == pytest.approx(-0.3949, abs=5e-5)
-    assert found["arm_length"] == pytest.approx(0.22649, abs=5e-6)
-    assert found["rotor_height"] == pytest.approx(-0.01520, abs=5e-6)
+    assert found["buoyancy moment"] == pytest.approx(-0.3949, abs=5e-5)
+    assert found["arm length"] == pytest.approx(0.22649, abs=5e-6)
+    assert found["rotor height"] == pytest.approx(-0.01520, abs=5e-6)
 
 
 @pytest.mark.slow

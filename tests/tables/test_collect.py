@@ -23,7 +23,7 @@ from coeflab.fits import FITS
 from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
-from coeflab.tables.conditions import likely_pattern, name_pattern, read_run_list
+from coeflab.tables.conditions import likely_patterns, name_pattern, read_run_list
 from coeflab.tables.histories import Convergence
 from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.mapping import assigned, doubtful
@@ -413,7 +413,7 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
     ("bp4p5 bm4", ""),
 ])  # fmt: skip
 def test_the_pattern_that_names_seem_to_have(names: str, pattern: str) -> None:
-    assert likely_pattern(names.split()) == pattern
+    assert likely_patterns(names.split()) == ((pattern,) if pattern else ())
 
 
 def test_the_error_proposes_the_pattern_and_speaks_of_signs(tmp_path: Path) -> None:

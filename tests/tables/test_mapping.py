@@ -438,7 +438,7 @@ def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:
 @pytest.mark.parametrize(("name", "unit", "what"), [
     ("Driftwinkel β", "°", "beta [deg]"), ("Geschw. V", "m/s", "U [m/s]"), ("Querkraft Y", "N", "Y [N]"), ("Querkraft X", "N", ""),
     ("Geschw. v", "m/s", ""), ("Anstellwinkel β", "deg", ""), ("Drehrate r", "deg/s", "r [deg/s]"),
-    ("Z1000", "", "Z' [1e-3]"), ("N' x 1000", "-", "N' [1e-3]"), ("Z1000", "N", ""),
+    ("Z1000", "", "Z' [1e-3]"), ("1000 Y'", "", "Y' [1e-3]"), ("N' x 1000", "-", "N' [1e-3]"), ("Z1000", "N", ""),
 ])  # fmt: skip
 def test_a_name_with_its_symbol_behind_it(name: str, unit: str, what: str) -> None:
     assert proposed(RawColumn(name, unit, np.array([1.0, 2.0]))).text == what

@@ -12,6 +12,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
+from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -63,6 +64,14 @@ def test_the_report_shows_the_manoeuvre(carried_out: Callable[[str], Study]) -> 
     files = rendered(carried_out("huuv_synthetic"))
     assert {"report.html", "huuv_like_synthetic.parameters.json"} <= set(files)
     assert b"steady speed" in files["report.html"]
+
+
+def test_what_is_said_of_coefficients_is_true_of_the_fit(carried_out: Callable[[str], Study]) -> None:
+    """A polar and surfaces were reported as slopes of a weighted mixture of forms."""
+    said = {n: " ".join(coefficients_section(carried_out(n)).paragraphs) for n in ("thauv_synthetic", "huuv_synthetic")}
+    assert "fit of the form" in said["thauv_synthetic"]
+    assert "no coefficient with a SNAME symbol" in said["huuv_synthetic"]
+    assert not [n for n, text in said.items() if "weighted" in text]
 
 
 @pytest.mark.parametrize(("case", "stage"), DIVES)

@@ -81,7 +81,7 @@ class File(BodyFile):
         for key, parts in (("link", self.link), ("thruster", self.thruster)):
             names = [part.name for part in parts]
             if twice := sorted({n for n in names if names.count(n) > 1}):
-                raise InputError(f"two called {shown(twice[0])}", "one name for each", column=key)
+                raise InputError(f"two called {shown(twice[0])}", "one name for each", column=key, advice="Rename one.")
         self._check_motion()
         for key, said in self.basis.items():
             if said.split()[0].rstrip(":,") not in BASES:

@@ -15,6 +15,7 @@ from coeflab.motion.multibody.tape import ClosedForm, Line
 LONG, WIDTH = 140, 100  # letters of an equation's line, of a line of text
 DIGITS = 12  # the rest is rounding of products, which code needs and a reader does not
 STRIP = re.compile(r"strip(\d+)_(\d)")
+BEGINS, ENDS = r"\begin{", r"\end{"
 AXES = ("x", "y", "z")
 SPEEDS = ("u", "v", "w", "p", "q", "r")
 NAMED = {"cos": r"\mathrm{c}", "sin": r"\mathrm{s}", "angle": r"\theta", "x": "x", "q": "q"}
@@ -104,10 +105,10 @@ def document(form: ClosedForm, head: Sequence[str]) -> str:
 
 
 def _between_terms(text: str) -> list[str]:
-    """A long sum on lines that begin with a sign, outside of braces and parentheses."""
+    """A long sum on lines that begin with a sign, outside of braces, parentheses and matrices."""
     out, depth, start = [], 0, 0
     for i, letter in enumerate(text):
-        depth += (letter in "{(") - (letter in "})")
+        depth += (letter in "{(") - (letter in "})") + text.startswith(BEGINS, i) - text.startswith(ENDS, i)
         if depth == 0 and i - start > LONG and text[i : i + 3] in (" + ", " - "):
             out.append(text[start:i])
             start = i

@@ -66,7 +66,9 @@ class TorqueThruster:
 @brief
 @dataclass(frozen=True, slots=True)
 class VoltageThruster:
-    """Thruster of two states with slip (Healey, Rock, Cody, Miles & Brown 1994): motor, blade and column of water.
+    """Thruster of two states with slip, after Healey, Rock, Cody, Miles & Brown (1994): motor, blade and column of water.
+
+    The URV paper prints the two states and names that work; these functions of them are from memory of it, no copy was read.
 
     dOmega/dt = -k1 Omega + k2 V - kh Q; rho A l gamma dv_p/dt = T - rho A delta v_p |v_p|. Blades at 0.7 of the radius see
     U_t = 0.7 R Omega and v_p, at the angle theta = atan2(v_p, U_t) and an incidence pitch - theta; lift is C_L sin(2 incidence),

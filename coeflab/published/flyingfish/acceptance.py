@@ -207,7 +207,15 @@ def air(fish: FlyingFish) -> ComparedTable:
 
 def _constants(fish: FlyingFish, constants: Array) -> ComparedTable:
     rows = tuple(
-        Compared("calibrated", name, UNITS[name], fish.constants[name], float(c), DERIVED[name], Basis.CONSISTENCY)
+        Compared(
+            "calibrated",
+            name.replace("_", " "),
+            UNITS[name],
+            fish.constants[name],
+            float(c),
+            DERIVED[name],
+            Basis.CONSISTENCY,
+        )
         for name, c in zip(CONSTANTS, constants, strict=True)
     )
     return ComparedTable(

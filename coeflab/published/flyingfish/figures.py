@@ -120,7 +120,7 @@ def _thrust_over_tilt(fish: FlyingFish) -> Figure:
     return laws_figure(
         "flyingfish-thrust-over-tilt", "Thrust against tilt at the operating points",
         "One mark a rotor and motion, thrust by equation 47 at the speeds of Table 1. At no tilt the thrust points down, at 90 deg "
-        "across the arm: rotors 1 and 2, with tilts of opposite sign, drive the vehicle ahead; rotors 3 and 4 trim pitch, roll and sway.",
+        "across the arm. Rotors 1 and 2, tilted apart, drive it ahead; 3 and 4 trim pitch, roll and sway.",
         "Thrust of four rotors over their tilt: rotors 1 and 2 lie at 45 to 86 and at -47 to -82 degrees, rotors 3 and 4 between -44 and 39 degrees.",
         (Plot("thrust T  [N]", "tilt beta  [deg]", traces, 190.0),),
     )  # fmt: skip
@@ -259,12 +259,12 @@ def _surface(found: Trajectory) -> Figure:
     up = -np.asarray(found.velocity)[:, 2]
     media = (("under water", found.phase == 0, 0), ("in air", found.phase == 1, 1))
     plots: list[Plot] = []
-    for name, values in (("height over the surface  [m]", above + depth), ("speed up  [m/s]", up)):
+    for name, values in (("height  [m]", above + depth), ("speed up  [m/s]", up)):
         traces = tuple(Trace(medium, time[at], values[at], style) for medium, at, style in media)
         plots.append(Plot(name, "time  [s]", traces, 100.0, is_scaled=len(plots) == 1))
     return laws_figure(
         "flyingfish-surface", "Out of the water and back",
-        "From rest 2 m under the surface with rotors turned up at 2500 rpm; in air at 5000 rpm, less than hovering takes. The medium "
+        "Height over the surface: from rest 2 m under it with rotors turned up at 2500 rpm; in air at 5000 rpm, less than hovering takes. The medium "
         "changes where the craft is at the surface, located within the step. The paper shows no such motion.",
         "Height and vertical speed over time: a rise at a steady speed, then a short arc above the surface.",
         plots,

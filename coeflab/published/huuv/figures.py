@@ -180,10 +180,10 @@ def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
         )
         plots.append(Plot(name, "time  [s]", tuple(traces), TALL, is_scaled=k == 1))
     caption = (
-        f"{ASSUMED} Above, those of the synthetic elevator table, over delta - alpha; by the area of both, {five.constants['area']:g} m^2, "
-        f"the moment also by {five.constants['length']:g} m, about the axis of rotation. A positive angle turns the leading edge down. "
-        f"Below, no figure of the paper: from {five.level.chosen['speed']:g} m/s, both thrusters at 60 %, simulated with the parameter "
-        "file huuv_5dof.parameters.json; depth grows downward."
+        "Assumed laws: the paper prints no number of it. Above, the synthetic elevator laws over delta - alpha; a positive angle turns the "
+        f"leading edge down. Below, not in the paper: a start at {five.level.chosen['speed']:g} m/s, by huuv_5dof.parameters.json. "
+        f"Coefficients by the area of both, {five.constants['area']:g} m^2, moments also by {five.constants['length']:g} m, about the axis "
+        "of rotation. Both thrusters at 60 %; depth grows downward."
     )
     return laws_figure(
         "huuv-fig15", "Fig. 15: the elevators, and a start with them deflected", caption,
@@ -227,9 +227,9 @@ def speeds_figure(five: FiveDof) -> Figure:
         Trace("straight, without the mast's drag", fine, straight_speeds(huuv, fine, mast), 1),
     )
     caption = (
-        "Above Fig. 17 a and b with the printed points, below Fig. 18, which prints none. The pool vehicle ran at the surface, its mast "
-        f"in air: a round mast of the assumed size has {mast / c['d0']:.0%} of the fitted drag at a drag coefficient of 1, and the "
-        "lower panel shows what leaving it out gains. An illustration: radius and height of the mast are assumed."
+        "Above Fig. 17 a and b, below Fig. 18, which prints no point, with and without the drag of a mast that was in air: "
+        f"{mast / c['d0']:.0%} of the fitted one, for an assumed radius and height. The pool vehicle ran at the surface; the mast is taken as "
+        "round, with a drag coefficient of 1."
     )
     return laws_figure(
         "huuv-fig17-18", "Figs. 17 and 18: forward speed in turns and on a straight course", caption,

@@ -174,7 +174,7 @@ def _equations(huuv: Huuv) -> ComparedTable:
         (
             f"Equation 12: C_m (beta) of the steady turns is {c['n1'] / (c['my'] - c['mx']):.3f} times m_y - m_x. The one is "
             "fitted, the other chosen here, so that this is no comparison; it shows that C_m(beta) holds the Munk moment, see the errata.",
-            "Cylinders and plates of equations 28-32: `coeflab added-mass BODY --method primitives:huuv`.",
+            "Cylinders and plates of equations 28-32: coeflab added-mass BODY --method primitives:huuv.",
         ),
     )  # fmt: skip
 

@@ -280,7 +280,7 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
         "cycle", "Dives of two dive-and-surface cycles in time, where they end", tuple(rows), "Figures 13 to 16",
         (
             "The second stage dives at 1060 s and surfaces at 1430 s, as printed; the first climb at 660 s is assumed.",
-            "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to hold them against.",
+            "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to compare them with.",
             f"Every dive ends within {far:.0e} m/s of the steady glide of its balance, which is ours too and not counted.",
         ), "speeds",
     )  # fmt: skip

@@ -267,7 +267,7 @@ def propulsion() -> ComparedTable:
         "thrusters", "Thruster models and their matrix", tuple(rows), "Section 3.6",
         (
             "Torque model: Omega = Omega_end tanh(t sqrt(alpha beta tau)) from rest. Constants are chosen; the paper prints none.",
-            "Of the voltage model the paper prints the form alone; blades, motor and water follow Healey and others (1994).",
+            "Of the voltage model the paper prints the form alone. Blades, motor and water are after Healey and others (1994) from memory: no copy of theirs was read.",
         ),
     )  # fmt: skip
 

@@ -29,6 +29,13 @@ TEXT = (
     "not in U95.",
 )
 
+FIXED = (
+    "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
+    "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
+    "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
+)
+NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
+
 
 def symmetries(study: Study, campaign: str, body: str) -> frozenset[str]:
     """Symmetries that tables of a campaign declare, or the shape of its body has.
@@ -86,7 +93,7 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
-    text: tuple[str, ...] = TEXT
+    text: tuple[str, ...] = TEXT if any(f.sweeps for f in study.fits) else FIXED if study.coefficients else NONE
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):

@@ -41,7 +41,7 @@ def refused(folder: Path, old: str, new: str) -> InputError:
         ("d = 0\n", "", "link[0].d", "a length"),
         ("theta = 0\n", "", "link[0].theta", "an angle"),
         ('low = "-160 deg"', 'low = "170 deg"', "link[0].low", "low below high"),
-        ('home = "0.3 rad"', 'home = "3 rad"', "link[0].home", "-2.79253 to 2.79253 rad"),
+        ('home = "0.3 rad"', 'home = "3 rad"', "link[0].home", "found 171.887 deg; expected -160 to 160 deg"),
         ('mass = "12.96 kg"\n', "", "link[0].mass", "a mass"),
         ('mass = "12.96 kg"', "mass = 0", "link[0].mass", "above zero"),
         ("[1.09809, 0.0, 0.0]", "[3.09809, 0.0, 0.0]", "link[0].inertia_matrix", "one larger than the others' sum"),

@@ -26,6 +26,8 @@ from tests.motion.multibody.chains import drawn
 from tests.motion.multibody.chains import puma as puma_chain
 
 ORIGIN = Origin("body.toml", "0" * 64, ('Two */ lines """ of \\n text',))
+ALIGNED = re.compile(r"\\begin\{align\*\}\n(.*?)\\end\{align\*\}", re.S)
+MATRIX = re.compile(r"\\begin\{pmatrix\}(.*?)\\end\{pmatrix\}")
 TOLERANCE = 1e-12
 Code = Callable[..., dict[str, Array]]
 
@@ -196,6 +198,25 @@ def test_latex_has_every_entry_and_closes_what_it_opens(puma: tuple[Chain, Close
     nonzero = [(i, j) for i in range(9) for j in range(i, 9) if form.function("mass_matrix").outputs["M"][0][i, j] != 0]
     assert re.findall(r"^M_\{(\d),(\d)\} &=", body, re.M) == [(str(i + 1), str(j + 1)) for i, j in nonzero]
     assert r"\int_0^1 |\mathbf{u}_{1}(t)|" in text
+
+
+def test_latex_is_set_by_a_parser_of_its_own(puma: tuple[Chain, ClosedForm]) -> None:
+    """matplotlib's mathtext, which knows no matrices: their entries one by one. One line of each set of commands."""
+    from matplotlib.mathtext import MathTextParser
+
+    (content,) = written(puma[1], "latex", ORIGIN).values()
+    lines = [line for block in ALIGNED.findall(content.decode()) for line in block.strip().splitlines()]
+    assert all(line.endswith(r" \\") for line in lines)
+    kinds = {}
+    for line in lines:
+        head, matrices = line.removesuffix(r" \\").replace("&", ""), MATRIX.findall(line)
+        assert [one.count(r"\\") for one in matrices] == [2] * len(matrices)
+        for part in (MATRIX.sub("m", head), *(entry for one in matrices for entry in one.split(r"\\"))):
+            kinds.setdefault(frozenset(re.findall(r"\\\w+", part)), part.strip())
+    assert len(kinds) > 10
+    parser = MathTextParser("path")
+    for part in kinds.values():
+        parser.parse(f"${part}$")
 
 
 def test_what_a_name_holds_cannot_leave_its_comment(puma: tuple[Chain, ClosedForm]) -> None:
