@@ -61,7 +61,7 @@ class Draft:
             parts, chosen = read_parts(self.file, self.said.importer, self.said.options, say)
         self.parts = with_shared_words(parts)
         before = {one.key for one in self.chosen}
-        fresh = [_line(one.key, one.value, one.why, f"{one.about}.") for one in chosen if one.key not in before]
+        fresh = [one.line for one in chosen if one.key not in before]
         self.chosen = [*self.chosen, *fresh]
         self.left = tuple(text for one in chosen for text in one.left)
         self.said.options |= {one.key: one.value for one in chosen}
@@ -269,12 +269,6 @@ class Draft:
             return ""
         size = None if length is None else quantity(length.value, "length")
         return beyond_ends(str(datum.value), quantity(point.value[0], "length"), size)
-
-
-def _line(key: str, value: str, why: str, about: str) -> Line:
-    from coeflab.tables.form import Group, Line
-
-    return Line(key, value, why, Group.GRAVE, about, pending=True)
 
 
 def described(part: Part, found: Understood, *, whole: bool = True) -> None:

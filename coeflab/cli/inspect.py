@@ -126,7 +126,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     parts = with_shared_words(parts)
     settings = stated_together(parts)
     founds = understood_together(parts, {}, settings)
-    lines = form_together(parts, founds, settings, whole=path.resolve().name)
+    lines = form_together(parts, founds, settings, [one.line for one in chosen], whole=path.resolve().name)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
     following = " ".join(
         ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given), f"--out {out}"]
@@ -140,7 +140,8 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
             for part, found in zip(parts, founds, strict=True)
         ]
         told = every[0] if len(every) == 1 else {"path": str(path), "tables": every}
-        show.json_object(told | {"missing": missing, "next": following})
+        proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in chosen]
+        show.json_object(told | {"proposed": proposed, "missing": missing, "next": following})
         return
     for part, found in zip(parts, founds, strict=True):
         described(part, found)

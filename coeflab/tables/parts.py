@@ -22,6 +22,7 @@ from coeflab.tables.conditions import BETWEEN, SPELT, UNNAMED, NoConditionError,
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.form import (
     UNSHOWN,
+    Group,
     Line,
     argument,
     column_lines,
@@ -95,6 +96,11 @@ class Chosen:
     why: str
     about: str
     left: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> Line:
+        """Its line of the form: accepting confirms it."""
+        return Line(self.key, self.value, self.why, Group.GRAVE, f"{self.about}.", pending=True)
 
 
 def read_parts(
