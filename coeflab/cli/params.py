@@ -43,6 +43,7 @@ def check(
         show.json_object({
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
             "coefficients": [c.symbol for c in p.coefficients], "passed": found.passed,
+            "by_added_mass": [row[0] for row in model_file_tables.by_added_mass(p).rows],
             "findings": [
                 {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
                 for c in found.findings
@@ -50,6 +51,7 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
+        show.table(model_file_tables.by_added_mass(p))
         show.findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)

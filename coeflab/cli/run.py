@@ -48,6 +48,9 @@ def command(
 
 REPORTS = "reports"
 FIRST_FIGURES = 3
+WITHOUT_U95 = (
+    "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
+)
 
 
 def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False) -> None:
@@ -125,7 +128,11 @@ def _moved(study: Study) -> None:
         ] or [(made.vehicle.name, name, "none", "", "", made.trajectory.ended.value)]
     if not show.whole():
         headers = ("file", "manoeuvre", "figure", "value", "unit", "status")
-        show.table(Table("Simulated manoeuvres", headers, tuple(rows), (), frozenset({0, 1, 2, 4, 5})))
+        show.table(
+            Table(
+                "Simulated manoeuvres", headers, tuple(rows), (WITHOUT_U95,) if rows else (), frozenset({0, 1, 2, 4, 5})
+            )
+        )
 
 
 def answered(found: Answer) -> None:

@@ -144,10 +144,13 @@ class AngleUnit:
         Empty where the printed coefficients do not say one and the same.
     statements : tuple of str
         One per coefficient compared.
+    inside : int
+        Printed coefficients inside the fitted 95 % interval.
     """
 
     unit: str
     statements: tuple[str, ...]
+    inside: int = 0
 
 
 def _forces(table: ForceTable) -> dict[str, tuple[Array, Array | None, NDArray[np.bool_]]]:
@@ -366,10 +369,32 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         place = "inside" if abs(printed[slope] - value) <= half else "outside"
         votes.add(unit)
         said.append(f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}.")
+    inside = sum("inside the fitted" in text for text in said)
     if len(votes) == 1:
-        return AngleUnit(next(iter(votes)), tuple(said))
+        return AngleUnit(next(iter(votes)), tuple(said), inside)
     why = "The slopes disagree about the unit of the angle." if votes else "No slope decides the unit of the angle."
-    return AngleUnit("", (*said, why))
+    return AngleUnit("", (*said, why), inside)
+
+
+def printed_inside(results: Sequence[FitResult]) -> tuple[int, int]:
+    """How many printed coefficients lie inside the fitted 95 % intervals, and how many are printed; of fits of a polar."""
+    inside = count = 0
+    for found in results:
+        if found.fit == "glide_polar" and found.settings.get("printed"):
+            printed = read_printed(found.settings["printed"].split(), "glide_polar.printed")
+            inside, count = inside + angle_unit_of(printed, found).inside, count + len(printed)
+    return inside, count
+
+
+def munk_in_words(result: FitResult) -> str:
+    """What Mw holds beside the fitted slope of M, where the options add a Munk moment; else nothing."""
+    munk = float(result.settings.get("munk", 0.0))
+    slope = _per_unit(result, "K_M")
+    if not munk or slope is None:
+        return ""
+    fitted = slope["rad"][0]
+    turned = ", which turns its sign" if fitted * (fitted + munk) < 0.0 else ""
+    return f"Mw' is the fitted K_M, {fitted:.4g} per rad, and the Munk moment (m3 - m1) u w of {munk:g} kg that the plan adds{turned}."
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

@@ -90,7 +90,11 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
             "are left to the simulator"
         )
     if parameters.thrusters and "thrusters" not in holds:
-        out.append(f"thrusters {', '.join(t.name for t in parameters.thrusters)}: add their forces yourself")
+        names = ", ".join(t.name for t in parameters.thrusters)
+        alone = len(parameters.thrusters) == 1
+        out.append(
+            f"thruster {names}: add its force yourself" if alone else f"thrusters {names}: add their forces yourself"
+        )
     if parameters.surfaces and "surfaces" not in holds:
         out.append(
             f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from coeflab.core.errors import InputError
-from coeflab.core.files import named
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.table import Check, Severity
 from coeflab.core.text.toml import read_text
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
-from coeflab.vehicle.parameter_file import SHIPPED, ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 
 OWN = "coeflab"
@@ -52,7 +51,7 @@ def recognised(path: Path) -> str:
     InputError
         None that is known, or several.
     """
-    path = named(path, SHIPPED)
+    path = file_typed(path)
     text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
         raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")

@@ -13,6 +13,7 @@ import numpy as np
 from coeflab.core.table import Severity, Table, number, plus_minus, with_u95
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
+from coeflab.fits.glide_polar import munk_in_words, printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
@@ -237,13 +238,16 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
     else:
         bounded = sum(r.u95 is not None for r in valued)
         of = (
-            f"all {_counted(len(rows))}"
+            {1: "the", 2: "both"}.get(len(rows), f"all {_counted(len(rows))}")
             if len(valued) == len(rows)
             else f"{_counted(len(valued))} of {_counted(len(rows))}"
         )
-        first = f"{name}: {of} wanted coefficients found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
+        s = "s" * (len(rows) > 1)
+        first = f"{name}: {of} wanted coefficient{s} found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
         first += _open(valued)
-        absent = absent or "no published evaluation of these data"
+        inside, printed = printed_inside(study.fits)
+        said = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
+        absent = absent or said or "no published evaluation of these data"
     whole = f"{first}; {absent}." if absent else f"{first}."
     return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
 
@@ -371,6 +375,11 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
         scaling = beside.among.scaling if beside.among else None
         by = f"; made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
         out.append(f"Ours: {listed(sources)}{by}.")
+        also = [f.campaign for f in study.fits if f.campaign not in (*sources, *towed_rows) and _gives(f, rows)]
+        if also:
+            out.append(f"Fitted too, in the report: {listed(list(dict.fromkeys(also)))}.")
+        if any(r.symbol == "Mw" and r.value is not None for r in rows):
+            out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     own = [r for r in rows if r.source in towed_rows]
     if own:
         out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
@@ -384,6 +393,11 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
         lengths = [f"; {name} read with {_readings(first, other)}" for name, first, other in twice if other is not None]
         out.append(f"{listed([r.name for r in others])}: {others[0].body}, no verdict{''.join(lengths)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
+
+
+def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
+    """Whether a fit of another body has a value of a wanted coefficient."""
+    return any(c.value is not None and c.symbol == r.symbol for c in fit.coefficients.coefficients for r in rows)
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

@@ -20,6 +20,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 
 SAME = 1e-9
 MEASURED, COMPUTED, NONE = "measured", "computed", "none"
+STATED = "stated"  # method of an added mass that was read from somebody's model
 ACCELERATIONS = (MEASURED, COMPUTED)
 Entry = tuple[int, int]
 
@@ -62,6 +63,10 @@ class WaterInertia:
         return AddedMass(self.matrix, np.array(at.point), at.origin, parameters.body, self.source)
 
 
+def _method(hull: AddedMass) -> str:
+    return ", as stated" if hull.method == STATED else f" by {hull.method}"
+
+
 def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> WaterInertia:
     """The added mass of a parameter file by the stated choice.
 
@@ -84,12 +89,13 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
         raise InputError(shown(accelerations), f"one of {', '.join(ACCELERATIONS)}", column="--accelerations")
     computed, stated = _computed(parameters), stated_accelerations(parameters)
     hull = parameters.added_mass
-    by = "" if hull is None else f"the added mass of {hull.body} by {hull.method}"
+    by = "" if hull is None else f"the added mass of {hull.body}{_method(hull)}"
     names = ", ".join(primed(name) for name, _ in stated.values())
     if not stated or (accelerations == COMPUTED and computed is not None):
         if computed is None:
             return WaterInertia(np.zeros((6, 6)), accelerations, NONE, "no added mass is known")
-        return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}, {by}")
+        how = "from" if hull is not None and hull.method == STATED else f"{COMPUTED},"
+        return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {how} {by}")
     matrix, apart = _completed(np.zeros((6, 6)) if computed is None else computed, stated)
     refused = _no_inertia(parameters, matrix)
     if computed is not None:

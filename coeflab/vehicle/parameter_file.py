@@ -22,13 +22,13 @@ from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
-from coeflab.core.files import named
+from coeflab.core.files import named, shipped
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
-from coeflab.core.text.toml import read_text
+from coeflab.core.text.toml import read_text, read_toml
 from coeflab.core.types import in_angles
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import AddedMass, potential_part
@@ -340,6 +340,27 @@ def refusals_told(place: str) -> Iterator[None]:
         raise InputError(found, expected, column=".".join(map(str, (place, *first["loc"])))) from None
 
 
+def file_typed(path: Path) -> Path:
+    """The path of a parameter file or model file that a person typed, or the shipped one of that name.
+
+    Raises
+    ------
+    InputError
+        Nothing is there; a vehicle with an arm, which has no parameter file.
+    """
+    shipped_body = (shipped("geometry") / path,) if len(path.parts) == 1 else ()
+    for place in (path, *shipped_body):
+        body = place / "body.toml" if place.is_dir() else place
+        if body.suffix == ".toml" and body.is_file():
+            head = read_toml(body).content.get("body")
+            if isinstance(head, dict) and head.get("reader") == "arm":
+                raise InputError(
+                    f"{shown(str(path), 300)}, a vehicle with an arm, which has no parameter file", "a parameter file",
+                    advice=f"Write its equations: coeflab derive {path} --to c. Simulate it: coeflab simulate {path}.",
+                )  # fmt: skip
+    return named(path, SHIPPED)
+
+
 def read_parameter_file(path: Path) -> ParameterFile:
     """Read and validate a parameter file.
 
@@ -353,7 +374,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
     InputError
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
-    path = named(path, SHIPPED)
+    path = file_typed(path)
     text = read_text(path, JSON_BYTES)
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):

@@ -37,7 +37,7 @@ def unheld(file: ParameterFile, target: str) -> list[str]:
 @each_target
 def test_thrusters_and_limits_that_are_not_held_are_losses(target: str) -> None:
     said = unheld(driven(), target)
-    assert "thrusters propeller: add their forces yourself" in said
+    assert "thruster propeller: add its force yourself" in said
     assert "limits and rates of dr: angles are taken as given" in said
     assert not export(driven(), target).lossless
     assert unheld(torpedo(), target) == []

@@ -238,7 +238,8 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 SIMULATED = (
     "Each manoeuvre is computed from one parameter file of this study. A figure that uses motions beyond the data is marked "
-    "extrapolated; one that the file does not determine has no value.",
+    "extrapolated; one that the file does not determine has no value. The figures have no U95: each manoeuvre is computed once, with "
+    "the values of its file; coeflab uncertainty gives intervals.",
 )
 SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 

@@ -12,15 +12,19 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
+
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, LARGEST_SHARE, Table, coefficient, number, with_u95
 from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
-from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.inertia import WaterInertia
 from coeflab.vehicle.law_at_points import LawAtPoints
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
+from coeflab.vehicle.second_order import ROUNDING, products_once
 
 NAMED = 3
 
@@ -145,7 +149,7 @@ def counted(loss: Loss) -> str:
 
 
 def _some(words: Sequence[str], most: int) -> str:
-    return ", ".join(words[:most]) + (f" and {len(words) - most} more" if len(words) > most else "")
+    return ", ".join(words) if len(words) <= most + 1 else f"{', '.join(words[:most])} and {len(words) - most} more"
 
 
 def parts(parameters: ParameterFile, water: WaterInertia | None = None) -> Table:
@@ -230,9 +234,48 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
             else ()
         ),
         *p.provenance.notes,
+        *(
+            ("values are totals: -C_A(nu) nu of the added mass is in them",)
+            if p.added_mass is not None and kind != "coeflab"
+            else ()
+        ),
     )
     headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
     return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}), ("how", "origin"))
+
+
+def by_added_mass(parameters: ParameterFile) -> Table:
+    """Acceleration derivatives and products of velocities that follow from the added mass and are no coefficients of the file.
+
+    Without rows where the file has no added mass; without products where its fitted tables may speak of them.
+    """
+    p, hull = parameters, parameters.added_mass
+    headers, title = ("", "value", "SI", "unit"), "By the added mass, besides these coefficients"
+    if hull is None:
+        return Table(title, headers, ())
+    own = {_product(c.symbol) for c in p.coefficients}
+    products = products_once(ideal_quadratics(hull.matrix))
+    accelerations = [(f"{COMPONENTS[i]}{MOTIONS[j]}dot", -hull.matrix[i, j]) for i, j in np.ndindex(6, 6)]
+    others = [
+        (f"{c}{MOTIONS[j]}{MOTIONS[k]}", products[i, j, k])
+        for i, c in enumerate(COMPONENTS) for j, k in np.ndindex(6, 6)
+        if abs(products[i, j, k]) > ROUNDING * np.max(np.abs(products[i]))
+    ]  # fmt: skip
+    every = accelerations if p.models else [*accelerations, *others]
+    left = [(s, v) for s, v in every if v and _product(s) not in own]
+    rows = tuple(
+        (primed(s), coefficient(float(v / p.scaling.unit(s, p.conditions.density))), number(float(v)), derivative(s).unit)
+        for s, v in left
+    )  # fmt: skip
+    notes = (f"added mass of {hull.body}, {hull.method}" + "; products as in -C_A(nu) nu" * (every != accelerations),)
+    return Table(title, headers, rows, notes, frozenset({0, 3}))
+
+
+def _product(symbol: str) -> tuple[str, tuple[str, ...]]:
+    """Component and factors in no order; the speed along x of a first-order derivative is one of them."""
+    d = derivative(symbol)
+    factors = ("u", *d.factors) if len(d.factors) == 1 and d.factors[0] in MOTIONS else d.factors
+    return d.component, ("u", "u") if not factors else tuple(sorted(factors)) + ("|",) * ("|" in d.text)
 
 
 def _length(p: ParameterFile) -> str:

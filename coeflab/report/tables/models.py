@@ -26,9 +26,11 @@ from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:
-    """How well each response is held, and how well a left-out point is predicted."""
+    """How well each response is held, and how well a left-out point is predicted; of several campaigns with their names."""
+    several = len({m.campaign for m in models}) > 1
     rows = tuple(
         (
+            *((m.campaign,) if several else ()),
             m.response,
             m.form,
             str(m.n_points),
@@ -46,6 +48,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         for m in models
     )
     headers = (
+        *(("campaign",) if several else ()),
         "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
     )  # fmt: skip
     notes: tuple[str, ...] = (
@@ -59,7 +62,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         headers,
         rows,
         notes,
-        frozenset({0, 1, 11, 12}),
+        frozenset({0, 1, 2, 12, 13} if several else {0, 1, 11, 12}),
         ("condition", "runs", "AICc", "outside", "terms"),
     )
 
