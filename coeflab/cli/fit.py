@@ -244,7 +244,8 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
         for f in study.fits:
             show.table(oscillation_tables.explained(f, study.fits))
             show.table(oscillation_tables.over_frequency(f))
-        show.table(model_tables.quality(models))
+        for each in model_tables.qualities(models):
+            show.table(each)
         show.table(model_tables.campaigns(study.fits))
     for f in study.fits if count else ():
         show.table(tables.next_points(f, count))

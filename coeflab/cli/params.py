@@ -51,7 +51,8 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
-        show.table(model_file_tables.by_added_mass(p))
+        if found.format != "coeflab" or show.whole():
+            show.table(model_file_tables.by_added_mass(p))
         show.findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)

@@ -104,7 +104,8 @@ def summarise(study: Study) -> None:
         _every_table(study)
     else:
         _tows(study)
-        show.table(model_tables.quality(models))
+        for each in model_tables.qualities(models):
+            show.table(each)
         show.table(model_tables.campaigns(study.fits))
     _moved(study)
     show.findings(study.checks)
@@ -183,7 +184,8 @@ def _every_table(study: Study) -> None:
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
         show.table(noun_tables.terms(model))
-    show.table(model_tables.quality(models))
+    for each in model_tables.qualities(models):
+        show.table(each)
     show.table(model_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
         show.table(format_tables.at_points(points_of(parameters), f"Force law of {name}"))

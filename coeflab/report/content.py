@@ -394,7 +394,7 @@ def _models(study: Study) -> tuple[Section, ...]:
             "models",
             "Fitted models",
             text,
-            filled(model_tables.quality(models), model_tables.campaigns(study.fits), *each),
+            filled(*model_tables.qualities(models), model_tables.campaigns(study.fits), *each),
         ),
     )
 

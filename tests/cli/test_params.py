@@ -108,3 +108,30 @@ def test_the_schema_is_printed_as_a_page_and_as_json(coeflab: Run) -> None:
     assert (page.returncode, schema.returncode) == (0, 0)
     assert page.stdout == (Path(__file__).parents[2] / "docs" / "parameter_file.md").read_text(encoding="utf-8")
     assert json.loads(schema.stdout)["properties"]["added_mass"]["since"] == "1.2"
+
+
+@pytest.mark.parametrize("target", ["xdyn", "gazebo", "mss"])
+def test_nothing_of_an_export_is_missing_in_its_list(coeflab: Run, tmp_path: Path, target: str) -> None:
+    """xdyn and Gazebo came back without the added mass and the ten products that are just its own."""
+    done = coeflab("export", "remus100", "--to", target, "--out", tmp_path / "out", "--accept-loss")
+    assert done.returncode == 0, done.stderr
+    (model,) = [f for f in (tmp_path / "out").glob("*remus100.*") if f.suffix in (".yml", ".sdf", ".m")]
+    listed = json.loads(coeflab("params", "check", model, "--json").stdout)
+    whole = {"".join(sorted(s.removesuffix("'"))) for s in (*listed["coefficients"], *listed["by_added_mass"])}
+    wanted = (
+        "Xwq Xqq Xvr Xrr Ywp Ypq Zvp Zrp Mvp Nwp Xudot Yvdot Yrdot Zwdot Zqdot Kpdot Mwdot Mqdot Nvdot Nrdot Nuv Muw"
+    )
+    assert {"".join(sorted(s)) for s in wanted.split()} <= whole
+    if target != "mss":
+        text = coeflab("params", "check", model).stdout
+        assert "values are totals" in flat(text)
+        assert "Yvdot'" in text
+        assert "-35.50" in text
+
+
+@pytest.mark.parametrize("command", [("export", "urv_puma", "--to", "mss"), ("params", "check", "urv_puma")])
+def test_a_vehicle_with_an_arm_has_no_parameter_file(coeflab: Run, command: tuple[str, ...]) -> None:
+    done = coeflab(*command)
+    assert done.returncode == 2
+    assert "a vehicle with an arm, which has no parameter file" in flat(done.stderr)
+    assert "coeflab derive urv_puma --to c" in flat(done.stderr)

@@ -12,7 +12,9 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
+from coeflab.report.answer import answer
 from coeflab.report.sections.coefficients import coefficients_section
+from coeflab.report.tables.models import qualities
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -72,6 +74,19 @@ def test_what_is_said_of_coefficients_is_true_of_the_fit(carried_out: Callable[[
     assert "fit of the form" in said["thauv_synthetic"]
     assert "no coefficient with a SNAME symbol" in said["huuv_synthetic"]
     assert not [n for n, text in said.items() if "weighted" in text]
+
+
+def test_the_first_page_says_how_the_printed_polar_compares(carried_out: Callable[[str], Study]) -> None:
+    """It said that nothing was published, and not whence the sign of Mw' comes."""
+    found = answer(carried_out("thauv_synthetic"), drawn=False)
+    assert "both wanted coefficients found" in found.sentence
+    assert "18 of 18 printed coefficients inside their fitted U95" in found.sentence
+    said = " ".join(found.notes)
+    assert "thauv_case_02_synthetic and thauv_case_03_synthetic" in said
+    assert "Munk moment (m3 - m1) u w of 236.7 kg that the plan adds, which turns its sign" in said
+    models = tuple(m for f in carried_out("thauv_synthetic").fits for m in f.models)
+    titles = [t.title for t in qualities(models)]
+    assert titles == [f"Quality of the fitted models, thauv_case_0{n}_synthetic" for n in (1, 2, 3)]
 
 
 @pytest.mark.parametrize(("case", "stage"), DIVES)

@@ -92,9 +92,9 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         ("steady speed", steady, "m/s", "mean of the last tenth, where it varies by less than 0.1 %"),
         ("glide angle", mean(zeta), "rad", "of the track, below zero on a dive"),
         ("angle of attack", mean(alpha), "rad", "atan2(w, u)"),
-        ("pitch", mean(angles[:, 1]), "rad", "bow up"),
+        ("pitch", mean(angles[:, 1]), "rad", "above zero with the bow up"),
         ("sinking speed", mean(sinking), "m/s", "downward"),
-        ("roll", mean(angles[:, 0]), "rad", "starboard side down"),
+        ("roll", mean(angles[:, 0]), "rad", "above zero with the starboard side down"),
         ("rate of turn", rate, "rad/s", "of the heading, to starboard"),
     ]
     if rate is not None and abs(rate) > SLOWEST_TURN:

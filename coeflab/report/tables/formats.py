@@ -237,6 +237,8 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
         *(
             ("values are totals: -C_A(nu) nu of the added mass is in them",)
             if p.added_mass is not None and kind != "coeflab"
+            else ("accelerations and products by the added mass of the file are listed with --wide",)
+            if p.added_mass is not None
             else ()
         ),
     )

@@ -8,6 +8,7 @@ Comparisons of parameter files as tables: pair by pair in full, or several files
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import combinations
 from math import degrees
 
@@ -26,11 +27,9 @@ from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:
-    """How well each response is held, and how well a left-out point is predicted; of several campaigns with their names."""
-    several = len({m.campaign for m in models}) > 1
+    """How well each response is held, and how well a left-out point is predicted."""
     rows = tuple(
         (
-            *((m.campaign,) if several else ()),
             m.response,
             m.form,
             str(m.n_points),
@@ -48,7 +47,6 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         for m in models
     )
     headers = (
-        *(("campaign",) if several else ()),
         "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
     )  # fmt: skip
     notes: tuple[str, ...] = (
@@ -62,9 +60,19 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         headers,
         rows,
         notes,
-        frozenset({0, 1, 2, 12, 13} if several else {0, 1, 11, 12}),
+        frozenset({0, 1, 11, 12}),
         ("condition", "runs", "AICc", "outside", "terms"),
     )
+
+
+def qualities(models: tuple[FittedModel, ...]) -> tuple[Table, ...]:
+    """`quality` of each campaign, with its name where there are several; the last one has the notes."""
+    campaigns = tuple(dict.fromkeys(m.campaign for m in models))
+    if len(campaigns) < 2:
+        return (quality(models),)
+    each = [(c, quality(tuple(m for m in models if m.campaign == c))) for c in campaigns]
+    notes = tuple(dict.fromkeys(n for _, t in each for n in t.notes))
+    return tuple(replace(t, title=f"{t.title}, {c}", notes=notes if c == campaigns[-1] else ()) for c, t in each)
 
 
 MOST_POINTS = 5
