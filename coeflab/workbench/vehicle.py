@@ -42,9 +42,8 @@ NOTHING = Stated()
 Progress = Callable[[str], None]
 LEVEL = ("u", "v", "r")  # a first manoeuvre stays in the horizontal plane, whatever trim and weight are
 STRAIGHT = ("u",)
-ASIDE = (
-    1e-6  # of U^2/L and (U/L)^2: sway and yaw accelerations of a straight course that are rounding of a symmetric body
-)
+# Sway and yaw accelerations of a straight course, of U^2/L and (U/L)^2, that are rounding of a body alike to both sides.
+ASIDE = 1e-6
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
 ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
