@@ -32,6 +32,7 @@ from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
@@ -116,6 +117,7 @@ def from_shape(
         hulls[group.name] = found
     exports, refused = exports_of(plan.exports, files.values(), progress)
     vehicle = next(iter(files.values()))
+    said.extend(_drift_limit(vehicle))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     carried, why = _carried(vehicle, moves, progress)
@@ -131,6 +133,23 @@ def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
     if plan.conditions is not None:
         return ()
     return (f"assumed: {conditions.speed:g} m/s in fresh water of 20 deg C, {conditions.density:g} kg/m^3",)
+
+
+def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
+    """From which drift on the law pushes the body ahead, in words; empty where it never does."""
+    drift = np.radians(np.arange(91.0))
+    motions = np.zeros((len(drift), 6))
+    motions[:, 0], motions[:, 1] = np.cos(drift), np.sin(drift)
+    try:
+        law = full_force(parameters)
+    except InputError:  # the first manoeuvre says why nothing moves by it
+        return ()
+    ahead = law(parameters.conditions.speed * motions, np.zeros((len(drift), 3)))[:, 0] > 0.0
+    if not ahead.any():
+        return ()
+    return (
+        f"limit: from {np.argmax(ahead):d} deg of drift the force law pushes ahead (X > 0), which no hull does; use it below",
+    )
 
 
 def stem(name: str) -> str:

@@ -141,6 +141,8 @@ def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:
 
 def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: Body) -> None:
     found = from_shape(PLAN, bare)
+    assert found.shape is not None
+    assert not any("drift" in s for s in found.shape.said)
     assert [m.manoeuvre.name for m in found.manoeuvres] == ["stop"]
     assert "coast-down" in {row[0] for row in manoeuvre_table(found.manoeuvres, ()).rows}
     assert found.shape is not None
@@ -214,7 +216,11 @@ def test_shares_above_the_whole_are_explained_below_their_table(steered: Study) 
 
 
 def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
+    table = manoeuvre_table(steered.manoeuvres, steered.shape.carried if steered.shape is not None else ())
+    assert {"turning circle: 12 deg of rudder from 2 m/s.", "zigzag: 10 deg of rudder from 2 m/s."} < set(table.notes)
+    assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
+    assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     assert len(first.sentence) <= 160
     assert "estimate" in first.sentence
     assert first.slope is not None
@@ -357,6 +363,14 @@ def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeyp
         times.append(next(f.value for f in move.figures if f.name == "stopping time"))
     assert times[2] == pytest.approx(times[1], rel=1e-6)
     assert times[1] == pytest.approx(times[0], rel=2e-2)
+
+
+def test_the_drift_from_which_the_law_pushes_ahead_is_said(bare: Body, monkeypatch: pytest.MonkeyPatch) -> None:
+    """X = -0.004 cos^2 + 0.02 sin^2 changes its sign at atan(sqrt(0.2)) = 24.1 deg."""
+    monkeypatch.setitem(VALUES, "Xvv", 0.02)
+    shape = from_shape(PLAN, bare).shape
+    assert shape is not None
+    assert any(s.startswith("limit: from 25 deg of drift") for s in shape.said)
 
 
 def test_a_body_that_is_not_alike_to_both_sides_turns_as_it_coasts(bare: Body) -> None:
