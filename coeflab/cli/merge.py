@@ -69,7 +69,7 @@ class Done:
         from coeflab.report.sections import estimates as tables
 
         made, carried = self.made, self.carried
-        words = tables.interval_in_words(carried).removesuffix(", estimate")
+        words = tables.interval_in_words(carried, made.parameters.conditions.speed).removesuffix(", estimate")
         many = sum(r.after is not None for r in made.replaced)
         left = len(made.estimates)
         show.sentence(

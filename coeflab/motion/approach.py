@@ -14,7 +14,7 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, MOTIONS
 from coeflab.motion.dynamics import linearised, modes
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
-from coeflab.motion.trajectory import UNCOVERED, Trajectory, covered_ranges, outside, outside_in_words
+from coeflab.motion.trajectory import UNCOVERED, WITHOUT_DATA, Trajectory, covered_ranges, outside, outside_in_words
 from coeflab.motion.vehicle import THRUST, Vehicle
 from coeflab.vehicle.parameter_parts import ParameterThruster
 
@@ -290,10 +290,12 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
     if not names:
         return figure
-    bare = [in_field_terms(name.removesuffix(f": {UNCOVERED}")) for name in names if name.endswith(UNCOVERED)]
+    bare = [
+        in_field_terms(n.removesuffix(f": {UNCOVERED}")) for n in names if n.endswith(UNCOVERED) and n != WITHOUT_DATA
+    ]
     left = [in_field_terms(name) for name in names if not name.endswith(UNCOVERED)]
     said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
-    beyond = "; ".join(filter(None, said))
+    beyond = "; ".join(filter(None, said)) or "no force table stands behind the file"
     if lacking and decisive(names, rate):
         return replace(figure, value=None, status=NOT_DETERMINED, why=f"{beyond}; {lacking}")
     return replace(figure, status="extrapolated", why=beyond)

@@ -134,11 +134,13 @@ Flags = NDArray[np.bool_]
 SLACK, MOVING = 1e-6, 1e-3
 ASTERN, TABLE_EDGE = "astern", "beyond a table's edge"
 UNCOVERED = "no data cover it"
+WITHOUT_DATA = f"u': {UNCOVERED}"  # of a vehicle without any range, as of estimates
 
 
 def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) -> dict[str, Flags]:
     """For every variable, (n,) whether the motion lies outside of its ranges.
 
+    Where the vehicle has no ranges at all, as of estimates, u' is flagged too: there are no data to be within.
     A motion or control that no range speaks of is named ``r': no data cover it`` and flagged where it is not small (beyond
     0.001 in prime form, or in rad). Further entries: ``astern``, and ``beyond a table's edge`` where tables stand in the law.
 
@@ -158,7 +160,7 @@ def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
             spoken.add(motion)
             inside = [(x >= low - SLACK) & (x <= high + SLACK) for low, high in ranges]
             out[name] = np.asarray(~np.any(inside, axis=0))
-    for name in (*(f"{m}'" for m in MOTIONS[1:]), *(c for c in CONTROLS if c in controls)):
+    for name in (*(f"{m}'" for m in MOTIONS[bool(vehicle.covered) :]), *(c for c in CONTROLS if c in controls)):
         motion, x = values[name]
         if motion not in spoken and np.any(np.abs(x) > MOVING):
             out[f"{name}: {UNCOVERED}"] = np.abs(x) > MOVING

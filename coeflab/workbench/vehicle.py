@@ -21,8 +21,8 @@ from coeflab.core.units import with_unit
 from coeflab.formats.export import PlannedExport
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.approach import along, mirrored, yaw_acceleration
-from coeflab.motion.manoeuvre import Simulation
+from coeflab.motion.approach import along, linear_growth, mirrored, yaw_acceleration
+from coeflab.motion.manoeuvre import UPRIGHT, Simulation
 from coeflab.motion.simulation import manoeuvres_of, moved, simulate
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.report.document import Document, Section, digest_of
@@ -32,6 +32,7 @@ from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
@@ -41,6 +42,9 @@ from coeflab.workbench.hulls import added_masses, beside_walls
 NOTHING = Stated()
 Progress = Callable[[str], None]
 LEVEL = ("u", "v", "r")  # a first manoeuvre stays in the horizontal plane, whatever trim and weight are
+STRAIGHT = ("u",)
+# Sway and yaw accelerations of a straight course, of U^2/L and (U/L)^2, that are rounding of a body alike to both sides.
+ASIDE = 1e-6
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
 ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
@@ -113,6 +117,7 @@ def from_shape(
         hulls[group.name] = found
     exports, refused = exports_of(plan.exports, files.values(), progress)
     vehicle = next(iter(files.values()))
+    said.extend(_drift_limit(vehicle))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     carried, why = _carried(vehicle, moves, progress)
@@ -130,6 +135,23 @@ def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
     return (f"assumed: {conditions.speed:g} m/s in fresh water of 20 deg C, {conditions.density:g} kg/m^3",)
 
 
+def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
+    """From which drift on the law pushes the body ahead, in words; empty where it never does."""
+    drift = np.radians(np.arange(91.0))
+    motions = np.zeros((len(drift), 6))
+    motions[:, 0], motions[:, 1] = np.cos(drift), np.sin(drift)
+    try:
+        law = full_force(parameters)
+    except InputError:  # the first manoeuvre says why nothing moves by it
+        return ()
+    ahead = law(parameters.conditions.speed * motions, np.zeros((len(drift), 3)))[:, 0] > 0.0
+    if not ahead.any():
+        return ()
+    return (
+        f"limit: from {np.argmax(ahead):d} deg of drift the force law pushes ahead (X > 0), which no hull does; use it below",
+    )
+
+
 def stem(name: str) -> str:
     """A name that files can bear."""
     return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in name)[:80]
@@ -139,6 +161,8 @@ def first_manoeuvres(
     parameters: ParameterFile, progress: Progress = lambda _: None
 ) -> tuple[tuple[Simulation, ...], tuple[str, ...]]:
     """A turn and a zigzag in the horizontal plane, by the rudder or by two thrusters; else a coast-down.
+
+    The coast-down of a body that is alike to port and starboard moves in surge alone: rounding may not turn it.
 
     Parameters
     ----------
@@ -156,7 +180,9 @@ def first_manoeuvres(
     out, troubles = [], []
     for name, options in planned or (("stop", {"astern": 0.0, "remaining": REMAINING}),):
         try:
-            out.append(simulate(parameters, name, options, free=LEVEL))
+            free, said = (LEVEL, ()) if planned else _coasting(parameters)
+            made = simulate(parameters, name, options, free=free)
+            out.append(replace(made, statements=(*made.statements, *said)))
         except InputError as why:
             troubles.append(f"no {name.replace('_', ' ')}: found {why.found}; expected {why.expected}")
             continue
@@ -176,6 +202,24 @@ def _steered(parameters: ParameterFile) -> tuple[tuple[str, dict[str, Any]], ...
         return ()
     words = tuple(f"{name}={command:g}" for name, command in pair.items())
     return (TURN, {"commands": words}), ("zigzag", {"commands": words})
+
+
+def _coasting(parameters: ParameterFile) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Motions of a coast-down, and what that means: surge alone where no force turns the body off its straight course."""
+    body = moved(parameters, "stop", LEVEL)
+    nu = along(body, 0.0)
+    rates = body.acceleration(nu[None, :], np.array([UPRIGHT]), np.zeros((1, 3)), np.zeros(6))[0]
+    pace = float(nu[0]) / body.length
+    if abs(rates[1]) > ASIDE * pace * float(nu[0]) or abs(rates[5]) > ASIDE * pace**2:
+        return LEVEL, ()
+    grows = linear_growth(body, ("v", "r"), float(nu[0]))
+    held = "straight ahead: sway and yaw are held"
+    if not grows > 0.0:
+        return STRAIGHT, (held,)
+    return STRAIGHT, (
+        held,
+        f"the straight course is unstable: with sway and yaw free a disturbance grows e-fold in {1.0 / grows:.2g} s at {nu[0]:g} m/s",
+    )
 
 
 def _pair(parameters: ParameterFile) -> dict[str, float]:
@@ -212,7 +256,7 @@ def _carried(
         {"turns": TURNS} if name == TURN else {}
     )
     try:
-        return (uncertainty(parameters, Question(name, options, MEMBERS, SEED, free=LEVEL)),), ()
+        return (uncertainty(parameters, Question(name, options, MEMBERS, SEED, free=own.vehicle.free)),), ()
     except InputError as why:
         return (), (f"no uncertainty of the {name.replace('_', ' ')}: found {why.found}; expected {why.expected}",)
 

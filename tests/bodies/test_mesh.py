@@ -214,3 +214,12 @@ def test_files_that_cannot_be(tmp_path: Path, old: str, new: str, said: list[str
         read_body(tmp_path / "body.toml")
     for words in said:
         assert words in str(caught.value)
+
+
+def test_a_centre_that_is_rounding_is_zero() -> None:
+    ball = trimesh.creation.icosphere(2)
+    turned = ball.vertices @ trimesh.transformations.rotation_matrix(0.3, [1.0, 2.0, 0.5])[:3, :3].T
+    for faces in (ball.faces, np.random.default_rng(3).permutation(ball.faces)):
+        assert TriangleMesh(turned, faces).centre_of_volume.tolist() == [0.0, 0.0, 0.0]
+    aside = TriangleMesh(turned + np.array([0.0, 1e-9, 0.0]), ball.faces).centre_of_volume
+    assert aside[1] == pytest.approx(1e-9, rel=1e-4)

@@ -298,6 +298,11 @@ def test_figures_beyond_the_data_say_so() -> None:
     found = figures(run(made(), "turning_circle", rudder=0.2))
     assert found["advance"].status == "extrapolated"
     assert found["advance"].why == "no data on v', r', rudder angle"
+    stopped = run(made(), "stop")
+    assert {f.status for f in stopped.figures} == {"extrapolated"}
+    assert {f.why for f in stopped.figures} == {"no force table stands behind the file"}
+    assert all(v[0] for v in stopped.trajectory.outside.values() if v.any())
+    assert f"stopped where u is down to 0.01 of the approach speed of {SPEED:g} m/s" in stopped.statements
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
@@ -38,7 +39,7 @@ from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench import run
 from coeflab.workbench import vehicle as workbench_vehicle
 from coeflab.workbench.exports import parameter_files_rendered
-from coeflab.workbench.vehicle import asked, from_shape
+from coeflab.workbench.vehicle import asked, from_shape, subject
 
 VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
 RUDDER = {"Ydr": 0.008, "Ndr": -0.0035}
@@ -140,6 +141,8 @@ def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:
 
 def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: Body) -> None:
     found = from_shape(PLAN, bare)
+    assert found.shape is not None
+    assert not any("drift" in s for s in found.shape.said)
     assert [m.manoeuvre.name for m in found.manoeuvres] == ["stop"]
     assert "coast-down" in {row[0] for row in manoeuvre_table(found.manoeuvres, ()).rows}
     assert found.shape is not None
@@ -213,7 +216,11 @@ def test_shares_above_the_whole_are_explained_below_their_table(steered: Study) 
 
 
 def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
+    table = manoeuvre_table(steered.manoeuvres, steered.shape.carried if steered.shape is not None else ())
+    assert {"turning circle: 12 deg of rudder from 2 m/s.", "zigzag: 10 deg of rudder from 2 m/s."} < set(table.notes)
+    assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
+    assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     assert len(first.sentence) <= 160
     assert "estimate" in first.sentence
     assert first.slope is not None
@@ -327,3 +334,47 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
     assert nv.value_si == pytest.approx(before.value_si * -0.014 / -0.012)
     with pytest.raises(InputError, match="none of an estimate"):
         merged(base, base)
+
+
+def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A directionally unstable body: mesh, renumbered mesh and equations coast alike, straight ahead, and X0' has the variance."""
+    monkeypatch.setitem(VALUES, "Nv", -0.03)
+    monkeypatch.setattr(workbench_vehicle, "MEMBERS", 40)
+    ball = trimesh.creation.icosphere(3)
+    ball.apply_scale([1.5, 0.25, 0.25])
+    shuffled = trimesh.Trimesh(ball.vertices, np.random.default_rng(3).permutation(ball.faces), process=False)
+    shuffled.apply_transform(trimesh.transformations.rotation_matrix(0.3, [1.0, 0.0, 0.0]))
+    bodies = [bare]
+    for name, mesh in (("one", ball), ("other", shuffled)):
+        mesh.export(tmp_path / f"{name}.stl")
+        bodies.append(subject(str(tmp_path / f"{name}.stl"), "m", "FLU"))
+    plan = replace(PLAN, method="strip:lamb", scaling=bare.scaling)
+    found = [from_shape(plan, body, Stated(390.0)) for body in bodies]
+    times = []
+    for one in found:
+        (move,) = one.manoeuvres
+        assert one.shape is not None
+        assert not np.any(move.trajectory.velocity[:, 1:])
+        assert "straight ahead: sway and yaw are held" in move.statements
+        assert any(s.startswith("the straight course is unstable") for s in move.statements)
+        main = main_spread(one.shape.carried)
+        assert main is not None
+        assert [(s, round(v, 2)) for s, v in main[1].known] == [("Xu|u|'", 1.0)]
+        times.append(next(f.value for f in move.figures if f.name == "stopping time"))
+    assert times[2] == pytest.approx(times[1], rel=1e-6)
+    assert times[1] == pytest.approx(times[0], rel=2e-2)
+
+
+def test_the_drift_from_which_the_law_pushes_ahead_is_said(bare: Body, monkeypatch: pytest.MonkeyPatch) -> None:
+    """X = -0.004 cos^2 + 0.02 sin^2 changes its sign at atan(sqrt(0.2)) = 24.1 deg."""
+    monkeypatch.setitem(VALUES, "Xvv", 0.02)
+    shape = from_shape(PLAN, bare).shape
+    assert shape is not None
+    assert any(s.startswith("limit: from 25 deg of drift") for s in shape.said)
+
+
+def test_a_body_that_is_not_alike_to_both_sides_turns_as_it_coasts(bare: Body) -> None:
+    heavy = Stated(390.0, np.array([0.0, 0.02, 0.0]))
+    (move,) = from_shape(PLAN, bare, heavy).manoeuvres
+    assert move.vehicle.free == ("u", "v", "r")
+    assert np.any(move.trajectory.velocity[:, 5])

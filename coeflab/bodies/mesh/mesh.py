@@ -29,6 +29,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array, Faces, brief, locked
 
 BLOCK = 65536
+ROUNDING = 1e-12  # of the longest side
 
 
 @brief
@@ -60,9 +61,12 @@ class MeshIntegrals:
 def mesh_integrals(vertices: Array, faces: Faces) -> MeshIntegrals:
     """Integrals by the divergence theorem, face by face, exact for the faceted body.
 
+    A coordinate of the centre below `ROUNDING` of the longest side is rounding and counts as zero.
+
     Source: Eberly, Polyhedral Mass Properties (2002), in vector form: tetrahedra from a common point to the faces.
     """
-    origin = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    origin = (low + high) / 2.0
     points = np.ascontiguousarray((vertices - origin).T)
     volume, area = 0.0, 0.0
     first, projected = np.zeros(3), np.zeros(3)
@@ -80,7 +84,9 @@ def mesh_integrals(vertices: Array, faces: Faces) -> MeshIntegrals:
     if volume == 0.0:
         return MeshIntegrals(0.0, np.full(3, np.nan), np.zeros((3, 3)), area, projected)
     offset = first / volume
-    return MeshIntegrals(volume, origin + offset, second - volume * np.outer(offset, offset), area, projected)
+    centre = origin + offset
+    centre[np.abs(centre) < ROUNDING * float(np.max(high - low))] = 0.0
+    return MeshIntegrals(volume, centre, second - volume * np.outer(offset, offset), area, projected)
 
 
 def corner_range(values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -23,7 +23,7 @@ summary = (
 citations = ("leonard_graver2001",)
 plane = "vertical"
 NAME = "glide"
-LEAST, STEADY = 1e-6, 1e-3
+LEAST, STEADY, ROUNDING = 1e-6, 1e-3, 1e-12
 SLOWEST_TURN = 1e-6  # rad/s
 
 
@@ -56,6 +56,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """
     o = parse_options(Options, options, NAME)
     net = vehicle.weight - vehicle.buoyancy
+    net = 0.0 if abs(net) < ROUNDING * vehicle.weight else net
     if abs(net) <= LEAST * vehicle.weight:
         raise InputError(
             f"a net weight of {net:.3g} N", "a vehicle heavier or lighter than the water that it displaces", column="hydrostatics",

@@ -14,7 +14,7 @@ from coeflab.motion.approach import in_current
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.marching import march, march_by_tolerance
 from coeflab.motion.media import through_media
-from coeflab.motion.trajectory import Ended, Trajectory
+from coeflab.motion.trajectory import WITHOUT_DATA, Ended, Trajectory
 from coeflab.motion.vehicle import Vehicle
 
 summary = "six degrees of freedom (Fossen), quaternion attitude; adaptive LSODA or fixed-step RK4, plain or compiled"
@@ -92,7 +92,8 @@ def simulate(vehicle: Vehicle, manoeuvre: Manoeuvre, options: Mapping[str, Any] 
 
 def _stopped_outside(motion: Trajectory) -> Trajectory:
     """The motion up to the first row that the coefficients do not cover."""
-    firsts = {name: int(np.argmax(flags)) for name, flags in motion.outside.items() if np.any(flags)}
+    flagged = {name: flags for name, flags in motion.outside.items() if name != WITHOUT_DATA and np.any(flags)}
+    firsts = {name: int(np.argmax(flags)) for name, flags in flagged.items()}
     if not firsts:
         return motion
     name = min(firsts, key=lambda n: firsts[n])

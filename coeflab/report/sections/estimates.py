@@ -178,25 +178,63 @@ def shares_figure(parameters: ParameterFile, carried: Sequence[Carried], anchor:
     return bars(replace(main[1], known=known, shares=()), anchor) if known else None
 
 
-def interval_in_words(carried: Sequence[Carried]) -> str:
-    """The first figure with its interval, for example ``tactical diameter 12.4 m (95 % 9 to 19), estimate``; empty without one."""
+def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
+    """The first figure with its interval, for example ``tactical diameter 12.4 m at 15 deg of rudder and 2 m/s (95 % 9 to 19), estimate``.
+
+    Empty without one. The speed is that of the approach, m/s.
+    """
     main = main_spread(carried)
     if main is None or main[0].low is None or main[0].high is None or main[0].figure.value is None:
         return ""
     s, (factor, unit) = main[0], shown_unit(main[0].figure.unit)
+    asked = next(c.question for c in carried if any(k is s for k in c.spreads))
+    if asked.manoeuvre == "stop":
+        so = f"to {asked.options['remaining']:g} of {speed:g} m/s"
+    elif "rudder" in asked.options:
+        so = f"at {_degrees(asked.options['rudder'])} of rudder and {speed:g} m/s"
+    else:
+        so = f"by thrusters from {speed:g} m/s"
     return (
-        f"{s.figure.name} {(s.figure.value or 0.0) * factor:.2g}{f' {unit}' if unit else ''} "
+        f"{s.figure.name} {(s.figure.value or 0.0) * factor:.2g}{f' {unit}' if unit else ''} {so} "
         f"(95 % {(s.low or 0.0) * factor:.2g} to {(s.high or 0.0) * factor:.2g}), estimate"
     )
+
+
+def _degrees(angle: float | str) -> str:
+    return f"{np.degrees(float(angle)):.3g} deg"
+
+
+def _how(made: Simulation) -> str:
+    """From which speed and by what a manoeuvre goes, for example ``15 deg of rudder from 2 m/s``."""
+    speed = float(made.manoeuvre.velocity[0])
+    if made.manoeuvre.name == "stop":
+        down = made.manoeuvre.phases[0].until
+        return f"thrust off at {speed:g} m/s, until {down.value if down is not None else 0.0:g} m/s are left"
+    angle = abs(made.manoeuvre.phases[0].orders.get("dr", 0.0))
+    return f"{_degrees(angle)} of rudder from {speed:g} m/s" if angle else f"unequal thrusters from {speed:g} m/s"
+
+
+def _held(moves: Sequence[Simulation]) -> tuple[str, ...]:
+    """What the first manoeuvres hold, and whether the straight course that is held is stable."""
+    straight = [m for m in moves if "v" not in m.vehicle.free]
+    if not straight:
+        return ("In the horizontal plane: heave, roll and pitch are held. Every number is an estimate.",)
+    said = [s for s in straight[0].statements if "straight" in s]
+    return (*(f"{s[:1].upper()}{s[1:]}." for s in said), "Every number is an estimate.")
 
 
 def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> Table:
     """Figures of the first manoeuvres, with intervals where the uncertainty was carried through."""
     bounds = {(c.question.manoeuvre, s.figure.name): s for c in carried for s in c.spreads if s.status == "ok"}
-    rows = []
+    rows, notes = [], []
     for made in moves:
         name = made.manoeuvre.name
         called = "coast-down" if OFF in made.manoeuvre.statements else name.replace("_", " ")
+        notes.append(f"{called}: {_how(made)}.")
+        if carried and not any(c.question.manoeuvre == name for c in carried):
+            notes.append(
+                f"{called}: no 95 %, as only the first manoeuvre is drawn; coeflab uncertainty FILE --manoeuvre {name} has it."
+            )
         for f in made.figures:
             factor, unit = shown_unit(f.unit)
             s = bounds.get((name, f.name))
@@ -204,8 +242,8 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
             value = f.status if f.value is None else number(f.value * factor, 3)
             if f.name != "lateral deviation":
                 rows.append((called, f.name, value, unit, ends))
-    notes = ("In the horizontal plane: heave, roll and pitch are held. Every number is an estimate.",)
-    return Table("First manoeuvres", ("", "figure", "value", "unit", "95 %"), tuple(rows), notes, frozenset({0, 1, 3}))
+    heads = ("", "figure", "value", "unit", "95 %")
+    return Table("First manoeuvres", heads, tuple(rows), (*notes, *_held(moves)), frozenset({0, 1, 3}))
 
 
 def missing_table(shape: FromShape) -> Table:
@@ -222,10 +260,12 @@ def sentence(study: Study) -> str:
     c = shape.weighed.configuration
     displaced = shape.conditions.density * (c.volume or 0.0)
     mass = f"{c.mass.mass:.3g} kg in {displaced:.3g} kg of displacement" if c.mass else f"displaces {displaced:.3g} kg"
-    turn = interval_in_words(shape.carried)
-    rest = f"{mass}; {len(found)} estimates from the shape{wide}{f'; {turn}' if turn else ''}."
-    named = (f"{name}: {rest}" for name in (study.plan.title, study.plan.name, "Vehicle") if name)
-    return next((s for s in named if len(s) <= LONGEST), rest[:LONGEST])
+    turn = interval_in_words(shape.carried, parameters.conditions.speed)
+    ended = f"; {turn}." if turn else "."
+    long, short = (f"{mass}; {len(found)} estimates from the shape{w}{ended}" for w in (wide, ""))
+    names = [name for name in (study.plan.title, study.plan.name, "Vehicle") if name]
+    named = (f"{name}: {rest}" for rest in (long, short) for name in names[:-1])
+    return next((s for s in (*named, f"{names[-1]}: {short}", short) if len(s) <= LONGEST), short[:LONGEST])
 
 
 def _shape(study: Study) -> FromShape:
@@ -250,7 +290,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         if indices
         else "not determined"
     )
-    turn = interval_in_words(shape.carried)
+    turn = interval_in_words(shape.carried, parameters.conditions.speed)
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
@@ -267,7 +307,11 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     if not drawn:
         return made
     first = next(iter(study.manoeuvres), None)
-    left = track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
+    left = (
+        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
+        if first is not None
+        else None
+    )
     outline = hull_figure(shape.weighed.body, "answer-body", COLUMN)
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
@@ -369,7 +413,7 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         status = "no estimate" if value is None else "" if u95 else "no U95"
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
     given = sum(r.after is not None for r in made.replaced)
-    turn = interval_in_words(carried).removesuffix(", estimate")
+    turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
     said = f"{p.name}: {given} numbers replaced, {left} estimates left{f'; {turn}' if turn else ''}."
     chips = (
         Chip("Replaced", f"{given} numbers", Severity.PASS if given else Severity.WARN, "coefficients"),
@@ -378,7 +422,9 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
     )
     first = next(iter(moves), None)
     left_figure = (
-        track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
+        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
+        if first is not None
+        else None
     )
     right = forest_figure(rows, (BEFORE,), BEFORE) or forest_figure(rows, (BEFORE,), "")
     note = f"{BEFORE}: the value that was replaced, of the base. Made dimensionless with {p.scaling.length_name} = {p.scaling.length:.5g} m."
@@ -393,7 +439,7 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
     if main is not None:
         estimated = {c.symbol for c in made.estimates}
         own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
-        words = interval_in_words(carried).removesuffix(", estimate")
+        words = interval_in_words(carried, made.parameters.conditions.speed).removesuffix(", estimate")
         which = (
             f"Of the estimates still in it {listed([symbol for symbol, _ in own])} contribute, the largest "
             f"{100.0 * max(v for _, v in own):.0f} % of its variance."

@@ -29,6 +29,7 @@ from coeflab.motion.tune.tuning import STATUSES, Tuning, largest_correlations
 
 DEGREES = {"rad": "deg", "rad/s": "deg/s"}
 
+ROUNDING = 1e-10  # of a length, a radian, a second, the unit of a ratio: less is printed as 0
 NOTHING = 1e-3  # mm, deg, N: less is not printed
 
 
@@ -38,8 +39,9 @@ def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Tabl
     bounded = any(f.low is not None for f in figures)
     for f in figures:
         factor, unit = (180.0 / np.pi, DEGREES[f.unit]) if f.unit in DEGREES else (1.0, f.unit)
-        lengths = f"{f.value / length:.3f}" if f.value is not None and f.unit == "m" else ""
-        value = ABSENT if f.value is None else f"{f.value * factor:.5g}"
+        lengths = f"{round(f.value / length, 3) + 0.0:.3f}" if f.value is not None and f.unit == "m" else ""
+        dust = f.value is not None and abs(f.value) < ROUNDING * (length if f.unit == "m" else 1.0)
+        value = ABSENT if f.value is None else "0" if dust else f"{f.value * factor:.5g}"
         interval = "" if f.low is None or f.high is None else f"{f.low * factor:.4g} .. {f.high * factor:.4g}"
         rows.append(
             (f.name, value, "" if unit == "1" else unit, lengths, *((interval,) if bounded else ()), f.status,
