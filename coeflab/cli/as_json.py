@@ -19,10 +19,11 @@ from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.formats.export import Export, Loss
-from coeflab.law.coefficient import COVERS, Coefficient
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
+from coeflab.report.tables.results import covers
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.inertia import WaterInertia
@@ -235,7 +236,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
     return {
         "study": s.plan.name,
         "passed": not s.failed,
-        "u95_of_slopes_covers": COVERS,
+        "u95_of_slopes_covers": covers(s),
         "numbers": numbers(held_of_study(s)),
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],

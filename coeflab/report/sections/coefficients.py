@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import listed
-from coeflab.law.coefficient import COVERS, Coefficient, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
@@ -24,7 +24,7 @@ OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
     "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
-    f"U95 covers {COVERS}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
+    "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
     "Input: declared errors of the inputs, and the grid. Of a term of higher degree it is the uncertainty of its slope. A dash: not assessed, so "
     "not in U95.",
 )
@@ -93,7 +93,13 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
-    text: tuple[str, ...] = TEXT if any(f.sweeps for f in study.fits) else FIXED if study.coefficients else NONE
+    text: tuple[str, ...] = (
+        (TEXT[0], TEXT[1].format(tables.covers(study)))
+        if any(f.sweeps for f in study.fits)
+        else FIXED
+        if study.coefficients
+        else NONE
+    )
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):

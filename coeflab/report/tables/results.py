@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from coeflab.core.provenance import work
 from coeflab.core.table import (
@@ -20,7 +20,7 @@ from coeflab.core.table import (
 )
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.law.coefficient import COVERS, Status
+from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
@@ -40,7 +40,8 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     campaign : str, optional
         Only the coefficients of one campaign.
     """
-    return noun_tables.coefficients([c for c in study.coefficients if campaign is None or c.campaign == campaign])
+    chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
+    return noun_tables.coefficients(chosen, covers=covers(study, chosen))
 
 
 # What a table of coefficients does without where a line is too narrow, the first one first.
@@ -82,6 +83,35 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
     return Table(title, tuple(whole.headers[i] for i in chosen), kept, tuple(notes), left)
 
 
+def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
+    """What U95 of slopes at the origin covers: the points and, as far as they entered, declared inputs, grid and other studies.
+
+    Parameters
+    ----------
+    study : Study
+    among : collection of Coefficient, optional
+        Of these; by default of all. Others than slopes at the origin do not count.
+
+    Returns
+    -------
+    str
+        What entered only some of the slopes is followed by their symbols.
+    """
+    slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
+    wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
+    budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
+    entered: dict[str, list[str]] = {}
+    for b in budgets:
+        names = ["declared inputs"] * bool(b.inputs) + ["grid"] * (b.part("grid") is not None)
+        for name in (*names, *(s.name for s in b.studies)):
+            entered.setdefault(name, []).append(primed(b.symbol))
+    said = [
+        name if len(symbols) == len(wanted) else f"{name} (only {', '.join(dict.fromkeys(symbols))})"
+        for name, symbols in entered.items()
+    ]
+    return ", ".join((COVERS, *said))
+
+
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     """The slopes at the origin with U95 and what it covers, in one sentence; empty where there is none.
 
@@ -100,8 +130,7 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     for c in chosen:
         by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
-    outside = ", declared inputs and grid" if any(c.parts.input for c in chosen) else ""
-    return f"{each} (U95; covers {COVERS}{outside})."
+    return f"{each} (U95; covers {covers(study, chosen)})."
 
 
 def verdicts(study: Study) -> Table:
