@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import listed
+from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
@@ -127,11 +128,30 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         )
         for c in shown
     )  # fmt: skip
-    open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
-    notes = [in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(open_parts)}." if open_parts else ""]
+    budgets = [b for b in study.budgets if b.campaign == campaign]
+    open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
+    in_some = [_of_some(name, budgets) for name in open_parts]
+    notes = [
+        in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(in_some)}." if in_some else "",
+        tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
+    ]  # fmt: skip
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
     return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+
+
+def _of_some(name: str, budgets: Sequence[Budget]) -> str:
+    """A part that was not assessed; the grid with its symbols where it is in U95 of the others."""
+    if not name.startswith("grid") or all(b.part("grid") is None for b in budgets):
+        return name
+    return f"{name} of {listed([primed(b.symbol) for b in budgets if name in b.unassessed])}"
+
+
+def _wrong(study: Study, campaign: str) -> str:
+    """Rows that the fits of a campaign left out as they do not fit the others; empty without any."""
+    found = [s for f in study.fits if f.campaign == campaign for s in f.sweeps if len(s.wrong)]
+    each = "; ".join(f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found)
+    return f"Left out by the fit, as they do not fit the other points: {each}." if each else ""
 
 
 def _without_value(study: Study) -> tuple[str, ...]:
