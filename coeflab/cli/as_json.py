@@ -6,6 +6,7 @@ A body's particulars for machines.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,14 +16,15 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.table import Check
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
+from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.formats.export import Export, Loss
-from coeflab.law.coefficient import COVERS, Coefficient
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
+from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.inertia import WaterInertia
@@ -48,21 +50,24 @@ def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
     }
 
 
-def next_runs(fit: FitResult, sweep: Sweep, count: int) -> dict[str, Any]:
-    """The runs that would narrow a slope most; angles in radians, rates as r' = r L/U; U95 is that of the fit alone."""
-    degrees = sweep.variable not in ANGULAR
-    runs = [
-        {
-            "setting": float(np.arcsin(np.clip(x, -1.0, 1.0))) if sweep.is_angle else x,
-            "unit": "rad" if degrees else "1",
-            "u95_after": after,
-        }
-        for x, after in sweep.next_runs(count)
-    ]
-    return {
-        "symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable, "u95_now": sweep.u95,
-        "runs": runs,
-    }  # fmt: skip
+def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
+    """The runs that would narrow each slope most; asin(v/U) in radians, rates as r' = r L/U; U95 is that of the fit alone."""
+    out = []
+    for fit in s.fits:
+        for sweep in (one for one in fit.sweeps if not symbols or one.symbol in symbols):
+            degrees = sweep.variable not in ANGULAR
+            runs = [
+                {
+                    "setting": float(np.arcsin(np.clip(x, -1.0, 1.0))) if sweep.is_angle else x,
+                    "unit": "rad" if degrees else "1",
+                    "u95_after": after,
+                }
+                for x, after in tables.next_runs(s, sweep, count)
+            ]
+            if runs:
+                said = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}
+                out.append(said | {"u95_now": sweep.u95, "runs": runs})
+    return out
 
 
 def model(m: FittedModel) -> dict[str, Any]:
@@ -235,7 +240,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
     return {
         "study": s.plan.name,
         "passed": not s.failed,
-        "u95_of_slopes_covers": COVERS,
+        "u95_of_slopes_covers": tables.covers(s),
         "numbers": numbers(held_of_study(s)),
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],

@@ -123,11 +123,10 @@ def command(
         _draw(study, wanted, figure)
     if json:
         from coeflab.cli import as_json
-        from coeflab.cli.as_json import study as study_json
 
-        out = study_json(study, [])
+        out = as_json.study(study, [])
         if next_runs:
-            out["next"] = [as_json.next_runs(f, s, next_runs) for f in study.fits for s in f.sweeps if s.next_runs(1)]
+            out["next"] = as_json.next_runs(study, wanted, next_runs)
         show.json_object(out)
     else:
         _print(study, wanted, next_runs)
@@ -177,9 +176,11 @@ def _refuse_strange(study: Study, symbols: list[str]) -> None:
     known = [s.symbol for f in study.fits for s in f.sweeps]
     for symbol in symbols:
         if symbol not in known:
+            near = next((k for k in known if k.casefold() == symbol.casefold()), None)
             raise InputError(
                 f"no sweep for {shown(symbol)}",
                 f"one of {', '.join(dict.fromkeys(known))}" if known else "no --symbol: this fit has no sweeps",
+                advice=f"Did you mean {near}?" if near else "",
             )
 
 
@@ -248,7 +249,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
             show.table(each)
         show.table(model_tables.campaigns(study.fits))
     for f in study.fits if count else ():
-        show.table(tables.next_points(f, count))
+        show.table(tables.next_points(study, f, count, symbols))
     show.findings(study.checks)
 
 

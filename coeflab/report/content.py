@@ -289,6 +289,12 @@ def _named(c: Comparison) -> str:
 WIDE = 0.25  # of the published value: a wider U95 passes what a reader would call a difference
 
 
+WHAT_COUNTS = (
+    "Predicted: a computed coefficient against the same one measured on the same body. Printed and recomputed: a coefficient or stability index "
+    "that we compute from the authors' data or printed numbers, against the one that they print.",
+)
+
+
 def _re_analysis(study: Study) -> list[str]:
     ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
     judged = [c for c in ours if c.passed is not None]
@@ -309,7 +315,9 @@ def _re_analysis(study: Study) -> list[str]:
         out.append(f"Weak tests, whose U95 is above {share_text(WIDE)} of the published value: {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
-    out.extend(headline(held_of_study(study)))
+    held = held_of_study(study)
+    out.extend(headline(held))
+    out.extend(WHAT_COUNTS if any(count for _, count in held.values()) else ())
     missed = [v for v in validations(study, study.budgets) if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])

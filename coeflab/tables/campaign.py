@@ -5,11 +5,12 @@ What a campaign declares about the uncertainty of its inputs.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,10 @@ from coeflab.core.wording import Verbatim
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tables.column_map import ColumnMap, Entry
 
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler
+    from pydantic_core import CoreSchema
+
 # Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
 LARGEST_ANGLE = 0.0873  # 5 deg
@@ -36,8 +41,24 @@ NO_DEGREES = takes.Within(lambda v: "a half-width up to 5 deg" if v > LARGEST_AN
 NO_PER_CENT = takes.Within(
     lambda v: "a relative half-width up to 0.5" if v > LARGEST_RELATIVE else "", "One per cent is 0.01."
 )
+
+
+class PerCent:
+    """A text in per cent, such as ``"1 %"``, is that share; anything else stays."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_before_validator_function(_share, handler(source))
+
+
+def _share(value: Any) -> Any:
+    given = re.fullmatch(r"\s*([-+]?(?:\d{1,9}\.?\d{0,9}|\.\d{1,9}))\s*%\s*", value) if isinstance(value, str) else None
+    return value if given is None else float(given[1]) / 100.0
+
+
 HalfAngle = Annotated[takes.Angle, HALF_WIDTH, NO_DEGREES]
-Share = Annotated[takes.Pure, HALF_WIDTH, NO_PER_CENT]
+Share = Annotated[takes.Pure, HALF_WIDTH, NO_PER_CENT, PerCent()]
 
 
 @dataclass(frozen=True, slots=True)

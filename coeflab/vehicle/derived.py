@@ -52,6 +52,7 @@ CENTRES = {"Nv'/Yv'": ("Nv", "Yv", 1.0), "-Mw'/Zw'": ("Mw", "Zw", -1.0)}
 INDICES = {"G_h": ("Yv'", "Nv'", "Yr'", "Nr'", 1.0), "G_v": ("Zw'", "Mw'", "Zq'", "Mq'", -1.0)}
 FAST = "at high speed"
 DRAWS, SEED = 20_000, 1
+LARGE_SPREAD = 0.25  # of a denominator, above which the interval of a ratio is not symmetric
 
 
 @brief
@@ -70,6 +71,8 @@ class Derived:
         Why not, or how far the two half-widths agree.
     driven : str
         Of a stability index: the denominator that is not below zero. The sign of the index is no criterion then.
+    spread : float
+        95 % half-width of the product of its denominators over that product, first order, without their covariance.
     """
 
     name: str
@@ -78,6 +81,18 @@ class Derived:
     result: Propagated | None
     statement: str
     driven: str = ""
+    spread: float = 0.0
+
+    @property
+    def limits(self) -> str:
+        """That the half-width is of first order, and the 95 % limits by drawing, where a denominator is uncertain; else empty."""
+        if self.result is None or not self.spread > LARGE_SPREAD:
+            return ""
+        r = self.result
+        return (
+            f"U95 is first order; 95 % limits by drawing {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
+            f"seed {r.seed})"
+        )
 
     @property
     def decided(self) -> bool:
@@ -204,9 +219,10 @@ def _derived(
         if reaches_zero(size, half):
             text = f"no U95: {name} divides by {label} = {size:.3g} +- {half:.2g}, whose interval contains zero"
             return Derived(name, subject, value, None, text)
+    spread = sum((half / size) ** 2 for _, size, half in denominators) ** 0.5
     result = propagate(function, gradient, cells, draws, seed)
     apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
     text = f"linear and Monte Carlo half-widths differ by {100.0 * apart:.1f} %"
     if apart > 0.1:
         text += ": the interval is skew, use the percentiles"
-    return Derived(name, subject, value, result, text)
+    return Derived(name, subject, value, result, text, spread=spread)

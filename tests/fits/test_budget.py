@@ -346,6 +346,9 @@ def test_declared_input_uncertainties(tmp_path: Path) -> None:
     assert found.angle == pytest.approx(np.radians(0.1))
     assert found.reference_point == pytest.approx(0.005)
     assert found.declared == ("angle", "speed", "reference_point")
+    by_cent = section(tmp_path, '[uncertainty]\nspeed = "0.5 %"\n')
+    assert by_cent is not None
+    assert by_cent.speed == pytest.approx(0.005)
 
 
 @pytest.mark.parametrize(
@@ -354,6 +357,8 @@ def test_declared_input_uncertainties(tmp_path: Path) -> None:
         ("speed = 0.0", "above zero"),
         ("speed = -0.1", "above zero"),
         ("force = 5.0", "One per cent is 0.01"),
+        ('force = "60 %"', "up to 0.5"),
+        ('force = "1 %%"', "unreadable unit"),
         ("sped = 0.1", "Did you mean uncertainty.speed"),
         ('angle = "1 m"', "another dimension"),
     ],

@@ -222,6 +222,15 @@ def test_the_next_points_narrow_as_foretold(clean: OriginSlope) -> None:
     assert next_points(clean, 1, np.array([0.3, 0.05]))[0] == pytest.approx([0.05])
 
 
+def test_next_points_repeat_no_setting_that_is_taken(clean: OriginSlope) -> None:
+    at = np.array([-0.1, -0.05, 0.05, 0.1])
+    repeated, _ = next_points(clean, 6, at)
+    assert len(repeated) == 6
+    found, after = next_points(clean, 6, at, taken=np.array([0.05, 0.3]))
+    assert sorted(found) == [-0.1, -0.05, 0.1]
+    assert np.all(np.diff(np.r_[clean.u95, after]) < 0.0)
+
+
 def test_shorter_sweeps_are_wider(clean: OriginSlope) -> None:
     caps = np.sin(np.radians([6.0, 10.0, 18.0]))
     rows = by_largest(X, Y, caps)

@@ -7,8 +7,11 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from coeflab.law.coefficient import COVERS
 from coeflab.report.figures.svg import COLOURS
 from coeflab.report.sections.campaign import tornado_figure
+from coeflab.report.sections.coefficients import coefficients_section
+from coeflab.report.tables import results
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty
@@ -53,6 +56,37 @@ def test_parts_that_are_not_assessed_are_a_dash_and_not_zero():
     table = budget_tables.overview(budgets(small_study(FULL)))
     assert "speed" not in table.headers
     assert not any(cell in ("0", "0.0 %") for cell in table.rows[0][5:7])
+
+
+def test_u95_covers_what_entered_and_names_what_entered_only_some():
+    plain, declared = small_study(FULL), declared_study()
+    assert results.covers(replace(plain, budgets=budgets(plain))) == COVERS
+    found = budgets(declared)
+    with_inputs = replace(declared, budgets=found)
+    assert results.covers(with_inputs) == f"{COVERS}, declared inputs"
+    assert results.covers(with_inputs) in coefficients_section(with_inputs).paragraphs[1]
+    assert f"covers {results.covers(with_inputs)})." in results.headline(with_inputs)
+    grid = tuple(
+        replace(b, parts=(*b.parts, replace(b.parts[0], name="grid"))) if b.symbol == "Yv" else b for b in found
+    )
+    in_some = replace(declared, budgets=grid)
+    assert results.covers(in_some) == f"{COVERS}, declared inputs, grid (only Yv')"
+    sway = in_some.fits[0].coefficients["Yv"]
+    assert results.covers(in_some, [sway]) == f"{COVERS}, declared inputs, grid"
+
+
+def test_the_core_names_the_rows_that_no_fit_uses_and_the_coefficients_without_a_grid_part():
+    study = declared_study()
+    left = tuple(replace(t, exclusions=tuple(replace(e, of_source=True) for e in t.exclusions)) for t in study.tables)
+    found = tuple(
+        replace(b, unassessed=("grid (study divergent)",))
+        if b.symbol == "Nv"
+        else replace(b, parts=(*b.parts, replace(b.parts[0], name="grid")))
+        for b in budgets(study)
+    )
+    (table,) = coefficients_section(replace(study, tables=left, budgets=found)).tables
+    assert any(n.startswith("Left out: ") and "(Y)" in n for n in table.notes)
+    assert any("grid (study divergent) of Nv'" in n for n in table.notes)
 
 
 @pytest.mark.parametrize("angles", [FULL, [-4.0, -2.0, 0.0, 2.0]])

@@ -28,8 +28,9 @@ def with_files(*files):
 
 def test_stability_has_indices_roots_and_figures():
     (section,) = stability_sections(with_files(made()))
-    indices, roots = section.tables
+    indices, roots, made_of = section.tables
     assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
+    assert [row[:2] for row in made_of.rows] == [("synthetic", "G_h"), ("synthetic", "G_v")]
     assert [row[4] for row in indices.rows] == ["stable, no U95", "stable at high speed, no U95"]
     assert all("no U95" in row[5] for row in indices.rows)
     assert [row[-1] for row in roots.rows] == ["none", "none"]
@@ -69,6 +70,33 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
     assert chip.text.startswith(f"{said}, G_h = ")
 
 
+@pytest.mark.parametrize("index", ["G_h", "G_v"])
+def test_an_index_can_be_recomputed_from_the_numbers_below_it(index):
+    (section,) = stability_sections(with_files(with_u95(STABLE, 0.05)))
+    made_of = section.tables[2]
+    text, source = next(row[2:] for row in made_of.rows if row[1] == index)
+    assert source == "literature"
+    y, n, y_rate, n_rate, m, x = (float(one.rpartition(" = ")[2]) for one in text.split(", "))
+    sign = 1.0 if index == "G_h" else -1.0
+    again = 1.0 - n * (y_rate - sign * m) / (y * (n_rate - x * m))
+    printed = next(float(row[2]) for row in section.tables[0].rows if row[1] == index)
+    assert again == pytest.approx(printed, rel=1e-3)
+
+
+def test_an_index_over_an_uncertain_denominator_has_limits_by_drawing():
+    by_half = {}
+    for half in (0.05, 0.3):
+        (section,) = stability_sections(with_files(with_u95(STABLE, half)))
+        by_half[half] = next(row for row in section.tables[0].rows if row[1] == "G_h")
+    assert "first order" not in by_half[0.05][-1]
+    said = by_half[0.3][-1].partition("U95 is first order; 95 % limits by drawing ")[2]
+    assert "20000 draws, seed 1" in said
+    low, high = (float(one) for one in said.partition(" (")[0].split(" .. "))
+    value = float(by_half[0.3][2])
+    assert low < value < high
+    assert value - low > 1.1 * (high - value)
+
+
 def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
@@ -87,7 +115,7 @@ def test_a_missing_rate_derivative_is_named():
 
 def test_the_mass_that_an_index_is_made_of_is_shown_and_named_as_not_assessed():
     (section,) = stability_sections(with_files(with_u95(STABLE, 0.05), made().model_copy(update={"name": "twin"})))
-    indices, _ = section.tables
+    indices, *_ = section.tables
     (used,) = section.subsections[0].tables
     assert all(row[0] == "synthetic, twin" for row in used.rows)
     shown = {row[1]: row for row in used.rows}

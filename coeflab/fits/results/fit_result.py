@@ -285,11 +285,12 @@ class Sweep:
         """Rows that repeat an earlier one exactly and count once."""
         return np.setdiff1d(np.flatnonzero(np.logical_not(self.used)), self.wrong)
 
-    def next_runs(self, count: int) -> tuple[tuple[float, float], ...]:
+    def next_runs(self, count: int, *, distinct: bool = False) -> tuple[tuple[float, float], ...]:
         """Settings within the sweep whose reading would narrow the slope most, one after the other, and U95 after each.
 
         Angles are multiples of half a degree, or of a tenth in a sweep of less than 4 degrees. None for an even
-        coefficient or one without a value.
+        coefficient or one without a value. ``distinct``: no setting that was run, and none twice, as a deterministic
+        solver gives the same number again.
         """
         if self.parity != "odd" or self.value is None:
             return ()
@@ -301,12 +302,10 @@ class Sweep:
             step = np.radians(0.5 if max(-low, high) >= np.radians(4.0) else 0.1)
             at = step * np.arange(np.ceil(low / step - 1e-6), np.floor(high / step + 1e-6) + 1.0)
             at = np.sin(at) if self.is_angle else at
-        return tuple(
-            (float(x), float(u))
-            for x, u in zip(
-                *next_points(estimate(self.x, self.y, self.se, odd=bool(self.symmetry)), count, at), strict=True
-            )
-        )
+        ran = np.concatenate([self.x, -self.x]) if self.symmetry else self.x
+        present = estimate(self.x, self.y, self.se, odd=bool(self.symmetry))
+        found = next_points(present, count, at, taken=ran if distinct else None)
+        return tuple((float(x), float(u)) for x, u in zip(*found, strict=True))
 
 
 @brief

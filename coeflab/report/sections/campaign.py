@@ -20,7 +20,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
 from coeflab.fits.uncertainty.budget import Budget
-from coeflab.law.coefficient import COVERS, Coefficient
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
@@ -153,7 +153,7 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
         text = [f"{name} has no value. {c.estimator} {c.status.advice}"]
     else:
         text = [
-            f"{name} = {plus_minus(c.value, c.u95)} (U95, {percent(c.u95, c.value)}; covers {COVERS}): random part "
+            f"{name} = {plus_minus(c.value, c.u95)} (U95, {percent(c.u95, c.value)}; covers {tables.covers(study, [c])}): random part "
             f"{percent(c.parts.random, c.value)}, form {percent(c.parts.model_form, c.value)}. {c.status.advice}".strip()
         ]
     if sweep.one_sided:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import listed
-from coeflab.law.coefficient import COVERS, Coefficient, Status
+from coeflab.fits.uncertainty.budget import Budget
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
@@ -24,7 +25,7 @@ OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
     "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
-    f"U95 covers {COVERS}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
+    "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
     "Input: declared errors of the inputs, and the grid. Of a term of higher degree it is the uncertainty of its slope. A dash: not assessed, so "
     "not in U95.",
 )
@@ -93,7 +94,13 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
-    text: tuple[str, ...] = TEXT if any(f.sweeps for f in study.fits) else FIXED if study.coefficients else NONE
+    text: tuple[str, ...] = (
+        (TEXT[0], TEXT[1].format(tables.covers(study)))
+        if any(f.sweeps for f in study.fits)
+        else FIXED
+        if study.coefficients
+        else NONE
+    )
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
@@ -121,11 +128,30 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         )
         for c in shown
     )  # fmt: skip
-    open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
-    notes = [in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(open_parts)}." if open_parts else ""]
+    budgets = [b for b in study.budgets if b.campaign == campaign]
+    open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
+    in_some = [_of_some(name, budgets) for name in open_parts]
+    notes = [
+        in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(in_some)}." if in_some else "",
+        tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
+    ]  # fmt: skip
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
     return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+
+
+def _of_some(name: str, budgets: Sequence[Budget]) -> str:
+    """A part that was not assessed; the grid with its symbols where it is in U95 of the others."""
+    if not name.startswith("grid") or all(b.part("grid") is None for b in budgets):
+        return name
+    return f"{name} of {listed([primed(b.symbol) for b in budgets if name in b.unassessed])}"
+
+
+def _wrong(study: Study, campaign: str) -> str:
+    """Rows that the fits of a campaign left out as they do not fit the others; empty without any."""
+    found = [s for f in study.fits if f.campaign == campaign for s in f.sweeps if len(s.wrong)]
+    each = "; ".join(f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found)
+    return f"Left out by the fit, as they do not fit the other points: {each}." if each else ""
 
 
 def _without_value(study: Study) -> tuple[str, ...]:

@@ -159,6 +159,8 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     if roots:
         heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
         tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
+    made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
+    tables += [made_of] if made_of.rows else []
     mass = Section("mass-used", "Mass and inertia used", tables=tuple(mass_table(study)), appendix=True)
     return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures), (mass,)),)
 
@@ -182,6 +184,7 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         stated = _from_literature(parameters, index)
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
+        remarks += [d.limits] if d.limits else []
         remarks.append(
             f"uncertainty of m' and xG' not in U95: 1 % of m' changes {index} by {number(by_mass(parameters, d), 2)}"
         )
@@ -201,6 +204,27 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     return Table(
         "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
     )
+
+
+def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
+    """The numbers that the indices are computed from, a row an index, five digits, with their sources."""
+    rows = []
+    for p in study.parameter_files.values():
+        for index, (*symbols, _) in INDICES.items():
+            found = [c for s in symbols if (c := p.coefficient(str(s))) is not None and c.value is not None]
+            if p.mass is None or (p.name, index) not in given:
+                continue
+            by: dict[str, list[str]] = {}
+            for c in found:
+                by.setdefault(c.campaign if c.origin == "fit" and c.campaign else c.origin, []).append(c.symbol)
+            sources = [f"{', '.join(those)}: {source}" for source, those in by.items()] if len(by) > 1 else list(by)
+            derivatives = (f"{c.symbol} = {number(float(c.value or 0.0), 5)}" for c in found)
+            centre = p.mass.mass_moment_prime / p.mass.mass_prime
+            values = (*derivatives, f"m' = {number(p.mass.mass_prime, 5)}", f"xG' = {number(centre, 5)}")
+            rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
+    headers = ("parameter file", "index", "computed from", "derivatives from")
+    notes = ("m' and xG': Mass and inertia used, in the appendix.",)
+    return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))
 
 
 def _printed(study: Study, name: str, index: str) -> tuple[str, str]:

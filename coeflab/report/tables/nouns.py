@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
-    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the curve that "
-    "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid.",
+    "U95 of a slope at the origin: 95 % half-width; covers {}. random: scatter of the points; form: the curve that "
+    "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid."
 )
 ROUNDING = 1e-12
 REJECTED = "form rejected"
@@ -50,8 +50,8 @@ def with_status(c: Coefficient) -> tuple[str, str]:
     )
 
 
-def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed") -> Table:
-    """Coefficients with their uncertainty and how they were made."""
+def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed", *, covers: str = COVERS) -> Table:
+    """Coefficients with their uncertainty and how they were made; ``covers`` says what U95 of a slope at the origin does."""
     rows = [
         (
             primed(c.symbol),
@@ -69,7 +69,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     ]
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "window", "n", "campaign", "estimator")
     fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
-    notes = DEFINED + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
+    notes = (DEFINED.format(covers),) + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
     notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in sorted({c.status for c in several}) if s.advice)
     return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
 

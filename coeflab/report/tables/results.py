@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from coeflab.core.provenance import work
 from coeflab.core.table import (
@@ -20,7 +20,7 @@ from coeflab.core.table import (
 )
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.law.coefficient import COVERS, Status
+from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
@@ -40,7 +40,8 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     campaign : str, optional
         Only the coefficients of one campaign.
     """
-    return noun_tables.coefficients([c for c in study.coefficients if campaign is None or c.campaign == campaign])
+    chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
+    return noun_tables.coefficients(chosen, covers=covers(study, chosen))
 
 
 # What a table of coefficients does without where a line is too narrow, the first one first.
@@ -82,6 +83,35 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
     return Table(title, tuple(whole.headers[i] for i in chosen), kept, tuple(notes), left)
 
 
+def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
+    """What U95 of slopes at the origin covers: the points and, as far as they entered, declared inputs, grid and other studies.
+
+    Parameters
+    ----------
+    study : Study
+    among : collection of Coefficient, optional
+        Of these; by default of all. Others than slopes at the origin do not count.
+
+    Returns
+    -------
+    str
+        What entered only some of the slopes is followed by their symbols.
+    """
+    slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
+    wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
+    budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
+    entered: dict[str, list[str]] = {}
+    for b in budgets:
+        names = ["declared inputs"] * bool(b.inputs) + ["grid"] * (b.part("grid") is not None)
+        for name in (*names, *(s.name for s in b.studies)):
+            entered.setdefault(name, []).append(primed(b.symbol))
+    said = [
+        name if len(symbols) == len(wanted) else f"{name} (only {', '.join(dict.fromkeys(symbols))})"
+        for name, symbols in entered.items()
+    ]
+    return ", ".join((COVERS, *said))
+
+
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     """The slopes at the origin with U95 and what it covers, in one sentence; empty where there is none.
 
@@ -100,8 +130,7 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     for c in chosen:
         by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
-    outside = ", declared inputs and grid" if any(c.parts.input for c in chosen) else ""
-    return f"{each} (U95; covers {COVERS}{outside})."
+    return f"{each} (U95; covers {covers(study, chosen)})."
 
 
 def verdicts(study: Study) -> Table:
@@ -288,20 +317,63 @@ def sensitivity(sweep: Sweep) -> Table:
     return Table(f"{primed(sweep.symbol)} by largest setting", headers, rows, (), frozenset({0}))
 
 
-def next_points(fit: FitResult, count: int) -> Table:
-    """The settings whose measurement would narrow every determined slope most, and its U95 after each."""
-    rows = []
-    for s in fit.sweeps:
+def next_runs(study: Study, sweep: Sweep, count: int) -> tuple[tuple[float, float], ...]:
+    """`Sweep.next_runs`; of a computed campaign distinct settings, as a solver gives the same number again."""
+    kinds = {t.name: t.source.kind for t in study.tables}
+    return sweep.next_runs(count, distinct=kinds.get(sweep.table) == "cfd")
+
+
+def next_points(study: Study, fit: FitResult, count: int, symbols: Sequence[str] = ()) -> Table:
+    """The settings whose measurement would narrow every determined slope most, and its U95 after each.
+
+    Parameters
+    ----------
+    study : Study
+    fit : FitResult
+        One of the study.
+    count : int
+    symbols : sequence of str
+        Only of these, without prime; by default of all.
+    """
+    rows, angles, sides, repeats = [], [], [], False
+    for s in (s for s in fit.sweeps if not symbols or s.symbol in symbols):
         now = s.u95
-        for i, (x, after) in enumerate(s.next_runs(count), 1):
-            said = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if i == 1 else ("", "", "", "")
-            rows.append((*said, str(i), f"{s.variable}'", _signed(s, x), with_u95(s.value, after)[1]))
-    headers = ("", "campaign", "value", "U95 now", "run", "over", "at", "U95 then")
-    notes = (
+        ran = [*s.x]
+        for i, (x, after) in enumerate(next_runs(study, s, count), 1):
+            first = i == 1
+            said = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if first else ("", "", "", "")
+            again = any(math.isclose(x, other, rel_tol=1e-9, abs_tol=1e-9) for other in ran)
+            ran.append(x)
+            repeats |= again
+            over = f"asin({s.variable}/U)" if s.is_angle else f"{s.variable}'"
+            angles += [s.variable] if s.is_angle else []
+            sides += (
+                [f"{primed(s.symbol)}, such as {_signed(s, -x)}"] if first and s.one_sided and not s.symmetry else []
+            )
+            narrower = f"{100.0 * after / now:.1f} %" if now else ABSENT
+            at = _signed(s, x) + " again" * again
+            rows.append((*said, str(i), over, at, with_u95(s.value, after)[1], narrower))
+    headers = ("", "campaign", "value", "U95 now", "run", "over", "at", "U95 then", "of now")
+    notes = [
         "One more reading at each, one after the other, at the present noise; predicted from the present fit, before "
         "declared inputs and grid.",
+    ]
+    notes += [
+        f"asin({v}/U) is the {name} of a file with {v} = +U sin({name}); with {v} = -U sin({name}) its sign is the other."
+        for v, name in (("v", "beta"), ("w", "alpha"))
+        if v in angles
+    ]
+    notes += ["again: a repeat of a setting that was run or stands above; it narrows the scatter only."] * repeats
+    notes += (
+        [
+            f"All points lie on one side of zero. A run on the other would show the even part, which no line here counts: {'; '.join(sides)}."
+        ]
+        if sides
+        else []
     )
-    return Table("Next runs", headers, tuple(rows), notes, frozenset({0, 1, 5}))
+    return Table(
+        f"Next runs of {fit.campaign}", headers, tuple(rows), tuple(notes), frozenset({0, 1, 5}), ("campaign",)
+    )
 
 
 def left_out(sweep: Sweep) -> Table:
