@@ -227,7 +227,25 @@ def near_walls(
 def beside_walls(
     body: Body, density: float, wall: str, distances: Sequence[float], given: Mapping[str, Any] | None = None
 ) -> tuple[AddedMass, ...]:
-    """Added mass by the panel method at distances from a wall, rising; as `near_walls`."""
+    """Added mass by the panel method at distances from a wall, rising; as `near_walls`.
+
+    Parameters
+    ----------
+    body : Body
+    density : float
+        kg/m^3.
+    wall : str
+        One of those that the panel method knows, such as ``bottom``.
+    distances : sequence of float
+        From the reference point to the wall, m.
+    given : mapping, optional
+        Further options of the panel method.
+
+    Raises
+    ------
+    InputError
+        No distance, or what the panel method refuses.
+    """
     if not distances:
         raise InputError("no distance", "distances from the reference point to the wall, m", column="--distance")
     method, subject = ADDED_MASS.load("panel"), _original(body) or body
