@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.forms import Plate
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.solids import Surface
@@ -57,6 +58,8 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
         Points.
     """
     shape = body.require_shape()
+    if isinstance(shape, Parts):  # a plate without thickness encloses nothing that a mesh could show
+        shape = replace(shape, parts=tuple(p for p in shape.parts if not isinstance(p.form, Plate)))
     surface = picture_surface(shape if isinstance(shape, TriangleMesh) else meshed(shape, PANELS))
     size = np.ptp(surface[0], axis=0)
     scale = float(min((width - 2.0 * MARGIN) / size[0], TALLEST / max(size[1], size[2])))
