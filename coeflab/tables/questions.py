@@ -35,6 +35,7 @@ from coeflab.tables.settings import (
     Setting,
     Settings,
     against_words,
+    arm_by_words,
     frame_of,
     of_datum,
     point_by_words,
@@ -295,9 +296,11 @@ def _of_rotation(
         side, why, shown = centre_of(columns, frame_of(settings))
         yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
                        side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True)  # fmt: skip
+        at, later, line = arm_by_words(raw, settings) or (same, "the reference point", "")
         yield Question(
-            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "x from the datum, m", same, "the reference point",
-            "the reference point, unless said", "the reference point", grave=True,
+            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}",
+            f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
+            line or "the reference point, unless said", later, grave=True,
         )  # fmt: skip
     inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):

@@ -31,7 +31,7 @@ from coeflab.tables.campaign import (
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.words_above import POINT_FROM, POINT_OF, of_the_test
+from coeflab.tables.words_above import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF, of_the_test
 
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 _SIZES = {
@@ -335,6 +335,35 @@ def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float |
         return f"{number} L from {datum}", datum, None
     by = 1.0 if unit == "m" else quantity(length.value, "length")  # type: ignore[union-attr]
     return f"{float(number) * by:.6g} from {datum}", datum, float(f"{float(number) * by:.12g}")
+
+
+def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | None:
+    """What words over the table say of the point that R and U are measured to; None where they say nothing.
+
+    Returns
+    -------
+    default, shown : str
+        x, y, z from the datum; or what it will be once the reference point or the datum is known. Both empty where open.
+    line : str
+    """
+    said = raw.stated.get(ARM_FROM)
+    if said is None:
+        return None
+    if said.contradicted or not said.value:
+        return "", "", said.contradicted or said.place
+    number, unit, point = str(said.value).split()
+    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    if unit == "L" and (length is None or getattr(length, "contradicted", "")):
+        return "", "", said.place
+    x = float(number) * (quantity(length.value, "length") if unit == "L" and length else 1.0)  # type: ignore[arg-type]
+    known, datum = settings.get(POINT_OF), settings.get("axes.datum")
+    if point == OF_MOMENTS:
+        if known is None:
+            return "", f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of the reference point" if x else "the reference point", said.place
+        return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", said.place
+    if datum is None:
+        return "", f"{x:.12g} from {point}" if x else point, said.place
+    return (f"{x:.12g}, 0, 0" if of_datum(str(datum.value), point) else ""), "", said.place
 
 
 def of_datum(said: str, point: str) -> bool:

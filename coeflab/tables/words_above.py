@@ -76,7 +76,25 @@ _TURNS = re.compile(
     r"(?:(?:are|were|made|to|the|nach|zu|zur|à|sur|gefahren|turning)\s+)*(?P<one>starboard|stbd|port|steuerbord|backbord|tribord|b[âa]bord|right|left)(?![^\W_])"
     r"|cent(?:re|er)\s+of\s+(?:the\s+|a\s+)?(?:circle|turn\w*|rotation)\s+(?:\w+\s+){0,2}?(?:to\s+)?(?P<two>starboard|port|right|left)(?![^\W_])"
 )
+_ARM = re.compile(
+    r"(?i)(?<![^\W_])(?:(?:(?:model|body|hull|vehicle|modell|k(?:ö|oe)rper|maquette)\b[^;.\d]{0,25})?(?<![^\W_])(?:held|mounted|attached|fixed|fastened|clamped|carried|"
+    r"suspended|pivoted|befestigt|gehalten|eingespannt|aufgeh(?:ä|ae)ngt|fix[ée]e?|tenue?|attach[ée]e?)(?![^\W_]|\s+(?:ax[ei]s|frame|coord))[^;\d]{0,25}?(?<![^\W_])(?:at|in|by|bei|im|am|beim|[àa]u?|en)"
+    r"|(?:arm|pivot|attachment|towing|tow|held)[\s-]*point(?:\s+of\s+the\s+arm)?|arm\s+(?:attached|fixed|attaches)(?:\s+(?:at|to))?|point\s+of\s+the\s+arm"
+    r"|(?:R|U|radi(?:us|i)|speed)(?:\s+(?:and|und|et)\s+(?:R|U|radius|speed))?(?:\s+in\s+m)?,?\s+(?:(?:is|are|were|was)\s+)?(?:measured|taken|given|counted|those|that|gemessen|mesur[ée]e?s?)"
+    r"(?:\s+(?:from\s+the\s+cent(?:re|er)(?:\s+of\s+the\s+\w+)?\s+)?(?:to|at|of|bis|zu|[àa]|jusqu'[àa]u?))?"
+    r"|(?:drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
+)
+_OF_MOMENTS = re.compile(
+    r"(?i)(?:the\s+|le\s+|dem\s+|der\s+)?(?:(?:moments?|momenten?|reference|balance)[\s-]*(?:reference[\s-]*)?(?:point|cent(?:re|er)|bezugspunkt)|bezugspunkt"
+    r"|point\s+de\s+r[ée]f[ée]rence|m\.?r\.?[pc]\b\.?)(?:\s+of\s+the\s+moments)?"
+)
+_ARM_NAMED = re.compile(
+    r"(?i)[\s=:,]*(?:(?:the|a|its|model'?s?|is|was|are|at|to|of|in|der|dem|den|le|la|du)\s+)*(?P<point>moments?-datum|midships?|amidships?|nose|bow|stern|tail|c\.?o?\.?g\.?|c\.?o?\.?b\.?"
+    r"|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|heck)(?![^\W_])"
+)
 POINT_OF = "axes.reference_point"
+ARM_FROM = "table.arm_from"  # no key of campaign.toml: where words place the point that R and U are measured to
+OF_MOMENTS = "moments-datum"  # in its place where they count from the point of the moments
 CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
 POINTED = Marks()
@@ -338,6 +356,8 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
             where = f'{place}: "{" ".join(clause.split())}"'
             both = f"{where} says both" if len(said) == 2 else ""
             yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+    if (begun := _ARM.search(text)) and (arm := _arm_at(place, text, begun, marks)):
+        yield ARM_FROM, arm
     if m := _TURNS.search(text):
         side = _DIRECTIONS[(m["one"] or m["two"]).casefold()]
         yield "table.centre", Stated(side, f'{place}: "{" ".join(m[0].split())}"', offered=True)
@@ -348,6 +368,33 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
         text_of = f"{x:.12g} {point}" if point else ""
         yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+
+
+def _arm_at(place: str, text: str, begun: re.Match[str], marks: Marks) -> Stated | None:
+    """Where a line puts the point of the arm, as x, m or L, and the point it counts from; open where a part lacks."""
+    line = f'{place}: "{" ".join(text.split())[:160]}"'
+    rest = re.split(r"[;]|\.\s", _OF_MOMENTS.sub(OF_MOMENTS, text[begun.end() :]))[0]
+    own = OF_MOMENTS in rest
+    # `_AT` knows points of the body by name; the point of the moments takes the place of one while it reads.
+    plain = rest.replace(OF_MOMENTS, "midship")
+    m = next((m for m in _AT.finditer(plain) if (m["point"] or m["side"]) and (m["unit"] or m["share"])), None)
+    if m is None:
+        if named := _ARM_NAMED.match(rest):
+            point = OF_MOMENTS if named["point"] == OF_MOMENTS else _named_point(named["point"])
+            return Stated(f"0 m {point}", line, offered=True)
+        worded = re.search(r"(?i)\bpoint\b|punkt", begun[0] + " " + rest) or re.match(r"(?i)r\b|radi|arm", begun[0])
+        return Stated("", line, offered=True, contradicted=line) if worded else None
+    number, unit, side = _number(m["number"].replace("\u2212", "-"), marks), (m["unit"] or "").casefold(), m["side"] or ""
+    point = OF_MOMENTS if own and m["point"] == "midship" else _named_point(m["point"]) if m["point"] else ""
+    ahead = side.casefold().startswith(("f", "ah", "be", "in", "vor", "av", "dev")) and side.casefold() not in ("from", "behind")
+    sided = bool(side) and side.casefold() not in ("from", "off", "von", "vom", "ab", "du", "de", "depuis")
+    signed = m["number"][0] in "+-\u2212" or point in _ENDS
+    if number is None or not point or not (sided or signed) or _HEIGHT.search(plain[m.end() :]):
+        return Stated("", line, offered=True, contradicted=line)
+    share = bool(m["share"]) or unit.startswith(("l", "%"))
+    x = number / (100.0 if unit.startswith("%") else 1.0) if share else quantity(f"{number!r} {m['unit']}", "length")
+    x = (abs(x) if ahead else -abs(x)) if sided else _ENDS[point] * abs(x) if point in _ENDS else x
+    return Stated(f"{x:.12g} {'L' if share else 'm'} {point}", line, offered=True)
 
 
 def _holds_inertia(clause: str) -> Iterator[bool]:
