@@ -47,7 +47,7 @@ _WORDS = {
     word: field
     for field, words in {
         "beta:deg": "b beta drift driftangle sideslip yaw yawangle", "alpha:deg": "a alpha aoa attack incidence pitch pitchangle",
-        "r:rad/s": "r yawrate", "q:rad/s": "q pitchrate", "p:rad/s": "rollrate", "U:m/s": "u speed velocity", "dr:deg": "dr rudder",
+        "r:UNIT": "r yawrate", "q:UNIT": "q pitchrate", "p:UNIT": "rollrate", "U:m/s": "u speed velocity", "dr:deg": "dr rudder",
         "ds:deg": "ds sternplane",
     }.items()
     for word in words.split()
@@ -61,7 +61,9 @@ _SIGNS = {
 }
 _BEFORE = re.compile(r"(?<![A-Za-z])(?:neg|minus|pos|plus|[mnpMNP]|[-+])$")  # a sign before a number
 _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
+_RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate
 UNNAMED = "NAME:UNIT"
+UNIT_ASKED = ":UNIT"  # degrees and radians a second differ by 57: nothing but a person says which
 SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4"
 BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
@@ -208,12 +210,12 @@ def likely_patterns(names: Sequence[str]) -> tuple[str, ...]:
     """The pattern that all names of runs seem to have, or those of groups of alike names; to be confirmed.
 
     Numbers that differ, between texts that do not. What each is follows from the word before it, else it is ``{NAME:UNIT}``;
-    letters for signs and decimals are spelt as `NamePattern` takes them. Empty where a name belongs to none.
+    so is ``{r:UNIT}`` of a rate whose names do not say deg/s or rad/s; letters for signs and decimals are spelt as `NamePattern` takes them. Empty where a name belongs to none.
 
     Examples
     --------
-    >>> likely_patterns(["drift_m12", "drift_p4", "yaw_r0.1", "yaw_r0.2"])
-    ('drift_{beta:deg:m=-,p=+}', 'yaw_r{r:rad/s}')
+    >>> likely_patterns(["drift_m12", "drift_p4", "yaw_r0.1rads", "yaw_r0.2rads"])
+    ('drift_{beta:deg:m=-,p=+}', 'yaw_r{r:rad/s}rads')
     """
     texts = _texts(names)
     if whole := _likely(texts):
@@ -263,12 +265,21 @@ def _likely(texts: Sequence[str]) -> str:
             return ""  # p cannot be both + and the decimal point
         word = re.search(r"([A-Za-z]*)[^A-Za-z]*$", shared)
         field = _WORDS.get(word[1].casefold() if word else "", UNNAMED)
+        if field.endswith(UNIT_ASKED) and field != UNNAMED and (unit := _rate_unit(columns[i + 2])):
+            field = field.replace("UNIT", unit)
         field = UNNAMED if field in taken else field
         taken.add(field)
         out += shared + "{" + ":".join([field, *([",".join(spelt)] if spelt else [])]) + "}"
     if len(set(columns[-1])) != 1 or not taken:
         return ""
     return out + columns[-1][0]
+
+
+def _rate_unit(behind: Sequence[str]) -> str:
+    """The unit that every name has behind the number of a rate; empty where one has none."""
+    found = [m for text in behind if (m := _RATE_UNIT.match(text))]
+    units = {"deg/s" if m["deg"] else "rad/s" for m in found}
+    return units.pop() if len(found) == len(behind) and len(units) == 1 else ""
 
 
 class NoConditionError(InputError):
@@ -283,6 +294,8 @@ class NoConditionError(InputError):
         if UNNAMED in options:
             proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT; "
             proposed += "what is known anyway goes with it: --set axes.frame=CFD --set 'scaling.length=4.3 LOA' ..."
+        elif UNIT_ASKED in options:
+            proposed = f" If this is what they mean: {options}, with deg/s or rad/s for UNIT: no name says it, and they differ by 57."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",

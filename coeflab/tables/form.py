@@ -17,7 +17,7 @@ from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Doubt, Question, Understood, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_settings
+from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_in, require_one_datum
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
@@ -336,9 +336,9 @@ def _take(
     elif "." not in key:
         raise _no_key(key, lines)
     else:
-        table, slash, plain = key.rpartition("/")
-        read = read_settings(plain, said).items()
-        out.settings |= {f"{table}{slash}{k}": Setting(value, "confirmed") for k, value in read}
+        read = read_in(key, said)
+        require_one_datum(out.settings, read)
+        out.settings |= {k: Setting(value, "confirmed") for k, value in read.items()}
 
 
 def _column(raw: RawTable, column: RawColumn, said: str) -> ColumnMap:

@@ -384,9 +384,16 @@ def _arm_at(place: str, text: str, begun: re.Match[str], marks: Marks) -> Stated
             return Stated(f"0 m {point}", line, offered=True)
         worded = re.search(r"(?i)\bpoint\b|punkt", begun[0] + " " + rest) or re.match(r"(?i)r\b|radi|arm", begun[0])
         return Stated("", line, offered=True, contradicted=line) if worded else None
-    number, unit, side = _number(m["number"].replace("\u2212", "-"), marks), (m["unit"] or "").casefold(), m["side"] or ""
+    number, unit, side = (
+        _number(m["number"].replace("\u2212", "-"), marks),
+        (m["unit"] or "").casefold(),
+        m["side"] or "",
+    )
     point = OF_MOMENTS if own and m["point"] == "midship" else _named_point(m["point"]) if m["point"] else ""
-    ahead = side.casefold().startswith(("f", "ah", "be", "in", "vor", "av", "dev")) and side.casefold() not in ("from", "behind")
+    ahead = side.casefold().startswith(("f", "ah", "be", "in", "vor", "av", "dev")) and side.casefold() not in (
+        "from",
+        "behind",
+    )
     sided = bool(side) and side.casefold() not in ("from", "off", "von", "vom", "ab", "du", "de", "depuis")
     signed = m["number"][0] in "+-\u2212" or point in _ENDS
     if number is None or not point or not (sided or signed) or _HEIGHT.search(plain[m.end() :]):

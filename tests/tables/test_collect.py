@@ -407,7 +407,7 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("names", "pattern"), [
-    ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:rad/s}"),
+    ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:UNIT}"),
     ("bm4p5 b4 b0", "b{beta:deg:m=-,p=.}"), ("all/aoa_n2.csv all/aoa_2.csv", "aoa_{alpha:deg:n=-}"), ("run7_b4 run7_b8", "run7_b{beta:deg}"),
     ("case1 case2", "case{NAME:UNIT}"), ("b4_b8 b6_b8 b6_b9", "b{beta:deg}_b{NAME:UNIT}"), ("fine_4 coarse_4", ""), ("b4", ""), ("x y", ""),
     ("bp4p5 bm4", ""),

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
 from coeflab.tables.form import form
@@ -16,7 +17,7 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import Setting, against_words
+from coeflab.tables.settings import Setting, against_words, read_in, require_one_datum
 from coeflab.tables.words_above import POINT_FROM, water_density, words_above
 
 
@@ -255,3 +256,55 @@ def test_left_handed_axes_are_named() -> None:
     assert one.open
     assert "line 2 is left-handed: x forward, y starboard, z up" in one.choices
     assert asked(said("x vorn, y Steuerbord, z unten"))["axes.frame"].default == "FRD"
+
+
+def arm_asked(*lines: str, **settings: object) -> Question:
+    """What is asked of the point of the arm over a table with radii."""
+    raw = RawTable(Path("t.csv"), (), stated=said(*lines))
+    arm = [Assigned(RawColumn("R", "m", np.array([10.0, -10.0])), read_column_map("R [m]"))]
+    known = {key.replace("__", "."): Setting(value, "confirmed") for key, value in settings.items()}
+    return next(q for q in questions(raw, arm, known) if q.key == "table.arm_point")
+
+
+@pytest.mark.parametrize(
+    ("line", "x"),
+    [
+        (
+            "Model held on the arm at a point 2.75 m aft of the nose, which runs on R; R positive: centre to starboard",
+            -2.75,
+        ),
+        ("R measured to a point 275 cm aft of the bow", -2.75),
+        ("Modell am Arm befestigt bei 2,75 m hinter dem Bug", -2.75),
+        ("Arm point 0.40 m aft of the moment point", -2.35 - 0.40),
+        ("U and R are those of the reference point", -2.35),
+    ],
+)
+def test_words_on_the_point_of_the_arm_are_quoted_and_proposed(line: str, x: float) -> None:
+    """The reference point in its place moves Yr' by the arm between them times Yv'."""
+    one = arm_asked(line, axes__datum="nose", axes__reference_point=[-2.35, 0.0, 0.0])
+    assert [float(part) for part in one.default.split(",")] == pytest.approx([x, 0.0, 0.0])
+    assert "line 1" in one.short
+    assert not arm_asked(line).open
+
+
+@pytest.mark.parametrize("line", ["R is measured to the strut", "Arm attached at the balance", "Arm point 0.4 m aft",
+                                  "Arm point 2.75 m aft of the nose and 0.2 m below the axis"])  # fmt: skip
+def test_words_on_the_point_of_the_arm_without_number_or_datum_leave_it_open(line: str) -> None:
+    one = arm_asked(line, axes__datum="nose", axes__reference_point=[-2.35, 0.0, 0.0])
+    assert one.open
+    assert f'line 1: "{line}"' in one.choices
+
+
+@pytest.mark.parametrize("line", ["Rudders fixed at 5 deg", "Model held at a constant speed of 3 m/s", "Body fixed axes at midship",
+                                  "Moments about a point 2.35 m aft of the nose", "Model fixed in heave and pitch"])  # fmt: skip
+def test_other_words_leave_the_point_of_the_arm_to_its_default(line: str) -> None:
+    assert arm_asked(line).shown == "the reference point"
+
+
+def test_a_point_of_the_arm_from_a_named_point() -> None:
+    assert read_in("Arm/table.arm_point", "-2.75 from nose") == {
+        "Arm/table.arm_point": [-2.75, 0.0, 0.0],
+        "axes.datum": "nose",
+    }
+    with pytest.raises(InputError, match="midship"):
+        require_one_datum({"axes.datum": Setting("nose", "confirmed")}, read_in("table.arm_point", "-0.1 from midship"))

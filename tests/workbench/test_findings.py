@@ -214,6 +214,21 @@ def test_slopes_of_a_size_that_no_body_has_are_warned_of() -> None:
     )
 
 
+def test_a_turn_within_the_length_of_the_body_is_warned_of() -> None:
+    """Degrees a second as radians."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+    r = 1.1 * table.speed / table.scaling.length * np.linspace(-1.0, 1.0, len(table))
+
+    def found(rate: np.ndarray) -> list[str]:
+        turning = replace(table, motion={**table.motion, "r": rate})
+        return [f"{c.subject}; {c.statistic}; {c.comment}" for c in sizes.check(replace(own, tables=(turning,)))]
+
+    assert not found(r)
+    (text,) = found(57.3 * r)
+    assert "r'; largest |r'| = 63: a circle of 0.016 lengths in radius; Is r in deg/s declared as rad/s" in text
+
+
 @pytest.mark.parametrize("campaign", ["tank_spheroid", "thauv_case_03_synthetic", "flyingfish_water_synthetic"])
 def test_shipped_campaigns_have_sizes_of_bodies(campaign: str) -> None:
     fit = "manoeuvring_model" if campaign.startswith("flyingfish") else "slope_at_origin"
