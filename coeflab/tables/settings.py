@@ -378,9 +378,12 @@ def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | No
         return "", "", said.contradicted or said.place
     number, unit, point = str(said.value).split()
     length = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    if unit == "L" and (length is None or getattr(length, "contradicted", "")):
-        return "", "", said.place
-    x = float(number) * (quantity(length.value, "length") if unit == "L" and length else 1.0)  # type: ignore[arg-type]
+    by = 1.0
+    if unit == "L":
+        if length is None or (not isinstance(length, Setting) and length.contradicted):
+            return "", "", said.place
+        by = quantity(length.value, "length")
+    x = float(number) * by
     known, datum = settings.get(POINT_OF), settings.get("axes.datum")
     if point == OF_MOMENTS:
         if known is None:
