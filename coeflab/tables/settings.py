@@ -334,7 +334,7 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             same = x is None or datum is None or not of_datum(str(datum.value), point) or abs(one.value[0] - x) <= near
         elif key == "table.centre":
             same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
-        elif key == "table.contains_inertia":
+        elif key in ("table.contains_inertia", "axes.alpha", "axes.beta"):
             same = one.value == words.value
         else:
             continue

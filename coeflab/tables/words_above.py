@@ -84,6 +84,15 @@ _ARM = re.compile(
     r"(?:\s+(?:from\s+the\s+cent(?:re|er)(?:\s+of\s+the\s+\w+)?\s+)?(?:to|at|of|bis|zu|[àa]|jusqu'[àa]u?))?"
     r"|(?:drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
 )
+_SIGNED = {
+    "axes.beta": (r"(?:drift|sideslip|yaw[\s-]*angle|drift\w*winkel|schiebewinkel|gierwinkel|angle\s+de\s+d[ée]rive)\w*|beta|β", r"starboard|stbd?|right|steuerbord|tribord",
+                  r"port|left|backbord|b[âa]bord", "v = {}U sin(beta)"),
+    "axes.alpha": (r"(?:angle\s+of\s+(?:attack|incidence)|incidence|pitch(?:\s+angle)?|trim(?:\s+angle)?|anstellwinkel|trimmwinkel|nickwinkel|angle\s+d'attaque)|alpha|α",
+                   r"down(?:wards?)?|lowered|unten|bas|tief", r"up(?:wards?)?|raised|oben|hoch|haut", "w = {}U sin(alpha)"),
+}  # fmt: skip
+_RATE = r"(?-i:r)'?|yaw(?:ing)?\s+rate|rate\s+of\s+turn|turn(?:ing)?\s+rate|drehrate|drehgeschwindigkeit|giergeschwindigkeit|gierrate|vitesse\s+de\s+lacet"
+_BOW = r"(?:bow|nose|bug|nase|proue|nez)"
+_FLOW = r"(?:flow|water|stream|anstr(?:ö|oe)mung|[ée]coulement)(?:\s+(?:comes?|coming|kommt|vient|is))*\s+(?:from|von|de|du)"
 _OF_MOMENTS = re.compile(
     r"(?i)(?:the\s+|le\s+|dem\s+|der\s+)?(?:(?:moments?|momenten?|reference|balance)[\s-]*(?:reference[\s-]*)?(?:point|cent(?:re|er)|bezugspunkt)|bezugspunkt"
     r"|point\s+de\s+r[ée]f[ée]rence|m\.?r\.?[pc]\b\.?)(?:\s+of\s+the\s+moments)?"
@@ -98,6 +107,7 @@ OF_MOMENTS = "moments-datum"  # in its place where they count from the point of 
 CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
 POINTED = Marks()
+TURN_OF_R = "columns.r"  # no key of campaign.toml: the side to which words say that a positive r turns
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
 _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
@@ -356,6 +366,7 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
             where = f'{place}: "{" ".join(clause.split())}"'
             both = f"{where} says both" if len(said) == 2 else ""
             yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+    yield from _signs(place, text)
     if (begun := _ARM.search(text)) and (arm := _arm_at(place, text, begun, marks)):
         yield ARM_FROM, arm
     if m := _TURNS.search(text):
@@ -368,6 +379,39 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
         text_of = f"{x:.12g} {point}" if point else ""
         yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+
+
+def _signs(place: str, text: str) -> Iterator[tuple[str, Stated]]:
+    """What a line says of the sign of an angle or of r: "positive with the bow to port", "r positiv nach Backbord drehend"."""
+    for clause in re.split(r";|,\s|\.\s", text):
+        signs = {m[1].casefold() for m in re.finditer(r"(?i)(?<![^\W_])(positi|negati)[vf]", clause)}
+        if len(signs) != 1:
+            continue
+        where, turned = f'{place}: "{" ".join(clause.split())}"', "negati" in signs
+        for key, (names, one, other, formula) in _SIGNED.items():
+            if not re.search(rf"(?i)(?<![^\W_])(?:{names})(?![^\W_])", clause):
+                continue
+            side = re.search(
+                rf"(?i)(?<![^\W_])(?:{_BOW}|(?P<flow>{_FLOW}))(?![^\W_])\W*(?:\w+\s+){{0,3}}?(?:(?P<one>{one})|(?P<other>{other}))(?![^\W_])",
+                clause,
+            )
+            if side:
+                # With the bow to starboard of the course the body moves to its port side, and the flow comes from there.
+                minus = (bool(side["one"]) != turned) != bool(side["flow"])
+                yield key, Stated(formula.format("-" if minus else "+"), where, offered=True)
+        sides = {
+            bool(m["one"])
+            for m in re.finditer(
+                rf"(?i)(?<![^\W_])(?:(?P<one>{_SIGNED['axes.beta'][1]})|{_SIGNED['axes.beta'][2]})(?![^\W_])", clause
+            )
+        }
+        rate = re.search(rf"(?i)(?<![^\W_])(?:{_RATE})(?![^\W_'])", clause)
+        if (
+            rate
+            and len(sides) == 1
+            and not re.search(rf"(?i)cent(?:re|er)|mittelpunkt|kreis|{_SIGNED['axes.beta'][0]}", clause)
+        ):
+            yield TURN_OF_R, Stated("starboard" if sides.pop() != turned else "port", where, offered=True)
 
 
 def _arm_at(place: str, text: str, begun: re.Match[str], marks: Marks) -> Stated | None:

@@ -18,7 +18,7 @@ from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, against_words, read_in, require_one_datum
-from coeflab.tables.words_above import POINT_FROM, water_density, words_above
+from coeflab.tables.words_above import POINT_FROM, TURN_OF_R, water_density, words_above
 
 
 def said(*lines: str, marks: Marks | None = None) -> dict[str, Stated]:
@@ -308,3 +308,54 @@ def test_a_point_of_the_arm_from_a_named_point() -> None:
     }
     with pytest.raises(InputError, match="midship"):
         require_one_datum({"axes.datum": Setting("nose", "confirmed")}, read_in("table.arm_point", "-0.1 from midship"))
+
+
+@pytest.mark.parametrize(
+    ("line", "key", "value"),
+    [
+        ("Drift angle positive with the bow to port of the course", "axes.beta", "v = +U sin(beta)"),
+        ("Drift angle positive with the bow to starboard of the course", "axes.beta", "v = -U sin(beta)"),
+        ("Driftwinkel positiv: Bug nach Backbord", "axes.beta", "v = +U sin(beta)"),
+        ("beta negative with the bow to port", "axes.beta", "v = -U sin(beta)"),
+        ("sideslip positive with the flow from starboard", "axes.beta", "v = +U sin(beta)"),
+        ("Angle of attack positive with the bow down", "axes.alpha", "w = -U sin(alpha)"),
+        ("Anstellwinkel positiv, Bug oben; Anstellwinkel positiv mit Bug nach oben", "axes.alpha", "w = +U sin(alpha)"),
+        ("r positiv nach Backbord drehend", TURN_OF_R, "port"),
+        ("yaw rate positive to starboard", TURN_OF_R, "starboard"),
+    ],
+)
+def test_words_on_the_sign_of_an_angle_or_a_rate(line: str, key: str, value: str) -> None:
+    found = said(line)
+    assert found[key].value == value
+    assert "line 1" in found[key].place
+
+
+@pytest.mark.parametrize("line", ["R positive: centre of the circle to starboard", "Y positive to starboard, N positive bow to starboard",
+                                  "Drift angle positive to starboard", "drift angle from -10 to 10 deg, bow to port"])  # fmt: skip
+def test_other_words_say_no_sign_of_an_angle(line: str) -> None:
+    assert not {"axes.alpha", "axes.beta", TURN_OF_R} & set(said(line))
+
+
+def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
+    b, y = np.array([-8.0, -4.0, 0.0, 4.0, 8.0]), np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+
+    def asked_of(line: str, rate: str = "") -> tuple[dict[str, Question], list[str]]:
+        columns = [RawColumn("beta", "deg", b), RawColumn("Y", "N", y)]
+        columns += [
+            RawColumn("r", "deg/s", b[::-1] * 0 + np.array([1.0, 2, 0, 1, 2])),
+            RawColumn("N", "N*m", -b),
+        ] * bool(rate)
+        raw = RawTable(Path("t.csv"), tuple(columns), np.arange(5), stated=said(*filter(None, (line, rate))))
+        found = understood(raw, {}, {"axes.frame": Setting("FRD", "confirmed")}, accept=True)
+        return {q.key: q for q in found.questions}, [d.why for d in found.doubts]
+
+    beta = asked_of("Drift angle positive with the bow to starboard of the course")[0]["axes.beta"]
+    assert beta.default == "v = -U sin(beta)", "Y and beta have the same sign, as the words say"
+    beta = asked_of("Drift angle positive with the bow to port of the course")[0]["axes.beta"]
+    assert beta.open
+    assert "bow to port" in beta.choices
+    assert "but v = -U sin(beta)" in beta.choices
+    assert not any("by the axes" in why for why in asked_of("", "r positive turning to starboard")[1])
+    assert any(
+        "by the axes r > 0 turns the bow to starboard" in why for why in asked_of("", "r positive turning to port")[1]
+    )
