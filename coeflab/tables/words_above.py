@@ -18,7 +18,7 @@ _NAMES = {
     "conditions.speed": "v u vm vs speed velocity towingspeed carriagespeed modelspeed uinf vinf geschwindigkeit vitesse "
     "schleppgeschwindigkeit modellgeschwindigkeit",
     "conditions.density": "rho ρ density waterdensity dichte wasserdichte densite massevolumique",
-    "scaling.length": "l lpp lbp loa lwl los length modellength lange laenge modelllange modelllaenge longueur",
+    "scaling.length": "l lpp lbp loa lwl los lua luea length modellength lange laenge modelllange modelllaenge longueur",
     "coefficients.area": "a s aref sref referencearea area flache flaeche bezugsflache bezugsflaeche surface",
     "coefficients.length": "lref cref referencelength referencechord chord bezugslange bezugslaenge",
     "inertia.mass": "m mass masse modelmass modellmasse",
@@ -47,9 +47,16 @@ _SIZES = {
          r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
         ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
          r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+        ("conditions.speed", r"(?:(?:carriage|towing|tow|model|test|ship|vehicle|water)\s+)?speed(?!\s+(?:above|below|over|under|up|range|from))"
+         r"|(?:schlepp|modell|wagen|fahr)geschwindigkeit|vitesse\s+de\s+(?:remorquage|traction)", "m/s|kn|km/h"),
         ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
     )
 }  # fmt: skip
+_ANOTHER_SPEED = re.compile(r"(?i)(?:wind|shaft|sound|propeller|rotor|tip|angular|rotation\w*|air|turn\w*)\s+$")
+_SEVERAL = re.compile(r"(?i)\s*(?:,|/|and|und|et|to|bis|or|oder)\s*\d[\d.,]*\s*(?:m/s|kn|km/h)?")
+_BY_VOLUME = re.compile(
+    r"(?i)(?<![^\W_])(?:V|∇|vol(?:umen?|ume)?|displacement|verdr(?:ä|ae)ngung)\s*(?:\^|\*\*|hoch)?\s*[({]?\s*[12]\s*/\s*3|∇\s*⅔|V⅔"
+)
 _OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
 _ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
 _INERTIA = re.compile(
@@ -377,8 +384,10 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         ahead = -1.0 if (m["side"] or "").casefold() == "behind" else ahead
         x = ahead * quantity(f"{size!r} {m['unit']}", "length")
         point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
-        text_of = f"{x:.12g} {point}" if point else ""
-        yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+        yield (
+            CENTRE_FROM,
+            Stated(f"{x:.12g} {point}" if point else "", f'{place}: "{" ".join(m[0].split())}"', offered=True),
+        )
 
 
 def _signs(place: str, text: str) -> Iterator[tuple[str, Stated]]:
@@ -507,11 +516,12 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
     """Key, name, number in SI and words of what a text states with a sign, and of lengths that it states without one."""
     lengths = [(key, m) for key, words in _SIZES.items() for m in words.finditer(text)]
     for key, m in lengths:
+        if key == "conditions.speed" and (_ANOTHER_SPEED.search(text[: m.start()]) or _SEVERAL.match(text[m.end() :])):
+            continue
         if size := _in_si(m["number"], m["unit"], key, marks):
             short = folded(m["name"])
-            name = (
-                short if short in _LENGTHS else "loa" if key == "scaling.length" and _OVERALL.search(m["name"]) else ""
-            )
+            overall = key == "scaling.length" and _OVERALL.search(m["name"])
+            name = short if short in _LENGTHS else "loa" if overall else ""
             yield key, name, size, m[0]
     spans = [m.span() for _, m in lengths]
     for m in _SAID.finditer(text):
@@ -522,7 +532,7 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
         if not name or begun or (not unit and len(name) == 1):
             continue
         if size := _in_si(m["number"], unit, _KEYS[name], marks):
-            yield _KEYS[name], name, size, m[0]
+            yield _KEYS[name], "loa" if name in ("lua", "luea") else name, size, m[0]
 
 
 def _in_si(number: str, unit: str, key: str, marks: Marks) -> float:
@@ -559,10 +569,12 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         letter without a unit that fits is left out. `BODY_AXES` where the words say that forces count along the body.
     """
     rows = list(rows)
-    found: dict[str, Stated] = {}
+    found, volume = dict[str, Stated](), ""
     for line, cells in rows:
         if (whole := " ".join(c for c in cells if c)[:LONGEST]) and (body := _BODY.search(whole)):
             found.setdefault(BODY_AXES, Stated("body", f'line {line}: "{_around(whole, body)}"', offered=True))
+        if m := _BY_VOLUME.search(whole):
+            volume = f'line {line}: "{_near(whole, *m.span())}"'
         for key, name, size, part in (
             one for t in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)) for one in _sizes(t, marks)
         ):
@@ -576,6 +588,10 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     if "scaling.length" not in found and (by := found.get("coefficients.length")) and (m := _ACROSS.search(by.place)):
         against = f"{by.place} is a {m[0]}, perhaps not the body's length"
         found["scaling.length"] = replace(by, contradicted=against)
+    if volume:
+        against = f"{volume} speaks of primes by the volume V: for these the length is V^(1/3)"
+        length = found.get("scaling.length", Stated("", volume, offered=True))
+        found["scaling.length"] = replace(length, contradicted=against)
     told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)

@@ -359,3 +359,36 @@ def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
     assert any(
         "by the axes r > 0 turns the bow to starboard" in why for why in asked_of("", "r positive turning to port")[1]
     )
+
+
+@pytest.mark.parametrize(
+    ("line", "speed"),
+    [
+        ("LOA = 5.2 m, fresh water 17 °C, carriage speed 3.0 m/s", 3.0),
+        ("towing speed 3 m/s", 3.0),
+        ("speed 5.83 kn", 5.83 * 1852 / 3600),
+        ("Schleppgeschwindigkeit 3,0 m/s", 3.0),
+        ("at a speed of 10.8 km/h", 3.0),
+    ],
+)
+def test_a_speed_in_words_without_a_sign(line: str, speed: float) -> None:
+    assert said(line)["conditions.speed"].value == pytest.approx(speed)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["wind speed 3 m/s", "speed 2 m/s and 3 m/s", "speeds 2 to 3 m/s", "speed above 3 m/s", "speed of sound 1480 m/s"],
+)
+def test_other_speeds_are_not_taken(line: str) -> None:
+    assert "conditions.speed" not in said(line)
+
+
+def test_a_german_overall_length_and_primes_by_the_volume() -> None:
+    found = said("Lüa = 2,30 m; Momentenbezugspunkt 1,05 m hinter dem Bug", marks=Marks(",", "."))
+    assert found["scaling.length"].value == pytest.approx(2.3)
+    assert found["scaling.length_name"].value == "LOA"
+    for words in ("forces by 1/2 rho U^2 V^(2/3)", "Volumen^2/3", "∇^{2/3}"):
+        one = asked(said("LOA = 2.3 m", words))["scaling.length"]
+        assert one.open
+        assert "line 2" in one.choices
+        assert "V^(1/3)" in one.choices
