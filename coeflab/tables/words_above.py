@@ -371,8 +371,7 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         said = set(_holds_inertia(clause))
         if said:
             where = f'{place}: "{" ".join(clause.split())}"'
-            both = f"{where} says both" if len(said) == 2 else ""
-            yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+            yield "table.contains_inertia", Stated(True in said, where, True, f"{where} says both" * (len(said) == 2))
     yield from _signs(place, text)
     if (begun := _ARM.search(text)) and (arm := _arm_at(place, text, begun, marks)):
         yield ARM_FROM, arm
@@ -428,7 +427,6 @@ def _arm_at(place: str, text: str, begun: re.Match[str], marks: Marks) -> Stated
     line = f'{place}: "{" ".join(text.split())[:160]}"'
     rest = re.split(r"[;]|\.\s", _OF_MOMENTS.sub(OF_MOMENTS, text[begun.end() :]))[0]
     own = OF_MOMENTS in rest
-    # `_AT` knows points of the body by name; the point of the moments takes the place of one while it reads.
     plain = rest.replace(OF_MOMENTS, "midship")
     m = next((m for m in _AT.finditer(plain) if (m["point"] or m["side"]) and (m["unit"] or m["share"])), None)
     if m is None:
