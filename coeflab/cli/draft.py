@@ -163,6 +163,8 @@ class Draft:
         """
         from coeflab.core.errors import together
         from coeflab.tables.parts import complaints_of, require_parts, understood_together
+        from coeflab.tables.settings import require_one_datum
+        from coeflab.tables.words_above import POINT_OF
 
         if said.options:
             before, chosen = dict(self.said.options), self.chosen
@@ -174,6 +176,8 @@ class Draft:
                 self.said.options, self.chosen = before, chosen
                 raise
         require_parts(said.settings, self.parts)
+        if POINT_OF not in said.settings:
+            require_one_datum(self.settings, {k: one.value for k, one in said.settings.items()})
         columns, settings = self.said.columns | said.columns, self.said.settings | said.settings
         founds = understood_together(self.parts, columns, self.settings | said.settings)
         if complaints := complaints_of(founds):
@@ -307,8 +311,7 @@ def print_list(title: str, texts: Sequence[str]) -> None:
 def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.parts import read_in
-    from coeflab.tables.settings import Setting, saved_mapping
+    from coeflab.tables.settings import Setting, read_in, require_one_datum, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -324,7 +327,9 @@ def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequ
             complaints.append(InputError(shown(text), "KEY=VALUE, such as axes.frame=CFD", column="--set"))
             continue
         try:
-            out.settings |= {k: Setting(v, "confirmed") for k, v in read_in(key.strip(), said.strip()).items()}
+            read = read_in(key.strip(), said.strip())
+            require_one_datum(out.settings, read)
+            out.settings |= {k: Setting(v, "confirmed") for k, v in read.items()}
         except InputError as why:
             complaints.append(why)
     try:

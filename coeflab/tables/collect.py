@@ -22,16 +22,13 @@ from coeflab.tables.conditions import (
     SETTINGS,
     Condition,
     NamePattern,
-    RunList,
-    joined,
     name_pattern,
     named,
     of_files,
-    read_run_list,
-    required,
 )
 from coeflab.tables.histories import ORDER, Convergence
 from coeflab.tables.raw_table import NO_FORCES, RawColumn, RawTable, Stated
+from coeflab.tables.run_list import RunList, joined, read_run_list, required
 from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size

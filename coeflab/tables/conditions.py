@@ -1,25 +1,18 @@
-"""The condition of every run: what its files state, what a list of runs says, what its name says; never guessed.
-
-Each value keeps its origin. Where two origins contradict each other, both are named and nothing is taken.
-"""
+"""The condition of every run: what its files state and what its name says; never guessed, each value with its origin."""
 
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import takewhile
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
-from coeflab.core.errors import InputError, UnitsError, shown, together
-from coeflab.core.text.delimited import read_cells
-from coeflab.core.text.toml import read_toml
+from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.types import brief
-from coeflab.core.units import SI, Header, factor
+from coeflab.core.units import SI, factor
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
 from coeflab.tables.raw_table import Stated
@@ -32,22 +25,19 @@ DIMENSIONS = {
     **{f"{m}'": "none" for m in MOTIONS},
 }
 SETTINGS = tuple(DIMENSIONS)
+COUNTED = ("cells", "y_plus")  # numbers of a run that are no settings
 TEXT = "text"
-RUN = "run"
-# Angles that files hold as a vector of six digits, and rates in other units, differ in their last digits.
-CLOSE, CLOSE_ANGLE = 1e-3, 1e-4
 MOST_NAMED = 10
 _FIELD = re.compile(r"\{([^{}]*)\}")
 _SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
 _SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
-_QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
-_EXTENSION = re.compile(r"\.[A-Za-z]\w*$")
+EXTENSION = re.compile(r"\.[A-Za-z]\w*$")
 # What a number in a name may be, by the word before it; a person confirms it.
 _WORDS = {
     word: field
     for field, words in {
         "beta:deg": "b beta drift driftangle sideslip yaw yawangle", "alpha:deg": "a alpha aoa attack incidence pitch pitchangle",
-        "r:rad/s": "r yawrate", "q:rad/s": "q pitchrate", "p:rad/s": "rollrate", "U:m/s": "u speed velocity", "dr:deg": "dr rudder",
+        "r:UNIT": "r yawrate", "q:UNIT": "q pitchrate", "p:UNIT": "rollrate", "U:m/s": "u speed velocity", "dr:deg": "dr rudder",
         "ds:deg": "ds sternplane",
     }.items()
     for word in words.split()
@@ -61,7 +51,9 @@ _SIGNS = {
 }
 _BEFORE = re.compile(r"(?<![A-Za-z])(?:neg|minus|pos|plus|[mnpMNP]|[-+])$")  # a sign before a number
 _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
+_RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate
 UNNAMED = "NAME:UNIT"
+UNIT_ASKED = ":UNIT"  # degrees and radians a second differ by 57: nothing but a person says which
 SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4"
 BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
@@ -94,7 +86,8 @@ class Condition:
         return f"{number} ({', '.join(self.origins)})"
 
 
-def _number(written: float, unit: str, name: str, origin: str) -> Condition:
+def condition_of(written: float, unit: str, name: str, origin: str) -> Condition:
+    """A number of a setting as its origin writes it."""
     dimension = DIMENSIONS.get(name)
     value = written * (factor(unit, dimension) if dimension else 1.0)
     return Condition(value, written, unit, (origin,))
@@ -152,7 +145,7 @@ class NamePattern:
             if f.unit == TEXT:
                 out[f.name] = Condition(text, np.nan, "", (origin,))
             else:
-                out[f.name] = _number(_spelt(text, f), f.unit, f.name, origin)
+                out[f.name] = condition_of(_spelt(text, f), f.unit, f.name, origin)
         return out
 
 
@@ -208,12 +201,12 @@ def likely_patterns(names: Sequence[str]) -> tuple[str, ...]:
     """The pattern that all names of runs seem to have, or those of groups of alike names; to be confirmed.
 
     Numbers that differ, between texts that do not. What each is follows from the word before it, else it is ``{NAME:UNIT}``;
-    letters for signs and decimals are spelt as `NamePattern` takes them. Empty where a name belongs to none.
+    so is ``{r:UNIT}`` of a rate whose names do not say deg/s or rad/s; letters for signs and decimals are spelt as `NamePattern` takes them. Empty where a name belongs to none.
 
     Examples
     --------
-    >>> likely_patterns(["drift_m12", "drift_p4", "yaw_r0.1", "yaw_r0.2"])
-    ('drift_{beta:deg:m=-,p=+}', 'yaw_r{r:rad/s}')
+    >>> likely_patterns(["drift_m12", "drift_p4", "yaw_r0.1rads", "yaw_r0.2rads"])
+    ('drift_{beta:deg:m=-,p=+}', 'yaw_r{r:rad/s}rads')
     """
     texts = _texts(names)
     if whole := _likely(texts):
@@ -237,7 +230,7 @@ def _texts(names: Sequence[str]) -> list[str]:
     """The last parts of names where they differ, else whole, without an extension that all share."""
     lasts = [name.rpartition("/")[2] for name in names]
     texts = lasts if len(set(lasts)) == len(lasts) else list(names)
-    ends = {found[0] if (found := _EXTENSION.search(text)) else "" for text in texts}
+    ends = {found[0] if (found := EXTENSION.search(text)) else "" for text in texts}
     return [text.removesuffix(next(iter(ends))) for text in texts] if len(ends) == 1 else texts
 
 
@@ -263,12 +256,21 @@ def _likely(texts: Sequence[str]) -> str:
             return ""  # p cannot be both + and the decimal point
         word = re.search(r"([A-Za-z]*)[^A-Za-z]*$", shared)
         field = _WORDS.get(word[1].casefold() if word else "", UNNAMED)
+        if field.endswith(UNIT_ASKED) and field != UNNAMED and (unit := _rate_unit(columns[i + 2])):
+            field = field.replace("UNIT", unit)
         field = UNNAMED if field in taken else field
         taken.add(field)
         out += shared + "{" + ":".join([field, *([",".join(spelt)] if spelt else [])]) + "}"
     if len(set(columns[-1])) != 1 or not taken:
         return ""
     return out + columns[-1][0]
+
+
+def _rate_unit(behind: Sequence[str]) -> str:
+    """The unit that every name has behind the number of a rate; empty where one has none."""
+    found = [m for text in behind if (m := _RATE_UNIT.match(text))]
+    units = {"deg/s" if m["deg"] else "rad/s" for m in found}
+    return units.pop() if len(found) == len(behind) and len(units) == 1 else ""
 
 
 class NoConditionError(InputError):
@@ -283,6 +285,8 @@ class NoConditionError(InputError):
         if UNNAMED in options:
             proposed = f" If their numbers are a setting: {options}, with NAME beta, alpha, r, U ... and its UNIT; "
             proposed += "what is known anyway goes with it: --set axes.frame=CFD --set 'scaling.length=4.3 LOA' ..."
+        elif UNIT_ASKED in options:
+            proposed = f" If this is what they mean: {options}, with deg/s or rad/s for UNIT: no name says it, and they differ by 57."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",
@@ -303,7 +307,7 @@ def _field(text: str, fail: Callable[..., InputError]) -> _Field:
         if not name or spelling:
             raise fail(f"{{{text}}}", "{NAME:text}")
         return _Field(name, TEXT, {}, 1.0)
-    if name not in DIMENSIONS and name not in ("cells", "y_plus"):
+    if name not in DIMENSIONS and name not in COUNTED:
         raise fail(shown(name), f"one of {', '.join(SETTINGS)}, cells, y_plus", f"For a label: {{{name}:text}}.")
     try:
         factor(unit, DIMENSIONS.get(name, "none"))
@@ -329,147 +333,6 @@ def _number_expression(f: _Field) -> str:
     return f"((?:{sign})?(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{points})[0-9]+))"
 
 
-@brief
-@dataclass(frozen=True, slots=True)
-class RunList:
-    """A list of runs that a person wrote.
-
-    Attributes
-    ----------
-    path : Path
-    runs : mapping of str to mapping of str to Condition
-        By the name of the run, in the order of the file.
-    """
-
-    path: Path
-    runs: Mapping[str, Mapping[str, Condition]]
-
-    def matches(self, runs: Sequence[str]) -> dict[str, str]:
-        """By run the name in the list that means it: its path, its last part, that without its extension or a common end.
-
-        Without its extension, and without what all runs end in behind ``_``, ``-`` or ``.``, a name counts where it means
-        one run alone.
-
-        Raises
-        ------
-        InputError
-            No name of the list is a run.
-        """
-        lasts = {run: run.rpartition("/")[2] for run in runs}
-        out = {run: n for run, last in lasts.items() for n in (last, run) if n in self.runs}
-        stems = {run: _EXTENSION.sub("", last) for run, last in lasts.items()}
-        for shorter in (stems, _without_common_end(stems)):
-            times, taken = Counter(shorter.values()), set(out.values())
-            out |= {
-                run: name
-                for run, name in shorter.items()
-                if run not in out and name in self.runs and name not in taken and times[name] == 1
-            }
-        if not out and self.runs and runs:
-            raise InputError(
-                f"none of its {len(self.runs)} names is a run" if len(self.runs) > 1 else f"{next(iter(self.runs))}, which is no run",
-                f"names of runs: {named(runs)}", file=self.path,
-            )  # fmt: skip
-        return out
-
-
-def _without_common_end(names: Mapping[str, str]) -> dict[str, str]:
-    """Names without what all of them end in, from a ``_``, ``-`` or ``.`` on."""
-    backwards = zip(*(reversed(name) for name in names.values()), strict=False)
-    alike = "".join(letters[0] for letters in takewhile(lambda letters: len(set(letters)) == 1, backwards))
-    end = alike[::-1] if len(names) > 1 else ""
-    match = re.search(r"[-_.]", end)
-    return {key: name.removesuffix(end[match.start() :]) for key, name in names.items()} if match else {}
-
-
-def read_run_list(path: Path) -> RunList:
-    """A list of runs: CSV with a column ``run`` and units in the headers, or TOML with ``[runs.NAME]`` and texts with units.
-
-    Raises
-    ------
-    InputError
-        No column ``run``, a run twice, a setting without its unit, a number that is none.
-    """
-    return _toml_list(path) if path.suffix.lower() == ".toml" else _csv_list(path)
-
-
-def _csv_list(path: Path) -> RunList:
-    cells = read_cells(path)
-    names = [h.name for h in cells.headers]
-    if RUN not in names:
-        raise InputError(f"columns {', '.join(names)}", f"a column {RUN}", file=path, line=cells.first_line - 1)
-    runs = [text.replace("\\", "/").strip("/") for text in cells.texts(RUN)]
-    for name in repeated(runs):
-        row = len(runs) - 1 - runs[::-1].index(name)
-        raise InputError(f"the run {shown(name)} twice", "every run once", file=path, line=cells.line(row), column=RUN)
-    out: dict[str, dict[str, Condition]] = {name: {} for name in runs}
-    for header in cells.headers:
-        name = CONTROL_COLUMNS.get(header.name, header.name)
-        if name == RUN:
-            continue
-        is_label = name not in DIMENSIONS and header.unit is None
-        if not is_label:
-            _require(header, name, path, cells.first_line - 1)
-        numbers = np.full(len(cells), np.nan) if is_label else cells.numbers(header.name)
-        for row, (run, text, number) in enumerate(zip(runs, cells.texts(header.name), numbers, strict=True)):
-            origin = f"{path.name}:{cells.line(row)}"
-            if is_label and text:
-                out[run][name] = Condition(text, np.nan, "", (origin,))
-            elif text:
-                out[run][name] = _number(float(number), header.unit or "", name, origin)
-    return RunList(path, out)
-
-
-def _require(header: Header, name: str, path: Path, line: int) -> None:
-    dimension = DIMENSIONS.get(name)
-    if dimension is None:
-        return
-    example = SI[dimension] or "-"
-    if header.unit is None:
-        raise UnitsError(
-            f"{header.text} without a unit", f"{name} [{'deg' if dimension == 'angle' else example}]", file=path, line=line,
-            column=header.text,
-        )  # fmt: skip
-    try:
-        factor(header.unit, dimension)
-    except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, column=header.text, advice=why.advice) from None
-
-
-def _toml_list(path: Path) -> RunList:
-    read = read_toml(path)
-    runs = read.content.get("runs")
-    if not isinstance(runs, Mapping) or not runs or set(read.content) != {"runs"}:
-        raise read.fail("runs", f"keys {', '.join(read.content)}", "tables [runs.NAME] and nothing else")
-    out: dict[str, dict[str, Condition]] = {}
-    for run, content in runs.items():
-        line = read.line(("runs", run))
-        origin = f"{path.name}:{line}" if line else path.name
-        if not isinstance(content, Mapping):
-            raise InputError(shown(content), "a table of conditions", file=path, line=line, key=f"runs.{run}")
-        out[run.replace("\\", "/").strip("/")] = {
-            plain: _toml_condition(plain, value, origin, path, line)
-            for plain, value in ((CONTROL_COLUMNS.get(str(name), str(name)), value) for name, value in content.items())
-        }
-    return RunList(path, out)
-
-
-def _toml_condition(name: str, value: object, origin: str, path: Path, line: int | None) -> Condition:
-    dimension = DIMENSIONS.get(name)
-    if dimension in (None, "none") and isinstance(value, (int, float)) and not isinstance(value, bool):
-        return Condition(float(value), float(value), "-", (origin,))
-    if dimension is None and isinstance(value, str):
-        return Condition(value, np.nan, "", (origin,))
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= 60 else None
-    expected = f'a text with its unit, such as "4 {"deg" if dimension == "angle" else SI[dimension or "none"]}"'
-    if match is None:
-        raise UnitsError(shown(value), expected, file=path, line=line, key=name)
-    try:
-        return _number(float(match[1].replace("\u2212", "-")), match[2].strip(), name, origin)
-    except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, key=name, advice=why.advice) from None
-
-
 def of_files(stated: Mapping[str, Stated]) -> dict[str, Condition]:
     """What the files of a run state of its condition, SI."""
     out = {}
@@ -480,116 +343,6 @@ def of_files(stated: Mapping[str, Stated]) -> dict[str, Condition]:
             out[name] = Condition(
                 float(one.value), float(one.value), SI[DIMENSIONS.get(name, "none")] or "-", (one.place,)
             )
-    return out
-
-
-def joined(
-    stated: Mapping[str, Mapping[str, Condition]], pattern: NamePattern | None, run_list: RunList | None
-) -> dict[str, dict[str, Condition]]:
-    """The conditions of every run from all their origins: files first, then the list of runs, then the name.
-
-    Parameters
-    ----------
-    stated : mapping of run to mapping of str to Condition
-        As `of_files` gives them.
-    pattern : NamePattern or None
-    run_list : RunList or None
-
-    Raises
-    ------
-    InputError
-        Two origins contradict each other; all that do are listed.
-    """
-    complaints: list[InputError] = []
-    out: dict[str, dict[str, Condition]] = {}
-    in_lists = run_list.matches(list(stated)) if run_list else {}
-    for run, from_files in stated.items():
-        found = dict(from_files)
-        others = [run_list.runs[in_lists[run]]] if run_list and run in in_lists else []
-        others += [pattern.conditions(run) or {}] if pattern else []
-        for other in others:
-            for name, one in other.items():
-                if name not in found:
-                    found[name] = one
-                elif _same(name, found[name], one):
-                    found[name] = replace(found[name], origins=(*found[name].origins, *one.origins))
-                else:
-                    complaints.append(_contradiction(run, name, found[name], one))
-        out[run] = found
-        complaints += _other_incidence(run, found)
-    if complaints:
-        raise together(complaints)
-    return out
-
-
-def _same(name: str, a: Condition, b: Condition) -> bool:
-    if isinstance(a.value, str) or isinstance(b.value, str):
-        return a.value == b.value
-    floor = CLOSE_ANGLE if DIMENSIONS.get(name) == "angle" else 1e-9
-    return abs(a.value - b.value) <= max(CLOSE * max(abs(a.value), abs(b.value)), floor)
-
-
-def _contradiction(run: str, name: str, a: Condition, b: Condition) -> InputError:
-    advice = ""
-    if not isinstance(a.value, str) and not isinstance(b.value, str) and np.isclose(a.value, -b.value, rtol=CLOSE):
-        advice = (
-            f"If the two count {name} with opposite signs, leave {name} out of the list or the pattern: files count."
-        )
-    return InputError(f"{name} = {a} and {b}", "one value", file=run, advice=advice)
-
-
-def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
-    """Velocities of the files beside angles: one of the two is a setting, and they must agree as far as axes let one say."""
-    flow = [found[c] for c in LINEAR if c in found and not isinstance(found[c].value, str)]
-    angles = [found[a] for a in ("alpha", "beta") if a in found and not isinstance(found[a].value, str)]
-    if not flow or not angles:
-        return []
-    if len(flow) == len(LINEAR):
-        velocity = np.array([f.value for f in flow], dtype=float)
-        speed = float(np.linalg.norm(velocity))
-        if speed > 0.0:
-            by_flow = float(np.arccos(np.max(np.abs(velocity)) / speed))
-            by_angle = float(np.arccos(np.clip(np.prod([np.cos(a.value) for a in angles]), -1.0, 1.0)))
-            if max(by_flow, by_angle) < np.pi / 4 and abs(by_flow - by_angle) > 0.002 + 0.01 * by_angle:
-                said = ", ".join(f"{c} = {found[c]}" for c in (*LINEAR, "alpha", "beta") if c in found)
-                return [
-                    InputError(
-                        f"{said}: {np.degrees(by_flow):.4g} and {np.degrees(by_angle):.4g} degrees to the axis of the flow",
-                        "one incidence", file=run,
-                    )
-                ]  # fmt: skip
-    for c in LINEAR:
-        if c in found:
-            found[f"{c} (beside angles)"] = found.pop(c)
-    return []
-
-
-def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePattern | None) -> list[InputError]:
-    """Complaints about settings that some runs have and others lack, and about runs without any setting.
-
-    Parameters
-    ----------
-    conditions : mapping of run to mapping of str to Condition
-        Of the runs that have forces.
-    pattern : NamePattern or None
-        Named in the complaint where a name does not fit it.
-    """
-    known = [s for s in SETTINGS if any(s in c for c in conditions.values())]
-    sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
-    if conditions and not known:
-        return [NoConditionError(list(conditions))]
-    lacking: dict[tuple[str, ...], list[str]] = {}
-    for name in known:
-        lacking.setdefault(tuple(run for run, c in conditions.items() if name not in c), []).append(name)
-    out = []
-    for runs, names in lacking.items():
-        if runs:
-            unfit = pattern and any(pattern.conditions(r) is None for r in runs)
-            why = f"The name does not fit {shown(pattern.text)}. {SPELT}. " if pattern and unfit else ""
-            out.append(InputError(
-                f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
-                advice=f"{why}Where they are zero, a list of runs says so; or a second --name makes a table of these.",
-            ))  # fmt: skip
     return out
 
 

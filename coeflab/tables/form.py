@@ -17,7 +17,7 @@ from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Doubt, Question, Understood, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_settings
+from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_in, require_one_datum
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
@@ -149,10 +149,12 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
                 if group is Group.COLUMN
                 else offer.why.replace("; no unit is stated", "; unit?")
             )
+            if offer.note and group is Group.COLUMN:
+                group, why = Group.GRAVE, offer.note
             text = offer.text.replace("coefficient A=?", "coefficient")
             about = f'Column "{name}": {offer.text or "not known"}; {offer.why}. Say such as Y [N], -beta [deg], r\' [-], label or ignore.'
             yield Line(
-                name, text if group is Group.COLUMN else "", missing or why, group, about,
+                name, "" if group is Group.OPEN else text, missing or why, group, about,
                 argument("--map", name, offer.text or OPEN), True,
             )  # fmt: skip
         elif (said := found.mapping.get(name)) is not None and not (said.name == "ignore" and len(raw.columns) > MANY):
@@ -219,7 +221,7 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
             room = width - 1 - len(head) - 2 - max(len(text), VALUE)
             decides = (
                 group is not Group.COLUMN
-                and "." in line.key
+                and ("." in line.key or line.argument.startswith("--map"))
                 and (line.pending or line.why.startswith((AGAINST, "line ")))
             )
             if decides and len(_one_line(line.why)) > room and len(head) + len(text) < width // 2 + VALUE:
@@ -336,9 +338,9 @@ def _take(
     elif "." not in key:
         raise _no_key(key, lines)
     else:
-        table, slash, plain = key.rpartition("/")
-        read = read_settings(plain, said).items()
-        out.settings |= {f"{table}{slash}{k}": Setting(value, "confirmed") for k, value in read}
+        read = read_in(key, said)
+        require_one_datum(out.settings, read)
+        out.settings |= {k: Setting(value, "confirmed") for k, value in read.items()}
 
 
 def _column(raw: RawTable, column: RawColumn, said: str) -> ColumnMap:

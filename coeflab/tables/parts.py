@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
-from coeflab.tables.conditions import BETWEEN, SPELT, UNNAMED, NoConditionError, name_pattern
+from coeflab.tables.conditions import BETWEEN, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.form import (
     UNSHOWN,
@@ -32,12 +32,12 @@ from coeflab.tables.form import (
 )
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import known_as, texts_of
-from coeflab.tables.proposals import proposals
+from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF, proposals
 from coeflab.tables.questions import Question, Understood, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
-from coeflab.tables.settings import Setting, Settings, against_words, read_settings, stated_settings
+from coeflab.tables.settings import Setting, Settings, against_words, read_in, stated_settings
 from coeflab.tables.words_above import POINT_FROM, POINT_OF
 
 Progress = Callable[[str], None]
@@ -52,6 +52,7 @@ SPLIT = (
     "coefficients.",
     "columns.",
 )  # each table may have its own
+OWN_KEYS = f"table.centre, .arm_point, .contains_inertia, {POINT_OF}, conditions.speed, conditions.density, {AREA}, {LENGTH_OF}, {UNITS_OF}"
 ALONE = ("table.", "coefficients.")  # what one table has is no proposal for another
 _FORCE = re.compile(r"-?(?:[XYZKMN]|lift|drag|side)\b")
 _SETS = ("angle", "velocity", "radius", "control")  # what a row of a table of means has, and a record over time has not
@@ -146,7 +147,7 @@ def read_parts(
             raise
         return _of_sheets(path, name, given, several.choices)
     except NoConditionError as unsaid:
-        if given.get("names") or not unsaid.patterns or any(UNNAMED in pattern for pattern in unsaid.patterns):
+        if given.get("names") or not unsaid.patterns or any(UNIT_ASKED in pattern for pattern in unsaid.patterns):
             raise
         given["names"] = BETWEEN.join(unsaid.patterns)
         parts, _ = read_parts(path, importer, given, progress)
@@ -294,7 +295,7 @@ def own(said: Mapping[str, Value], part: Part, parts: Sequence[Part]) -> dict[st
 
 
 def require_parts(keys: Iterable[str], parts: Sequence[Part]) -> None:
-    """Refuse keys of parts that are not there.
+    """Refuse keys of parts that are not there, and keys that one table of several cannot have.
 
     Raises
     ------
@@ -308,6 +309,11 @@ def require_parts(keys: Iterable[str], parts: Sequence[Part]) -> None:
             f"one of {', '.join(names)} before the slash" if names else "a key without a slash: there is one table"
         )
         raise together([InputError(shown(key), expected, column="--set") for key in strange])
+    if shared := [key for key in keys if "/" in key and not key.rpartition("/")[2].startswith((*SPLIT, "axes.datum"))]:
+        raise together([InputError(
+            f"{shown(key)}: all tables of a campaign share {key.rpartition('/')[2]}", f"of one table alone: {OWN_KEYS}", column="--set",
+            advice=f"Say {key.rpartition('/')[2]} without {key.rpartition('/')[0]}/, or import this table into a campaign of its own.",
+        ) for key in shared])  # fmt: skip
 
 
 def stated_together(parts: Sequence[Part]) -> dict[str, Setting]:
@@ -498,12 +504,6 @@ def settled_together(
         if not fresh:
             return founds, out
         out |= fresh
-
-
-def read_in(key: str, text: str) -> dict[str, Any]:
-    """`read_settings` of a key that may have the name of a part before it."""
-    part, slash, plain = key.rpartition("/")
-    return {f"{part}{slash}{k}": value for k, value in read_settings(plain, text).items()}
 
 
 def complaints_of(founds: Sequence[Understood]) -> list[InputError]:

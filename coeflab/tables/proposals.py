@@ -253,6 +253,11 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
 
 
+def named_as(name: str) -> str:
+    """What a column is by its name alone, ``beta`` of sideslip; empty where it has no known name."""
+    return _whole_name(RawColumn(name, "", np.empty(0)))[0]
+
+
 def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     """By the name as it stands."""
     if column.means:
@@ -369,6 +374,8 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
             else:
                 taken[said.plain] = column.name
         out.append(one)
+    if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
+        out = [_beside_the_body(one, taken[body], body) for one in out]
     for i, column in enumerate(raw.columns):
         # V is the speed beside what says where the water comes from; alone it may be a sway velocity in capitals.
         beside = {"alpha", "beta", "R"} & set(taken) and not {"U", "v"} & set(taken)
@@ -376,6 +383,15 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
     return tuple(out)
+
+
+def _beside_the_body(one: Proposal, other: str, body: str) -> Proposal:
+    """A drag with the other reading that a force of the body beside it makes as likely: X differs by Y sin(beta)."""
+    if not re.match(r"drag\b", one.text) or one.certain or one.note:
+        return one
+    x = one.text.replace("drag", "X", 1)
+    note = f"along the flow, by its name; but {other} is {body} of the body. If this is along the body too: -{x} where x points forward, {x} where aft"
+    return replace(one, why=f"{one.why}; {note}", note=note)
 
 
 def _along_the_body(one: Proposal, column: RawColumn, place: str) -> Proposal:

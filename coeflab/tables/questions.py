@@ -35,12 +35,13 @@ from coeflab.tables.settings import (
     Setting,
     Settings,
     against_words,
+    arm_by_words,
     frame_of,
     of_datum,
     point_by_words,
     read_setting,
 )
-from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID, of_the_test
+from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, POINT_FROM, POINT_OF, TURN_OF_R, UNSAID, of_the_test
 
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
@@ -53,6 +54,7 @@ COMPUTED = (
     "su2",
     "simscale",
 )  # importers of solvers, whose forces hold no inertia
+SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {
     1: ("FRD", "FLU"),
     -1: ("CFD", ["aft", "port", "down"]),
@@ -295,9 +297,11 @@ def _of_rotation(
         side, why, shown = centre_of(columns, frame_of(settings))
         yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
                        side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True)  # fmt: skip
+        at, later, line = arm_by_words(raw, settings) or (same, "the reference point", "")
         yield Question(
-            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "x from the datum, m", same, "the reference point",
-            "the reference point, unless said", "the reference point", grave=True,
+            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}",
+            f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
+            line or "the reference point, unless said", later, grave=True,
         )  # fmt: skip
     inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
@@ -372,7 +376,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
             asks=f"{q.asks}. {said.contradicted}",
             harmless=False,
         )
-    if said is not None and q.key in ("table.centre", "table.contains_inertia") and q.default:
+    if said is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(said.value).casefold() in q.default.casefold():
             return q
         against = f"{said.place}, but {q.default}: {q.why}"
@@ -514,6 +518,7 @@ def understood(
     ]  # fmt: skip
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
+    doubts += _turned_by_words(raw, columns, frame, settled, doubts)
     return Understood(offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about)
 
 
@@ -523,6 +528,19 @@ def _with_frame(raw: RawTable, settings: Settings) -> Settings:
     if said is None or not said.offered or said.contradicted or "axes.frame" in settings:
         return settings
     return {**settings, "axes.frame": Setting(read_setting("axes.frame", said.value), said.place)}
+
+
+def _turned_by_words(
+    raw: RawTable, columns: Sequence[Assigned], frame: Axes | None, settled: Collection[str], doubts: Sequence[Doubt]
+) -> Iterator[Doubt]:
+    """Rates that turn to another side, by the axes, than words over the table say."""
+    words = raw.stated.get(TURN_OF_R)
+    for one in columns if frame and words else ():
+        if one.said.name != "r" or one.said.error or set(settled) & {one.column.name, *known_as(one.column)}:
+            continue
+        turn = turn_of(one.said, frame)  # type: ignore[arg-type]
+        if turn.startswith("turns") and str(words.value) not in turn and one.column not in [d.column for d in doubts]:  # type: ignore[union-attr]
+            yield Doubt(one.column, one.said, f"{words.place}, but by the axes r > 0 {turn}", turn)  # type: ignore[union-attr]
 
 
 def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:

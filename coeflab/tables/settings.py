@@ -31,7 +31,7 @@ from coeflab.tables.campaign import (
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.words_above import POINT_FROM, POINT_OF, of_the_test
+from coeflab.tables.words_above import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF, of_the_test
 
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 _SIZES = {
@@ -44,6 +44,7 @@ _KINDS = {
     "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
+ARM_POINT = "table.arm_point"
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
@@ -242,22 +243,46 @@ _SIDED = frozenset(
 def read_settings(key: str, text: str) -> dict[str, Any]:
     """What a person types for a key; a point says its datum and a length its name with it.
 
-    ``axes.reference_point`` takes ``-2.1 from nose`` and ``midship``, ``scaling.length`` takes ``4.3 m LOA``.
+    ``axes.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, ``scaling.length`` takes ``4.3 m LOA``.
 
     Raises
     ------
     InputError
         As `read_setting`; or a place with its side in words.
     """
-    if key == POINT_OF and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
-        datum, at = _place_and_datum(text)
+    if key in (POINT_OF, ARM_POINT) and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
+        datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
     if key == "scaling.length" and (sized := _SIZED.fullmatch(text)) and (name := sized[2].strip(" ()")):
         return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
     return {key: read_setting(key, text)}
 
 
-def _place_and_datum(typed: str) -> tuple[str, str]:
+def read_in(key: str, text: str) -> dict[str, Any]:
+    """`read_settings` of a key that may have the name of a table before it; a datum of the arm's point is that of all tables."""
+    part, slash, plain = key.rpartition("/")
+    read = read_settings(plain, text)
+    return {k if plain == ARM_POINT != k else f"{part}{slash}{k}": value for k, value in read.items()}
+
+
+def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
+    """Refuse a point of the arm from another datum than the rest: both places would move.
+
+    Raises
+    ------
+    InputError
+        Naming both.
+    """
+    new, old = read.get("axes.datum"), known.get("axes.datum")
+    of_arm = any(key.endswith(ARM_POINT) for key in (*known, *read))
+    if of_arm and new is not None and old is not None and not of_datum(str(old.value), str(new)):
+        raise InputError(
+            f"places from {shown(str(old.value))} and from {shown(str(new))}", "one point that all places count from",
+            column=ARM_POINT, advice=f"Say {POINT_OF} and {ARM_POINT} from the same point.",
+        )  # fmt: skip
+
+
+def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
     """``-2.1 from nose``, ``nose -2.1, 0, 0``, or ``midship``, which is the point itself."""
     numbers = _PLACED.search(typed)
     at = numbers[0].strip(" ,;:@") if numbers else ""
@@ -266,10 +291,10 @@ def _place_and_datum(typed: str) -> tuple[str, str]:
     if numbers and (sided := {w.casefold() for w in words} & _SIDED):
         raise InputError(
             f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
-            column=POINT_OF, advice=f"Leave out {sided.pop()}.",
+            column=key, advice=f"Leave out {sided.pop()}.",
         )  # fmt: skip
     if "/" in rest or (not numbers and len(words) > 2):
-        raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=POINT_OF)
+        raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=key)
     return " ".join(w for w in words if w.casefold() not in _BETWEEN), at or "0"
 
 
@@ -309,7 +334,7 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             same = x is None or datum is None or not of_datum(str(datum.value), point) or abs(one.value[0] - x) <= near
         elif key == "table.centre":
             same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
-        elif key == "table.contains_inertia":
+        elif key in ("table.contains_inertia", "axes.alpha", "axes.beta"):
             same = one.value == words.value
         else:
             continue
@@ -335,6 +360,44 @@ def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float |
         return f"{number} L from {datum}", datum, None
     by = 1.0 if unit == "m" else quantity(length.value, "length")  # type: ignore[union-attr]
     return f"{float(number) * by:.6g} from {datum}", datum, float(f"{float(number) * by:.12g}")
+
+
+def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | None:
+    """What words over the table say of the point that R and U are measured to; None where they say nothing.
+
+    Returns
+    -------
+    default, shown : str
+        x, y, z from the datum; or what it will be once the reference point or the datum is known. Both empty where open.
+    line : str
+    """
+    said = raw.stated.get(ARM_FROM)
+    if said is None:
+        return None
+    if said.contradicted or not said.value:
+        return "", "", said.contradicted or said.place
+    number, unit, point = str(said.value).split()
+    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    by = 1.0
+    if unit == "L":
+        if length is None or (not isinstance(length, Setting) and length.contradicted):
+            return "", "", said.place
+        by = quantity(length.value, "length")
+    x = float(number) * by
+    known, datum = settings.get(POINT_OF), settings.get("axes.datum")
+    if point == OF_MOMENTS:
+        if known is None:
+            return (
+                "",
+                f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of the reference point"
+                if x
+                else "the reference point",
+                said.place,
+            )
+        return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", said.place
+    if datum is None:
+        return "", f"{x:.12g} from {point}" if x else point, said.place
+    return (f"{x:.12g}, 0, 0" if of_datum(str(datum.value), point) else ""), "", said.place
 
 
 def of_datum(said: str, point: str) -> bool:

@@ -18,7 +18,7 @@ _NAMES = {
     "conditions.speed": "v u vm vs speed velocity towingspeed carriagespeed modelspeed uinf vinf geschwindigkeit vitesse "
     "schleppgeschwindigkeit modellgeschwindigkeit",
     "conditions.density": "rho ρ density waterdensity dichte wasserdichte densite massevolumique",
-    "scaling.length": "l lpp lbp loa lwl los length modellength lange laenge modelllange modelllaenge longueur",
+    "scaling.length": "l lpp lbp loa lwl los lua luea length modellength lange laenge modelllange modelllaenge longueur",
     "coefficients.area": "a s aref sref referencearea area flache flaeche bezugsflache bezugsflaeche surface",
     "coefficients.length": "lref cref referencelength referencechord chord bezugslange bezugslaenge",
     "inertia.mass": "m mass masse modelmass modellmasse",
@@ -47,9 +47,16 @@ _SIZES = {
          r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
         ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
          r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+        ("conditions.speed", r"(?:(?:carriage|towing|tow|model|test|ship|vehicle|water)\s+)?speed(?!\s+(?:above|below|over|under|up|range|from))"
+         r"|(?:schlepp|modell|wagen|fahr)geschwindigkeit|vitesse\s+de\s+(?:remorquage|traction)", "m/s|kn|km/h"),
         ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
     )
 }  # fmt: skip
+_ANOTHER_SPEED = re.compile(r"(?i)(?:wind|shaft|sound|propeller|rotor|tip|angular|rotation\w*|air|turn\w*)\s+$")
+_SEVERAL = re.compile(r"(?i)\s*(?:,|/|and|und|et|to|bis|or|oder)\s*\d[\d.,]*\s*(?:m/s|kn|km/h)?")
+_BY_VOLUME = re.compile(
+    r"(?i)(?<![^\W_])(?:V|∇|vol(?:umen?|ume)?|displacement|verdr(?:ä|ae)ngung)\s*(?:\^|\*\*|hoch)?\s*[({]?\s*[12]\s*/\s*3|∇\s*⅔|V⅔"
+)
 _OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
 _ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
 _INERTIA = re.compile(
@@ -76,10 +83,38 @@ _TURNS = re.compile(
     r"(?:(?:are|were|made|to|the|nach|zu|zur|à|sur|gefahren|turning)\s+)*(?P<one>starboard|stbd|port|steuerbord|backbord|tribord|b[âa]bord|right|left)(?![^\W_])"
     r"|cent(?:re|er)\s+of\s+(?:the\s+|a\s+)?(?:circle|turn\w*|rotation)\s+(?:\w+\s+){0,2}?(?:to\s+)?(?P<two>starboard|port|right|left)(?![^\W_])"
 )
+_ARM = re.compile(
+    r"(?i)(?<![^\W_])(?:(?:(?:model|body|hull|vehicle|modell|k(?:ö|oe)rper|maquette)\b[^;.\d]{0,25})?(?<![^\W_])(?:held|mounted|attached|fixed|fastened|clamped|carried|"
+    r"suspended|pivoted|befestigt|gehalten|eingespannt|aufgeh(?:ä|ae)ngt|fix[ée]e?|tenue?|attach[ée]e?)(?![^\W_]|\s+(?:ax[ei]s|frame|coord))[^;\d]{0,25}?(?<![^\W_])(?:at|in|by|bei|im|am|beim|[àa]u?|en)"
+    r"|(?:arm|pivot|attachment|towing|tow|held)[\s-]*point(?:\s+of\s+the\s+arm)?|arm\s+(?:attached|fixed|attaches)(?:\s+(?:at|to))?|point\s+of\s+the\s+arm"
+    r"|(?:R|U|radi(?:us|i)|speed)(?:\s+(?:and|und|et)\s+(?:R|U|radius|speed))?(?:\s+in\s+m)?,?\s+(?:(?:is|are|were|was)\s+)?(?:measured|taken|given|counted|those|that|gemessen|mesur[ée]e?s?)"
+    r"(?:\s+(?:from\s+the\s+cent(?:re|er)(?:\s+of\s+the\s+\w+)?\s+)?(?:to|at|of|bis|zu|[àa]|jusqu'[àa]u?))?"
+    r"|(?:drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
+)
+_SIGNED = {
+    "axes.beta": (r"(?:drift|sideslip|yaw[\s-]*angle|drift\w*winkel|schiebewinkel|gierwinkel|angle\s+de\s+d[ée]rive)\w*|beta|β", r"starboard|stbd?|right|steuerbord|tribord",
+                  r"port|left|backbord|b[âa]bord", "v = {}U sin(beta)"),
+    "axes.alpha": (r"(?:angle\s+of\s+(?:attack|incidence)|incidence|pitch(?:\s+angle)?|trim(?:\s+angle)?|anstellwinkel|trimmwinkel|nickwinkel|angle\s+d'attaque)|alpha|α",
+                   r"down(?:wards?)?|lowered|unten|bas|tief", r"up(?:wards?)?|raised|oben|hoch|haut", "w = {}U sin(alpha)"),
+}  # fmt: skip
+_RATE = r"(?-i:r)'?|yaw(?:ing)?\s+rate|rate\s+of\s+turn|turn(?:ing)?\s+rate|drehrate|drehgeschwindigkeit|giergeschwindigkeit|gierrate|vitesse\s+de\s+lacet"
+_BOW = r"(?:bow|nose|bug|nase|proue|nez)"
+_FLOW = r"(?:flow|water|stream|anstr(?:ö|oe)mung|[ée]coulement)(?:\s+(?:comes?|coming|kommt|vient|is))*\s+(?:from|von|de|du)"
+_OF_MOMENTS = re.compile(
+    r"(?i)(?:the\s+|le\s+|dem\s+|der\s+)?(?:(?:moments?|momenten?|reference|balance)[\s-]*(?:reference[\s-]*)?(?:point|cent(?:re|er)|bezugspunkt)|bezugspunkt"
+    r"|point\s+de\s+r[ée]f[ée]rence|m\.?r\.?[pc]\b\.?)(?:\s+of\s+the\s+moments)?"
+)
+_ARM_NAMED = re.compile(
+    r"(?i)[\s=:,]*(?:(?:the|a|its|model'?s?|is|was|are|at|to|of|in|der|dem|den|le|la|du)\s+)*(?P<point>moments?-datum|midships?|amidships?|nose|bow|stern|tail|c\.?o?\.?g\.?|c\.?o?\.?b\.?"
+    r"|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|heck)(?![^\W_])"
+)
 POINT_OF = "axes.reference_point"
+ARM_FROM = "table.arm_from"  # no key of campaign.toml: where words place the point that R and U are measured to
+OF_MOMENTS = "moments-datum"  # in its place where they count from the point of the moments
 CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
 POINTED = Marks()
+TURN_OF_R = "columns.r"  # no key of campaign.toml: the side to which words say that a positive r turns
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
 _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
@@ -336,8 +371,10 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         said = set(_holds_inertia(clause))
         if said:
             where = f'{place}: "{" ".join(clause.split())}"'
-            both = f"{where} says both" if len(said) == 2 else ""
-            yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+            yield "table.contains_inertia", Stated(True in said, where, True, f"{where} says both" * (len(said) == 2))
+    yield from _signs(place, text)
+    if (begun := _ARM.search(text)) and (arm := _arm_at(place, text, begun, marks)):
+        yield ARM_FROM, arm
     if m := _TURNS.search(text):
         side = _DIRECTIONS[(m["one"] or m["two"]).casefold()]
         yield "table.centre", Stated(side, f'{place}: "{" ".join(m[0].split())}"', offered=True)
@@ -346,8 +383,76 @@ def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Sta
         ahead = -1.0 if (m["side"] or "").casefold() == "behind" else ahead
         x = ahead * quantity(f"{size!r} {m['unit']}", "length")
         point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
-        text_of = f"{x:.12g} {point}" if point else ""
-        yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+        yield (
+            CENTRE_FROM,
+            Stated(f"{x:.12g} {point}" if point else "", f'{place}: "{" ".join(m[0].split())}"', offered=True),
+        )
+
+
+def _signs(place: str, text: str) -> Iterator[tuple[str, Stated]]:
+    """What a line says of the sign of an angle or of r: "positive with the bow to port", "r positiv nach Backbord drehend"."""
+    for clause in re.split(r";|,\s|\.\s", text):
+        signs = {m[1].casefold() for m in re.finditer(r"(?i)(?<![^\W_])(positi|negati)[vf]", clause)}
+        if len(signs) != 1:
+            continue
+        where, turned = f'{place}: "{" ".join(clause.split())}"', "negati" in signs
+        for key, (names, one, other, formula) in _SIGNED.items():
+            if not re.search(rf"(?i)(?<![^\W_])(?:{names})(?![^\W_])", clause):
+                continue
+            side = re.search(
+                rf"(?i)(?<![^\W_])(?:{_BOW}|(?P<flow>{_FLOW}))(?![^\W_])\W*(?:\w+\s+){{0,3}}?(?:(?P<one>{one})|(?P<other>{other}))(?![^\W_])",
+                clause,
+            )
+            if side:
+                # With the bow to starboard of the course the body moves to its port side, and the flow comes from there.
+                minus = (bool(side["one"]) != turned) != bool(side["flow"])
+                yield key, Stated(formula.format("-" if minus else "+"), where, offered=True)
+        sides = {
+            bool(m["one"])
+            for m in re.finditer(
+                rf"(?i)(?<![^\W_])(?:(?P<one>{_SIGNED['axes.beta'][1]})|{_SIGNED['axes.beta'][2]})(?![^\W_])", clause
+            )
+        }
+        rate = re.search(rf"(?i)(?<![^\W_])(?:{_RATE})(?![^\W_'])", clause)
+        if (
+            rate
+            and len(sides) == 1
+            and not re.search(rf"(?i)cent(?:re|er)|mittelpunkt|kreis|{_SIGNED['axes.beta'][0]}", clause)
+        ):
+            yield TURN_OF_R, Stated("starboard" if sides.pop() != turned else "port", where, offered=True)
+
+
+def _arm_at(place: str, text: str, begun: re.Match[str], marks: Marks) -> Stated | None:
+    """Where a line puts the point of the arm, as x, m or L, and the point it counts from; open where a part lacks."""
+    line = f'{place}: "{" ".join(text.split())[:160]}"'
+    rest = re.split(r"[;]|\.\s", _OF_MOMENTS.sub(OF_MOMENTS, text[begun.end() :]))[0]
+    own = OF_MOMENTS in rest
+    plain = rest.replace(OF_MOMENTS, "midship")
+    m = next((m for m in _AT.finditer(plain) if (m["point"] or m["side"]) and (m["unit"] or m["share"])), None)
+    if m is None:
+        if named := _ARM_NAMED.match(rest):
+            point = OF_MOMENTS if named["point"] == OF_MOMENTS else _named_point(named["point"])
+            return Stated(f"0 m {point}", line, offered=True)
+        worded = re.search(r"(?i)\bpoint\b|punkt", begun[0] + " " + rest) or re.match(r"(?i)r\b|radi|arm", begun[0])
+        return Stated("", line, offered=True, contradicted=line) if worded else None
+    number, unit, side = (
+        _number(m["number"].replace("\u2212", "-"), marks),
+        (m["unit"] or "").casefold(),
+        m["side"] or "",
+    )
+    point = OF_MOMENTS if own and m["point"] == "midship" else _named_point(m["point"]) if m["point"] else ""
+    ahead = side.casefold().startswith(("f", "ah", "be", "in", "vor", "av", "dev")) and side.casefold() not in (
+        "from",
+        "behind",
+    )
+    sided = bool(side) and side.casefold() not in ("from", "off", "von", "vom", "ab", "du", "de", "depuis")
+    signed = m["number"][0] in "+-\u2212" or point in _ENDS
+    if number is None or not point or not (sided or signed) or _HEIGHT.search(plain[m.end() :]):
+        return Stated("", line, offered=True, contradicted=line)
+    share = bool(m["share"]) or unit.startswith(("l", "%"))
+    x = number / (100.0 if unit.startswith("%") else 1.0) if share else quantity(f"{number!r} {m['unit']}", "length")
+    x = (abs(x) if ahead else -abs(x)) if sided else _ENDS[point] * abs(x) if point in _ENDS else x
+    return Stated(f"{x:.12g} {'L' if share else 'm'} {point}", line, offered=True)
 
 
 def _holds_inertia(clause: str) -> Iterator[bool]:
@@ -409,11 +514,12 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
     """Key, name, number in SI and words of what a text states with a sign, and of lengths that it states without one."""
     lengths = [(key, m) for key, words in _SIZES.items() for m in words.finditer(text)]
     for key, m in lengths:
+        if key == "conditions.speed" and (_ANOTHER_SPEED.search(text[: m.start()]) or _SEVERAL.match(text[m.end() :])):
+            continue
         if size := _in_si(m["number"], m["unit"], key, marks):
             short = folded(m["name"])
-            name = (
-                short if short in _LENGTHS else "loa" if key == "scaling.length" and _OVERALL.search(m["name"]) else ""
-            )
+            overall = key == "scaling.length" and _OVERALL.search(m["name"])
+            name = short if short in _LENGTHS else "loa" if overall else ""
             yield key, name, size, m[0]
     spans = [m.span() for _, m in lengths]
     for m in _SAID.finditer(text):
@@ -424,7 +530,7 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
         if not name or begun or (not unit and len(name) == 1):
             continue
         if size := _in_si(m["number"], unit, _KEYS[name], marks):
-            yield _KEYS[name], name, size, m[0]
+            yield _KEYS[name], "loa" if name in ("lua", "luea") else name, size, m[0]
 
 
 def _in_si(number: str, unit: str, key: str, marks: Marks) -> float:
@@ -461,10 +567,12 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         letter without a unit that fits is left out. `BODY_AXES` where the words say that forces count along the body.
     """
     rows = list(rows)
-    found: dict[str, Stated] = {}
+    found, volume = dict[str, Stated](), ""
     for line, cells in rows:
         if (whole := " ".join(c for c in cells if c)[:LONGEST]) and (body := _BODY.search(whole)):
             found.setdefault(BODY_AXES, Stated("body", f'line {line}: "{_around(whole, body)}"', offered=True))
+        if m := _BY_VOLUME.search(whole):
+            volume = f'line {line}: "{_near(whole, *m.span())}"'
         for key, name, size, part in (
             one for t in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)) for one in _sizes(t, marks)
         ):
@@ -478,6 +586,10 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     if "scaling.length" not in found and (by := found.get("coefficients.length")) and (m := _ACROSS.search(by.place)):
         against = f"{by.place} is a {m[0]}, perhaps not the body's length"
         found["scaling.length"] = replace(by, contradicted=against)
+    if volume:
+        against = f"{volume} speaks of primes by the volume V: for these the length is V^(1/3)"
+        length = found.get("scaling.length", Stated("", volume, offered=True))
+        found["scaling.length"] = replace(length, contradicted=against)
     told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)

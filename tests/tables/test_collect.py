@@ -23,12 +23,13 @@ from coeflab.fits import FITS
 from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
-from coeflab.tables.conditions import likely_patterns, name_pattern, read_run_list
+from coeflab.tables.conditions import likely_patterns, name_pattern
 from coeflab.tables.histories import Convergence
 from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.mapping import assigned, doubtful
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.reading import read_tables
+from coeflab.tables.run_list import read_run_list
 from coeflab.tables.runs import find_runs
 from tests.conftest import SECTIONS
 from tests.tables.runs_as_text import FILE, install, write_run
@@ -407,7 +408,7 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("names", "pattern"), [
-    ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:rad/s}"),
+    ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:UNIT}"),
     ("bm4p5 b4 b0", "b{beta:deg:m=-,p=.}"), ("all/aoa_n2.csv all/aoa_2.csv", "aoa_{alpha:deg:n=-}"), ("run7_b4 run7_b8", "run7_b{beta:deg}"),
     ("case1 case2", "case{NAME:UNIT}"), ("b4_b8 b6_b8 b6_b9", "b{beta:deg}_b{NAME:UNIT}"), ("fine_4 coarse_4", ""), ("b4", ""), ("x y", ""),
     ("bp4p5 bm4", ""),
@@ -705,3 +706,20 @@ def test_any_text_is_a_list_of_runs_or_a_clear_error(tmp_path: Path) -> None:
                 read_run_list(tmp_path / name)
             except InputError:
                 continue
+
+
+def test_a_list_of_runs_knows_settings_by_the_names_of_text_tables(tmp_path: Path) -> None:
+    """A column left out is a sweep of zeros."""
+    file = tmp_path / "runs.csv"
+    file.write_text("run,sideslip [deg],Angle of attack [deg],yaw rate [deg/s],grid\nb4,4,1,2,fine\n")
+    found = read_run_list(file).runs["b4"]
+    assert {name: str(one).partition(" (")[0] for name, one in found.items()} == {
+        "beta": "4 deg", "alpha": "1 deg", "r": "2 deg/s", "grid": "fine"}  # fmt: skip
+    toml = tmp_path / "runs.toml"
+    toml.write_text('[runs.b4]\nDriftwinkel = "4 deg"\n')
+    assert read_run_list(toml).runs["b4"]["beta"].written == 4.0
+    for head, said in (("sideslip [deg],beta [deg]", "both beta"), ("Krängung [deg],beta [deg]", "whose name is no setting"),
+                       ("drift angle,grid", "without a unit")):  # fmt: skip
+        file.write_text(f"run,{head}\nb4,4,1\n", encoding="utf-8")
+        with pytest.raises(InputError, match=said):
+            read_run_list(file)

@@ -18,6 +18,7 @@ from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.form import Group, form, screen
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.proposals import proposals, proposed
@@ -461,6 +462,20 @@ def test_a_resistance_under_words_of_body_axes_is_x_of_the_body(tmp_path: Path, 
     assert not any("its name is that of drag" in e.text for e in shows)
     file.write_text(file.read_text(encoding="utf-8").replace(words, "Schleppversuche"), encoding="utf-8")
     assert proposals(read_raw(file, "table"))[1].text == "drag [N]"
+
+
+def test_a_drag_beside_a_side_force_of_the_body_is_confirmed_with_its_other_reading(tmp_path: Path) -> None:
+    """Turned by beta though it is X of the body, Xvv' takes Yv' and may change its sign."""
+    file = tmp_path / "star.csv"
+    file.write_text("beta [deg],Drag [N],Side Force [N],Lift [N]\n-4,50,12,1\n0,48,0,1\n4,50,-12,1\n")
+    assert not proposals(read_raw(file, "table"))[1].note, "with lift beside it, along the flow"
+    file.write_text("beta [deg],Drag [N],Side Force [N]\n-4,50,12\n0,48,0\n4,50,-12\n")
+    table = read_raw(file, "table")
+    line = next(one for one in form(table, understood(table, {}, {}), {}) if one.key == "Drag")
+    assert (line.group, line.value, line.pending) == (Group.GRAVE, "drag [N]", True)
+    assert "Side Force is Y of the body" in line.why
+    assert "-X [N] where x points forward, X [N] where aft" in line.why
+    assert "Side Force is Y of the body" in " ".join(" ".join(screen([line])).split())
 
 
 @pytest.mark.parametrize("frame", ["FRD", "CFD", "FLU"])

@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.tables.conditions import likely_patterns
+from coeflab.core.errors import InputError
+from coeflab.tables.conditions import NoConditionError, likely_patterns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.parts import Part, require_parts
+from coeflab.tables.raw_table import RawTable
 from coeflab.tables.reading import read_tables
 from tests.cli.conftest import flat
 from tests.cli.test_import import command_of, invoke, left_open, refused, stub, without_slopes
@@ -161,19 +164,30 @@ def test_records_over_time_are_no_tables(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("names", "patterns"),
-    [("drift_m12 drift_p4 drift_0 yaw_r0.1 yaw_r0.2", "drift_{beta:deg:m=-,p=+} yaw_r{r:rad/s}"),
-     ("b4 b8 bm4 r0.1 r0.2", "b{beta:deg:m=-} r{r:rad/s}"), ("d/b4 d/b8 t/r0.1 t/r0.2", "b{beta:deg} r{r:rad/s}"),
+    [("drift_m12 drift_p4 drift_0 yaw_r0.1rads yaw_r0.2rads", "drift_{beta:deg:m=-,p=+} yaw_r{r:rad/s}rads"),
+     ("b4 b8 bm4 r0.1 r0.2", "b{beta:deg:m=-} r{r:UNIT}"), ("d/b4 d/b8 t/r0.1 t/r0.2", "b{beta:deg} r{r:UNIT}"),
      ("drift_4 drift_8", "drift_{beta:deg}"), ("drift_4 drift_8 calm", ""), ("drift_4 drift_8 base_1", "")],
 )  # fmt: skip
 def test_patterns_of_groups_of_names(names: str, patterns: str) -> None:
     assert likely_patterns(names.split()) == tuple(patterns.split())
 
 
+@pytest.mark.parametrize(("behind", "unit"), [("", "UNIT"), ("degs", "deg/s"), ("_deg_s", "deg/s"), ("dps", "deg/s"), ("rad_s", "rad/s"),
+                                             ("_radar", "UNIT")])  # fmt: skip
+def test_the_unit_of_a_rate_in_names_is_never_guessed(behind: str, unit: str) -> None:
+    """Degrees a second as radians make every rotary derivative 57 times too small."""
+    names = [f"yawrate{k}{behind}" for k in ("+1.7", "-1.7", "+0.9")]
+    (pattern,) = likely_patterns(names)
+    assert pattern == f"yawrate{{r:{unit}}}{behind}"
+    if unit == "UNIT":
+        assert "deg/s or rad/s for UNIT" in str(NoConditionError(names))
+
+
 def test_runs_of_two_patterns_of_names_are_two_tables(stub: Path, tmp_path: Path) -> None:
     stated = {"conditions.density": 998.2, "axes.reference_point": [1.2, 0.0, 0.0]}
     for seed, k in enumerate((-8, -4, 4, 8)):
         write_run(tmp_path / "cfd" / f"b{k}", {"X": 13.0, "Y": 3.0 * k}, seed=seed, stated=stated)
-        write_run(tmp_path / "cfd" / f"yaw_r0.{seed + 1}", {"X": 13.0, "Y": 2.0 + seed}, seed=seed + 9, stated=stated)
+        write_run(tmp_path / "cfd" / f"yaw_r0.{seed + 1}rads", {"X": 13.0, "Y": 2.0 + seed}, seed=seed + 9, stated=stated)
     form = invoke("import", tmp_path / "cfd", "--out", tmp_path / "out")
     assert "names" in flat(form.output)
     assert left_open(form) == ["axes.frame", "scaling.length", "conditions.speed"], form.output
@@ -184,7 +198,7 @@ def test_runs_of_two_patterns_of_names_are_two_tables(stub: Path, tmp_path: Path
     assert [(n, t.varies) for n, t in made.items()] == [("b.csv", ("v",)), ("yaw_r.csv", ("r",))]
     assert made["yaw_r.csv"].motion["r"].tolist() == [-0.1, -0.2, -0.3, -0.4]  # z up
     write_run(tmp_path / "cfd" / "calm", {"X": 13.0, "Y": 0.1}, stated=stated)
-    patterns = ("--name", "b{beta:deg}", "--name", "yaw_r{r:rad/s}")
+    patterns = ("--name", "b{beta:deg}", "--name", "yaw_r{r:rad/s}rads")
     assert "calm: found no of the patterns fits it" in " ".join(
         refused(invoke("import", tmp_path / "cfd", *patterns, *sets, "--accept"))
     )
@@ -200,3 +214,12 @@ def test_sheets_and_tables_are_chosen_in_the_form(book: Path, tmp_path: Path, mo
     made = tables_of(tmp_path / "out")
     assert list(made) == ["Drift.csv", "Arm.csv"]
     assert (made["Arm.csv"].motion["r"][0], made["Arm.csv"].forces["Y"][0]) == (-0.2, -12.5)
+
+
+def test_axes_of_one_table_of_several_are_refused() -> None:
+    """They would rule the proposals of that table and never reach campaign.toml."""
+    parts = [Part(name, RawTable(Path("t.csv"), ()), "csv", {}) for name in ("Drift", "Pitch")]
+    require_parts(["Pitch/axes.reference_point", "Pitch/table.centre", "Pitch/conditions.speed", "axes.frame"], parts)
+    with pytest.raises(InputError, match=r"share axes\.frame.*table\.centre") as caught:
+        require_parts(["Pitch/axes.frame"], parts)
+    assert "Say axes.frame without Pitch/" in str(caught.value)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
 from coeflab.tables.form import form
@@ -16,8 +17,8 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import Setting, against_words
-from coeflab.tables.words_above import POINT_FROM, water_density, words_above
+from coeflab.tables.settings import Setting, against_words, read_in, require_one_datum
+from coeflab.tables.words_above import POINT_FROM, TURN_OF_R, water_density, words_above
 
 
 def said(*lines: str, marks: Marks | None = None) -> dict[str, Stated]:
@@ -255,3 +256,139 @@ def test_left_handed_axes_are_named() -> None:
     assert one.open
     assert "line 2 is left-handed: x forward, y starboard, z up" in one.choices
     assert asked(said("x vorn, y Steuerbord, z unten"))["axes.frame"].default == "FRD"
+
+
+def arm_asked(*lines: str, **settings: object) -> Question:
+    """What is asked of the point of the arm over a table with radii."""
+    raw = RawTable(Path("t.csv"), (), stated=said(*lines))
+    arm = [Assigned(RawColumn("R", "m", np.array([10.0, -10.0])), read_column_map("R [m]"))]
+    known = {key.replace("__", "."): Setting(value, "confirmed") for key, value in settings.items()}
+    return next(q for q in questions(raw, arm, known) if q.key == "table.arm_point")
+
+
+@pytest.mark.parametrize(
+    ("line", "x"),
+    [
+        (
+            "Model held on the arm at a point 2.75 m aft of the nose, which runs on R; R positive: centre to starboard",
+            -2.75,
+        ),
+        ("R measured to a point 275 cm aft of the bow", -2.75),
+        ("Modell am Arm befestigt bei 2,75 m hinter dem Bug", -2.75),
+        ("Arm point 0.40 m aft of the moment point", -2.35 - 0.40),
+        ("U and R are those of the reference point", -2.35),
+    ],
+)
+def test_words_on_the_point_of_the_arm_are_quoted_and_proposed(line: str, x: float) -> None:
+    """The reference point in its place moves Yr' by the arm between them times Yv'."""
+    one = arm_asked(line, axes__datum="nose", axes__reference_point=[-2.35, 0.0, 0.0])
+    assert [float(part) for part in one.default.split(",")] == pytest.approx([x, 0.0, 0.0])
+    assert "line 1" in one.short
+    assert not arm_asked(line).open
+
+
+@pytest.mark.parametrize("line", ["R is measured to the strut", "Arm attached at the balance", "Arm point 0.4 m aft",
+                                  "Arm point 2.75 m aft of the nose and 0.2 m below the axis"])  # fmt: skip
+def test_words_on_the_point_of_the_arm_without_number_or_datum_leave_it_open(line: str) -> None:
+    one = arm_asked(line, axes__datum="nose", axes__reference_point=[-2.35, 0.0, 0.0])
+    assert one.open
+    assert f'line 1: "{line}"' in one.choices
+
+
+@pytest.mark.parametrize("line", ["Rudders fixed at 5 deg", "Model held at a constant speed of 3 m/s", "Body fixed axes at midship",
+                                  "Moments about a point 2.35 m aft of the nose", "Model fixed in heave and pitch"])  # fmt: skip
+def test_other_words_leave_the_point_of_the_arm_to_its_default(line: str) -> None:
+    assert arm_asked(line).shown == "the reference point"
+
+
+def test_a_point_of_the_arm_from_a_named_point() -> None:
+    assert read_in("Arm/table.arm_point", "-2.75 from nose") == {
+        "Arm/table.arm_point": [-2.75, 0.0, 0.0],
+        "axes.datum": "nose",
+    }
+    with pytest.raises(InputError, match="midship"):
+        require_one_datum({"axes.datum": Setting("nose", "confirmed")}, read_in("table.arm_point", "-0.1 from midship"))
+
+
+@pytest.mark.parametrize(
+    ("line", "key", "value"),
+    [
+        ("Drift angle positive with the bow to port of the course", "axes.beta", "v = +U sin(beta)"),
+        ("Drift angle positive with the bow to starboard of the course", "axes.beta", "v = -U sin(beta)"),
+        ("Driftwinkel positiv: Bug nach Backbord", "axes.beta", "v = +U sin(beta)"),
+        ("beta negative with the bow to port", "axes.beta", "v = -U sin(beta)"),
+        ("sideslip positive with the flow from starboard", "axes.beta", "v = +U sin(beta)"),
+        ("Angle of attack positive with the bow down", "axes.alpha", "w = -U sin(alpha)"),
+        ("Anstellwinkel positiv, Bug oben; Anstellwinkel positiv mit Bug nach oben", "axes.alpha", "w = +U sin(alpha)"),
+        ("r positiv nach Backbord drehend", TURN_OF_R, "port"),
+        ("yaw rate positive to starboard", TURN_OF_R, "starboard"),
+    ],
+)
+def test_words_on_the_sign_of_an_angle_or_a_rate(line: str, key: str, value: str) -> None:
+    found = said(line)
+    assert found[key].value == value
+    assert "line 1" in found[key].place
+
+
+@pytest.mark.parametrize("line", ["R positive: centre of the circle to starboard", "Y positive to starboard, N positive bow to starboard",
+                                  "Drift angle positive to starboard", "drift angle from -10 to 10 deg, bow to port"])  # fmt: skip
+def test_other_words_say_no_sign_of_an_angle(line: str) -> None:
+    assert not {"axes.alpha", "axes.beta", TURN_OF_R} & set(said(line))
+
+
+def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
+    b, y = np.array([-8.0, -4.0, 0.0, 4.0, 8.0]), np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+
+    def asked_of(line: str, rate: str = "") -> tuple[dict[str, Question], list[str]]:
+        columns = [RawColumn("beta", "deg", b), RawColumn("Y", "N", y)]
+        columns += [
+            RawColumn("r", "deg/s", b[::-1] * 0 + np.array([1.0, 2, 0, 1, 2])),
+            RawColumn("N", "N*m", -b),
+        ] * bool(rate)
+        raw = RawTable(Path("t.csv"), tuple(columns), np.arange(5), stated=said(*filter(None, (line, rate))))
+        found = understood(raw, {}, {"axes.frame": Setting("FRD", "confirmed")}, accept=True)
+        return {q.key: q for q in found.questions}, [d.why for d in found.doubts]
+
+    beta = asked_of("Drift angle positive with the bow to starboard of the course")[0]["axes.beta"]
+    assert beta.default == "v = -U sin(beta)", "Y and beta have the same sign, as the words say"
+    beta = asked_of("Drift angle positive with the bow to port of the course")[0]["axes.beta"]
+    assert beta.open
+    assert "bow to port" in beta.choices
+    assert "but v = -U sin(beta)" in beta.choices
+    assert not any("by the axes" in why for why in asked_of("", "r positive turning to starboard")[1])
+    assert any(
+        "by the axes r > 0 turns the bow to starboard" in why for why in asked_of("", "r positive turning to port")[1]
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "speed"),
+    [
+        ("LOA = 5.2 m, fresh water 17 °C, carriage speed 3.0 m/s", 3.0),
+        ("towing speed 3 m/s", 3.0),
+        ("speed 5.83 kn", 5.83 * 1852 / 3600),
+        ("Schleppgeschwindigkeit 3,0 m/s", 3.0),
+        ("at a speed of 10.8 km/h", 3.0),
+    ],
+)
+def test_a_speed_in_words_without_a_sign(line: str, speed: float) -> None:
+    assert said(line)["conditions.speed"].value == pytest.approx(speed)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["wind speed 3 m/s", "speed 2 m/s and 3 m/s", "speeds 2 to 3 m/s", "speed above 3 m/s", "speed of sound 1480 m/s"],
+)
+def test_other_speeds_are_not_taken(line: str) -> None:
+    assert "conditions.speed" not in said(line)
+
+
+def test_a_german_overall_length_and_primes_by_the_volume() -> None:
+    found = said("Lüa = 2,30 m; Momentenbezugspunkt 1,05 m hinter dem Bug", marks=Marks(",", "."))
+    assert found["scaling.length"].value == pytest.approx(2.3)
+    assert found["scaling.length_name"].value == "LOA"
+    for words in ("forces by 1/2 rho U^2 V^(2/3)", "Volumen^2/3", "∇^{2/3}"):
+        one = asked(said("LOA = 2.3 m", words))["scaling.length"]
+        assert one.open
+        assert "line 2" in one.choices
+        assert "V^(1/3)" in one.choices

@@ -16,7 +16,7 @@ from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.formats.export import lost_by_all
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.study.checks import sizes
+from coeflab.study.checks import data_gate, sizes, symmetry
 from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
@@ -212,6 +212,42 @@ def test_slopes_of_a_size_that_no_body_has_are_warned_of() -> None:
     assert sizes.least_friction(replace(at, speed=0.02), Scaling(5.0, "L")) == pytest.approx(
         np.pi / 20.0 * 1.328 / 1e5**0.5, rel=1e-12
     )
+
+
+def test_a_turn_within_the_length_of_the_body_is_warned_of() -> None:
+    """Degrees a second as radians."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+    r = 1.1 * table.speed / table.scaling.length * np.linspace(-1.0, 1.0, len(table))
+
+    def found(rate: np.ndarray) -> list[str]:
+        turning = replace(table, motion={**table.motion, "r": rate})
+        return [f"{c.subject}; {c.statistic}; {c.comment}" for c in sizes.check(replace(own, tables=(turning,)))]
+
+    assert not found(r)
+    (text,) = found(57.3 * r)
+    assert "r'; largest |r'| = 63: a circle of 0.016 lengths in radius; Is r in deg/s declared as rad/s" in text
+
+
+def test_numerical_zeros_are_no_findings() -> None:
+    """K of 1e-13 beside N of 10: neither a bias nor readings that do not belong."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+    scatter = np.random.default_rng(5).standard_normal(len(table)) ** 5
+
+    def found(size: float) -> tuple[int, int]:
+        k = size * float(np.nanmax(np.abs(table.forces["N"]))) * scatter
+        wild = replace(table, forces={**table.forces, "K": k}, usable={**table.usable, "K": np.ones(len(table), bool)})
+        gate = [c for c in data_gate.check(replace(own, tables=(wild,))) if "K" in c.subject + c.statistic]
+        fits = [
+            replace(f, sweeps=tuple(replace(s, y=s.y * size) if s.component == "N" else s for s in f.sweeps))
+            for f in own.fits
+        ]
+        of_n = [c for c in symmetry.check(replace(own, fits=tuple(fits))) if c.statistic.startswith("N'")]
+        return len(gate), len(of_n)
+
+    assert all(n > 0 for n in found(1e-3))
+    assert found(1e-13) == (0, 0)
 
 
 @pytest.mark.parametrize("campaign", ["tank_spheroid", "thauv_case_03_synthetic", "flyingfish_water_synthetic"])

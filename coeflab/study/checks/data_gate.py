@@ -31,6 +31,7 @@ citations = ("ittc_uncertainty",)
 LEVEL, SHARED = 0.02, 0.005
 AHEAD = 0.02  # of the speed
 SAME = 0.006  # rad or primed: settings that count as one, 0.34 degrees
+ZEROS = 1e-9  # of the largest primed force or moment: readings below it are numerical zeros
 LARGEST_SWEEP = 200
 SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("q", "ZM"), "p": ("p", "K"),
           "dr": ("dr", "YNK"), "ds": ("ds", "ZM"), "db": ("db", "ZM")}  # fmt: skip
@@ -136,10 +137,17 @@ class _Cell:
     parity: Parity
 
 
+def _largest(table: ForceTable) -> dict[str, float]:
+    """The largest primed size of every component among its usable rows; primes of moments are by one length more."""
+    sizes = {c: np.abs(table.primed_force(c, table.scaling.length)[usable]) for c, usable in table.usable.items()}
+    return {c: float(size.max(initial=0.0)) for c, size in sizes.items()}
+
+
 def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
     """Every reading that a sweep holds, by row and component; of several sweeps the one that predicts it best."""
     cells: dict[tuple[int, str], _Cell] = {}
     length = table.scaling.length
+    zero = ZEROS * max(_largest(table).values(), default=0.0)
     for sweep in _sweeps(table, kept):
         for component, usable in table.usable.items():
             inside = usable[sweep.rows]
@@ -152,7 +160,7 @@ def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[
             variance = table.primed_force(component, length, errors)[rows] ** 2 if known else None
             parity = sweep.parity(component)
             y = table.primed_force(component, length)[rows]
-            if not np.any(y):
+            if np.abs(y).max() <= zero:
                 continue
             if len(rows) > LARGEST_SWEEP:
                 seen = data_gate.screen_many(x, y, limit)
@@ -170,12 +178,14 @@ def _estimates(
     table: ForceTable, tables: Sequence[ForceTable], length: float
 ) -> Iterator[tuple[str, str, str, NDArray[np.intp], Array, Array, Array | None, origin_slope.OriginSlope]]:
     """Slopes at the origin that the table gives: variable, component, symbol, rows, x, y, se, estimate."""
+    largest = _largest(table)
+    zero = ZEROS * max(largest.values(), default=0.0)
     for name, (variable, components) in SLOPES.items():
         if variable not in table.varies:
             continue
         rows = sweep_rows(table, variable, tables, length)
         for component in components:
-            if component not in table.forces:
+            if component not in table.forces or largest.get(component, 0.0) <= zero:
                 continue
             x, y, se, _, _ = collect_points(rows, component, length, np.zeros(len(table)))
             index = rows.rows[table.usable[component][rows.rows]]

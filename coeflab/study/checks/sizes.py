@@ -12,14 +12,16 @@ from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
+from coeflab.tables.force_table import ForceTable
 
-summary = "primed slopes and X0' between friction of a slender body and a bluff plate of side L"
+summary = "rates, primed slopes and X0' between friction of a slender body and a bluff plate of side L"
 citations = ("ittc1957", "schlichting1979", "hoerner1965", "jones1946")
 
 LARGEST = {"X0": 1.2, **dict.fromkeys(("Yv", "Zw"), 2.0), **dict.fromkeys(("Nv", "Mw", "Yr", "Zq", "Nr", "Mq"), 1.0)}
 SLENDER = 20.0  # lengths of a body over its diameter: torpedoes and gliders have 6 to 15
 WATER = 0.8e-6  # m^2/s, at 30 deg C: the thinnest that tests are run in, where the campaign states none
 OF_FRICTION = {"X0": 1.0, "Yv": 0.5, "Zw": 0.5}
+TIGHTEST = 2.0  # r' = L/R: the centre of the circle lies within the body's own length
 NOBODYS = ("1 m", "unit length")  # lengths that are no body's
 
 
@@ -47,7 +49,7 @@ def check(study: Study) -> Sequence[Check]:
     lever. Too small is less than friction of the most slender body, with U95 to spare: a side velocity turns at least half of
     the drag into a side force. Moments have no smallest size, as tail fins can balance them.
     """
-    out: list[Check] = []
+    out = [c for table in study.tables for c in _rates(table, study.plan.scaling or table.scaling)]
     for campaign, table in {t.campaign: t for t in study.tables}.items():
         scaling = study.plan.scaling or table.scaling
         if any(name in scaling.length_name for name in NOBODYS):
@@ -65,6 +67,23 @@ def check(study: Study) -> Sequence[Check]:
         if small:
             out.append(_found(campaign, small, "at least the number behind each, friction of a cylinder of 20 diameters", (
                 f"Are forces in kN declared as N, is the speed {speed} in kn or km/h, or {length} longer than the body?")))  # fmt: skip
+    return out
+
+
+def _rates(table: ForceTable, scaling: Scaling) -> list[Check]:
+    """Turns of less than half a length in radius while the body moves ahead at its speed: a rate in another unit, or a wrong speed."""
+    along = np.sqrt(np.sum([np.asarray(table.motion[m]) ** 2 for m in "uvw"], axis=0))
+    ahead = along > 0.5 * np.asarray(table.speed)
+    out = []
+    for rate in "qr":
+        primes = np.abs(table.primed_motion(rate, scaling.length))[ahead]
+        if np.any(primes > TIGHTEST):
+            largest = float(np.nanmax(primes))
+            out.append(Check(
+                "sizes", f"{table.name} {rate}'", Severity.WARN, f"largest |{rate}'| = {largest:.3g}: a circle of {1.0 / largest:.2g} lengths in radius",
+                f"|{rate}'| = {rate} L / U at most {TIGHTEST:g}, half a length in radius",
+                f"Is {rate} in deg/s declared as rad/s (57 times too large), or the speed {table.conditions.speed:g} m/s too low?",
+            ))  # fmt: skip
     return out
 
 
