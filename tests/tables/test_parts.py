@@ -187,7 +187,9 @@ def test_runs_of_two_patterns_of_names_are_two_tables(stub: Path, tmp_path: Path
     stated = {"conditions.density": 998.2, "axes.reference_point": [1.2, 0.0, 0.0]}
     for seed, k in enumerate((-8, -4, 4, 8)):
         write_run(tmp_path / "cfd" / f"b{k}", {"X": 13.0, "Y": 3.0 * k}, seed=seed, stated=stated)
-        write_run(tmp_path / "cfd" / f"yaw_r0.{seed + 1}rads", {"X": 13.0, "Y": 2.0 + seed}, seed=seed + 9, stated=stated)
+        write_run(
+            tmp_path / "cfd" / f"yaw_r0.{seed + 1}rads", {"X": 13.0, "Y": 2.0 + seed}, seed=seed + 9, stated=stated
+        )
     form = invoke("import", tmp_path / "cfd", "--out", tmp_path / "out")
     assert "names" in flat(form.output)
     assert left_open(form) == ["axes.frame", "scaling.length", "conditions.speed"], form.output
