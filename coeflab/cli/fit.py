@@ -232,10 +232,10 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables import uncertainty as budget_tables
 
     show.sentence(tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits))
-    show.sentence(tables.unused(study.tables))
     if symbols:
         _of_symbols(study, symbols)
     else:
+        show.sentence(tables.unused(study.tables))
         show.text()
         show.table(tables.coefficients(study) if show.whole() else tables.coefficients_in(study, show.width()))
         models = tuple(m for f in study.fits for m in f.models)

@@ -348,16 +348,20 @@ def file_typed(path: Path) -> Path:
     InputError
         Nothing is there; a vehicle with an arm, which has no parameter file.
     """
-    shipped_body = (shipped("geometry") / path,) if len(path.parts) == 1 else ()
-    for place in (path, *shipped_body):
-        body = place / "body.toml" if place.is_dir() else place
-        if body.suffix == ".toml" and body.is_file():
-            head = read_toml(body).content.get("body")
-            if isinstance(head, dict) and head.get("reader") == "arm":
-                raise InputError(
-                    f"{shown(str(path), 300)}, a vehicle with an arm, which has no parameter file", "a parameter file",
-                    advice=f"Write its equations: coeflab derive {path} --to c. Simulate it: coeflab simulate {path}.",
-                )  # fmt: skip
+    plain = Path(path)
+    try:  # a name may be longer than any path can be
+        typed = next((p for p in (plain, shipped("geometry") / plain) if p.exists()), plain)
+        body = typed / "body.toml" if typed.is_dir() else typed
+        is_body = body.suffix == ".toml" and body.is_file()
+    except OSError:
+        is_body = False
+    if is_body:
+        head = read_toml(body).content.get("body")
+        if isinstance(head, dict) and head.get("reader") == "arm":
+            raise InputError(
+                f"{shown(str(path), 300)}, a vehicle with an arm, which has no parameter file", "a parameter file",
+                advice=f"Write its equations: coeflab derive {path} --to c. Simulate it: coeflab simulate {path}.",
+            )  # fmt: skip
     return named(path, SHIPPED)
 
 

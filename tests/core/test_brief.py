@@ -81,7 +81,7 @@ def test_nouns_of_other_verbs_are_short(suboff: Study) -> None:
 def test_a_noun_says_what_it_holds(suboff: Study) -> None:
     assert repr(suboff).startswith("<Study suboff: ")
     assert "\n" not in repr(suboff)
-    assert "of 40 coefficients valued" in repr(suboff.parameter_files["suboff_fully_appended"])
+    assert "of 41 coefficients valued" in repr(suboff.parameter_files["suboff_fully_appended"])
     assert repr(suboff.coefficients[0]).startswith("<Coefficient Yv' = -0.02")
     assert repr(suboff.plan).startswith("Plan(name='suboff', title=")
     assert repr(suboff.body.source).startswith("Source(")  # type: ignore[union-attr]
