@@ -80,16 +80,7 @@ ESTIMATED = """([x, y, se, odd]) => {
   const f = slopeAtOrigin(document.getElementById("bench").bench.data.constants).estimate(x, y, se, { odd });
   return [f.value, f.u95, f.status, f.removed];
 }"""
-KINDS = (
-    "stated errors",
-    "wrong point",
-    "one side",
-    "odd by symmetry",
-    "mirrored",
-    "repeated",
-    "half hidden",
-    "half hidden, one side",
-)
+KINDS = ("stated errors", "wrong point", "one side", "odd by symmetry", "mirrored", "repeated")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -107,20 +98,11 @@ def test_sweeps_of_every_kind(page, kind):
         x, y = np.concatenate([x[7:], -x[7:]]), np.concatenate([y[7:], -y[7:]])
     if kind == "repeated":
         x, y = np.concatenate([x, x[:4], x[8:]]), np.concatenate([y, y[:4], y[8:] + 1e-4])
-    if kind.startswith("half hidden"):  # terms of opposed signs: the whole polynomial widens the interval
-        one = kind.endswith("one side")
-        x = np.linspace(0.0, 0.28, 12) if one else np.linspace(-0.3, 0.3, 13)
-        y = 3e-4 - 0.025 * x - 0.02 * x**2 + 0.1 * x**4 if one else -0.012 * x + 0.05 * x * np.abs(x) - 0.12 * x**3
-        y = y + (0.01 if one else 0.03) * np.abs(y).max() * np.random.default_rng(1 if one else 4).standard_normal(
-            len(x)
-        )
     odd = kind == "odd by symmetry"
     found = origin_slope.estimate(x, y, se, odd=odd)
     value, u95, status, removed = page.evaluate(
         ESTIMATED, [x.tolist(), y.tolist(), None if se is None else se.tolist(), odd]
     )
-    if kind.startswith("half hidden"):
-        assert found.u95 > 0.0045  # of the mixture alone it is 0.0021 and 0.0033
     # Exact mirror images leave no noise to the even part: rows in another order move Python's own value by 4e-8.
     within = 1e-6 if kind == "mirrored" else SLOPE
     assert close(value, found.value, within, found.u95)

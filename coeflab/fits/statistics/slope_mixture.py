@@ -12,11 +12,6 @@ largest curved size is uniform, the others lie below it, v|v| and v^3 most often
 No interval adapts to every truth (Low 1997): where noise can hide a cancellation, it is longer. One row may be wrong:
 its deletion is a further member, by bordering, without a second fit.
 
-Where noise half hides terms of opposed signs, such a mixture is too sure: it draws each of them towards nothing. So where
-an F test doubts the straight line (0.25, Bancroft 1964) and does not yet rule it out (0.001), and a polynomial is not ruled
-out (0.05), value +- U95 takes in the slope of the whole polynomial by least squares, to 90 % on either side: with the
-mixture wholly to one side of the truth, that end alone covers in nine of ten.
-
 The constants, the ends of the interval included, were chosen on simulated truths: random curves (signed powers, Gaussian
 processes, kinks, onsets, saturation, even parts) and the families of ``tests/coverage``; none on a measured body.
 """
@@ -49,8 +44,6 @@ SIDES = {"series": 0.9, "p1": 0.6, "on.25": 0.4, "on.55": 0.4, "on.8": 0.4}
 GROWING, SETTING, COMMON, LOOSE = 0.2, 0.2, 0.8, 0.15
 # Power of the likelihood; tail left out at each end: at 1 % noise (of the largest force), per decade of noise, bounds.
 POWER, TAIL, TAIL_PER_DECADE, TAILS = 0.63, 0.016, -0.0085, (0.01, 0.025)
-# Least-squares slope of the whole polynomial: probabilities of the F test, least probability of no remainder, share within an end.
-DOUBTED, LEFT, ONE_END = (0.001, 0.25), 0.05, 0.9
 # Prior probability that a row is wrong.
 WRONG = 0.005
 # Size, in units of the noise, of the constant of a curve that is odd by declaration: next to nothing.
@@ -297,7 +290,7 @@ def _log_density(freedom: float) -> float:
 def _evaluate(
     m: _Member, start: Array, rest: Array, nu: float, floor: Array, least: Array, deletions: bool
 ) -> tuple[list[Array], list[Array]]:
-    """Log weight, slope, its variance, sum of squares (jk, b); the first three again without each row (j, b, n)."""
+    """Log weight, slope, its variance, noise variance (jk, b); the first three again without each row (j, b, n)."""
     b = len(start)
     whitened, across = np.swapaxes(m.root @ rest.T, 1, 2)[:, None], np.swapaxes(m.columns, 1, 2)[:, None]
     precision = m.precision[:, None]
@@ -309,7 +302,7 @@ def _evaluate(
     mean, unit_variance = terms[..., 1], m.inverse[:, :, 1, 1]
     likelihood = _log_density(nu) - 0.5 * m.log_det[..., None] - 0.5 * nu * np.log(squares)
     weight, variance = m.log_prior[..., None] + POWER * likelihood, np.maximum(squares / nu, least)
-    main = [z.reshape(-1, b) for z in (weight, mean, variance * unit_variance[..., None], squares)]
+    main = [z.reshape(-1, b) for z in (weight, mean, variance * unit_variance[..., None], variance)]
     if not deletions:
         return main, []
     error = left @ m.root[:, None]
@@ -327,24 +320,6 @@ def _evaluate(
     centre = (w * slope).sum(1) / total
     spread = (w * (variance + (slope - centre[:, None]) ** 2)).sum(1) / total
     return main, [top + np.log(total), centre, spread]
-
-
-def _least_squares(
-    design: Design, slope: Array, squares: Array, rows: float, least: Array
-) -> tuple[Array, Array, Array]:
-    """Slope by the whole polynomial, its reach either way, and probability of its gain over a straight line, (b,) each.
-
-    ``slope`` and ``squares`` (k, b) are those of the member without a remainder: its last sizes leave every term free.
-    """
-    m = design.members[0]
-    free, bound = (m.precision < 1.0).sum(1), m.precision[:, 2:].sum(1)
-    straight = int(np.flatnonzero(bound == bound.max())[-1])  # of constants the freest
-    freedom, more = rows - free[-1], free[-1] - free[straight]
-    if freedom < 1.0 or more < 1:
-        return slope[-1], np.zeros(slope.shape[1]), np.ones(slope.shape[1])
-    variance = np.maximum(squares[-1] / freedom, least)
-    reach = special.stdtrit(freedom, ONE_END) * np.sqrt(variance * m.inverse[0, -1, 1, 1])
-    return slope[-1], reach, special.fdtrc(more, freedom, (squares[straight] - squares[-1]) / more / variance)
 
 
 def estimate_many(design: Design, y: Array, stated: float | None = None, *, deletions: bool = True) -> Slopes:
@@ -377,11 +352,10 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
 
     parts = [_evaluate(m, start, rest, nu, floor, least, deletions) for m in design.members]
     main, gone = [p[0] for p in parts], [p[1] for p in parts]
-    weight, mean, variance, squares = (np.concatenate(z).T for z in zip(*main))
+    weight, mean, variance, noise = (np.concatenate(z).T for z in zip(*main))
     evidence = special.logsumexp(weight, axis=1)
     weights = special.softmax(weight, axis=1)
-    noise = np.sqrt((weights * np.maximum(squares / nu, least[:, None])).sum(1))
-    middle = (weights * mean).sum(1)
+    noise, middle = np.sqrt((weights * noise).sum(1)), (weights * mean).sum(1)
     tail = np.clip(TAIL + TAIL_PER_DECADE * np.log10(100.0 * np.maximum(noise, ROUNDING)), *TAILS)
     scale, freedom = np.sqrt(variance), np.full(mean.shape, float(nu))
     wrong, without = np.zeros((b, n)), np.full((b, n), np.nan)
@@ -400,12 +374,7 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
     ends, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
-    polynomial, reach, chance = _least_squares(design, parts[0][0][1], parts[0][0][3], nu + design.flat, least)
-    hidden = (chance > DOUBTED[0]) & (chance < DOUBTED[1]) & (weights[:, : len(parts[0][0][1])].sum(1) > LEFT)
-    reach = reach + np.abs(polynomial - ends[:, 1])
-    low = np.where(hidden, np.minimum(ends[:, 0], ends[:, 1] - reach), ends[:, 0])
-    high = np.where(hidden, np.maximum(ends[:, 2], ends[:, 1] + reach), ends[:, 2])
-    low, value, high = np.stack([low, ends[:, 1], high]) * unit
+    low, value, high = ends.T * unit
     return Slopes(value, low, high, sd * unit, noise * size, middle * unit, wrong, without, weights)
 
 

@@ -27,15 +27,6 @@ const slopeAtOrigin = (k) => {
     }
     return low * Math.sqrt(nu / (1 - low * low));
   };
-  const beyondF = (more, nu, f) => {
-    const z = more * f / (nu + more * f), b = 0.5 * nu;
-    let a = more % 2 ? 0.5 : 1, below = more % 2 ? 2 * studentBelow(nu, Math.sqrt(z)) - 1 : 1 - (1 - z) ** b;
-    for (; a < 0.5 * more; a++) {
-      const beta = Math.exp(logGammaOfHalf(2 * a) + logGammaOfHalf(nu) - logGammaOfHalf(2 * a + nu));
-      below -= z ** a * (1 - z) ** b / (a * beta);
-    }
-    return 1 - below;
-  };
   const TABLE = Float64Array.from(grid(1, 2000, (i) => Math.sin(0.5 * Math.PI * (-1 + i / 1000))));
   const tables = new Map();
   const tableOf = (nu) => {
@@ -328,7 +319,6 @@ const slopeAtOrigin = (k) => {
       main.mean.push(mean);
       main.variance.push(variance * unit);
       main.noise.push(variance);
-      main.squares.push(squares);
       if (deletions) {
         const row = { weight: new Float64Array(n), slope: new Float64Array(n), variance: new Float64Array(n) };
         for (let r = 0; r < n; r++) {
@@ -388,18 +378,6 @@ const slopeAtOrigin = (k) => {
     return s.length % 2 ? s[h] : 0.5 * (s[h - 1] + s[h]);
   };
 
-  // Slope by the whole polynomial and its reach either way, where a straight line is doubted and not ruled out; null elsewhere.
-  const wholePolynomial = (d, main, rows, least) => {
-    const cells = d.members[0].cells, last = cells.length - 1, free = (cell) => cell.precision.reduce((s, v) => s + (v < 1 ? 1 : 0), 0);
-    const bound = cells.map((cell) => cell.precision.slice(2).reduce((s, v) => s + v, 0)), straight = bound.lastIndexOf(Math.max(...bound));
-    const freedom = rows - free(cells[last]), more = free(cells[last]) - free(cells[straight]);
-    if (freedom < 1 || more < 1) return null;
-    const variance = Math.max(main.squares[last] / freedom, least);
-    const chance = beyondF(more, freedom, (main.squares[straight] - main.squares[last]) / more / variance);
-    if (!(chance > k.DOUBTED[0] && chance < k.DOUBTED[1])) return null;
-    return { slope: main.mean[last], reach: studentAt(freedom, k.ONE_END) * Math.sqrt(variance * cells[last].inverse[d.p + 1]) };
-  };
-
   const slopesOf = (d, y, stated, deletions = true) => {
     const n = d.n, centre = median(y);
     const size = y.reduce((s, v) => Math.max(s, Math.abs(v - centre)), 0) || 1;
@@ -410,7 +388,7 @@ const slopeAtOrigin = (k) => {
     const floor = n * k.ROUNDING ** 2 + (stated === null ? 0 : k.STATED_FREEDOM * stated / size ** 2);
     const least = stated === null ? 0 : stated / size ** 2;
     const check = deletions && n - d.flat >= 3;
-    const main = { weight: [], mean: [], variance: [], noise: [], squares: [] }, gone = grid(0, n, () => []);
+    const main = { weight: [], mean: [], variance: [], noise: [] }, gone = grid(0, n, () => []);
     for (const m of d.members) evaluate(m, d, start, rest, nu, floor, least, check, main, gone);
     const evidence = logSum(main.weight), weights = main.weight.map((w) => Math.exp(w - evidence));
     let noise = 0, middle = 0;
@@ -432,13 +410,6 @@ const slopeAtOrigin = (k) => {
       parts = main.weight.map((w, i) => ({ weight: w, mean: main.mean[i], scale: Math.sqrt(main.variance[i]), freedom: nu }));
     }
     const { ends, sd } = mixtureQuantiles(parts, nu, tail);
-    const plain = weights.slice(0, d.members[0].cells.length).reduce((s, w) => s + w, 0);
-    const whole = plain > k.LEFT ? wholePolynomial(d, main, nu + d.flat, least) : null;
-    if (whole) {
-      const reach = whole.reach + Math.abs(whole.slope - ends[1]);
-      ends[0] = Math.min(ends[0], ends[1] - reach);
-      ends[2] = Math.max(ends[2], ends[1] + reach);
-    }
     return { lower: ends[0] * unit, value: ends[1] * unit, upper: ends[2] * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
   };
 
