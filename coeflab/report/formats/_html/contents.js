@@ -61,7 +61,9 @@ const contents = document.querySelector("details.contents"), list = contents.que
     const wide = boxes.filter(b => b.scrollWidth > b.clientWidth + 1);
     for (const b of wide) { named(b.querySelector("table")); b.classList.add("stacked"); }
   };
+  let asked = 0;  // many folds that open at once are looked at once
+  const soon = () => { asked ||= requestAnimationFrame(() => { asked = 0; stack(); }); };
   phone.addEventListener("change", stack);
-  for (const fold of document.querySelectorAll(".fold")) fold.addEventListener("toggle", stack);
+  for (const fold of document.querySelectorAll(".fold")) fold.addEventListener("toggle", soon);
   stack();
 }
