@@ -55,6 +55,14 @@ def command(
     ),
     dry_run: bool = typer.Option(False, "--dry-run", help="Write the cases; print cells, memory and hours expected."),
     go_on: bool = typer.Option(False, "--continue", help="Go on with a tow that ended, was stopped or killed."),
+    finished: str = typer.Option(
+        "",
+        "--finished",
+        metavar="CAMPAIGN",
+        autocompletion=complete.campaigns,
+        help="Take over its finished conditions (same case and mesh).",
+        show_default=False,
+    ),
     status: bool = typer.Option(False, "--status", help="Print how far a tow is, from any terminal."),
     collect: bool = typer.Option(False, "--collect", help="Make campaign, fits and report of what is finished."),
     runner: str = typer.Option(
@@ -94,11 +102,11 @@ def command(
     if not body and out is not None and (out / PLAN).is_file():
         if not go_on and not dry_run and has_begun(out):
             _refuse_begun(out)
-        _tow("", matrix, solver, out, dry_run, runner, cores, json)
+        _tow("", matrix, solver, out, dry_run, runner, cores, json, finished=finished)
         return
     if not body and matrix is None:
         raise InputError("no body", "a body.toml, its folder or a shipped body; or the folder of a tow", column="BODY")
-    _tow(body, matrix, solver, out, dry_run, runner, cores, json, go_on)
+    _tow(body, matrix, solver, out, dry_run, runner, cores, json, go_on, finished)
 
 
 def _folder(out: Path | None, body: str) -> Path:
@@ -121,7 +129,7 @@ def _refuse_begun(folder: Path) -> None:
 
 def _tow(
     said: str, matrix: Path | None, solver: str, out: Path | None, dry_run: bool, runner: str, cores: int, json: bool,
-    go_on: bool = True,
+    go_on: bool = True, finished: str = "",
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
     from coeflab.core.files import located
@@ -149,6 +157,10 @@ def _tow(
             tow = tank_room.laid_out(tank, surface, place, own)
         if tow.restored:
             show.error(f"warning: edited by hand, and again as tank.toml has it: {', '.join(tow.restored)}")
+        if finished:
+            taken = tank_room.taken_over(tow, located(finished, "cfd_data"))
+            if not json:
+                show.sentence(f"Taken over from {finished}: {len(taken)} of {len(tow.tank.matrix)} conditions.")
         if dry_run:
             asked = [*([said] if said else []), *(["--matrix", str(matrix)] if matrix else [])]
             asked += ["--solver", solver] if solver else []
@@ -173,6 +185,7 @@ def _dry(
     from coeflab.core.machine import cores as machine_cores
     from coeflab.core.machine import physical_memory
     from coeflab.report.tables import tow as tables
+    from coeflab.tank.folder import has_begun
     from coeflab.tank.states import states_of, time_left
 
     budget = cores or int(tow.tank.runner_options.get("cores", 0)) or machine_cores()
@@ -219,7 +232,8 @@ def _dry(
         show.command_line("Next", f"{shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
     else:
         show.text(f"Cases in {folder}")
-        show.command_line("Next", f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
+        begun = before is not None or has_begun(folder)
+        show.command_line("Next", f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * begun)
 
 
 def _at_once(tow: Tow, budget: int) -> float:

@@ -33,7 +33,7 @@ from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind, TowCondition
 from coeflab.tank.towed_body import TowedBody
 
-RUNS = "runs.csv"
+RUNS, HISTORIES = "runs.csv", "histories"
 HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
 CONVERGED = "converged"
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
@@ -66,6 +66,8 @@ class TowedRun:
         Keys of the run and of the mesh that it needs; empty for a method without runs.
     history : Run or None
         For the short history that the campaign keeps.
+    short : bytes
+        That short history, of a run whose fields and history are gone (`coeflab.tank.earlier`).
     """
 
     condition: TowCondition
@@ -76,6 +78,7 @@ class TowedRun:
     case: str = ""
     mesh: str = ""
     history: Run | None = None
+    short: bytes = b""
 
     @property
     def counts(self) -> bool:
@@ -201,8 +204,9 @@ def campaign_files(
     ).encode()
     files[RUNS] = _runs_text(runs)
     for r in runs:
-        if r.history is not None and len(r.history.history):
-            files[f"histories/{r.condition.name}.csv"] = short_history(r.history)
+        short = r.short if r.history is None or not len(r.history.history) else short_history(r.history)
+        if short:
+            files[f"{HISTORIES}/{r.condition.name}.csv"] = short
     return files
 
 

@@ -31,7 +31,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
-from coeflab.tank.jobs import PATIENCE, Job, JobState, Progressed, Step, only_one, progress, read_job, write_progress
+from coeflab.tank.jobs import (
+    EARLIER,
+    PATIENCE,
+    Job,
+    JobState,
+    Progressed,
+    Step,
+    only_one,
+    progress,
+    read_job,
+    write_progress,
+)
 from coeflab.tank.processes import end_session, ends_with, memory, started
 
 if TYPE_CHECKING:
@@ -94,6 +105,7 @@ def carry_out(folder: Path, alone: bool = False) -> Progressed:
         if before.state is JobState.RUNNING and not alone:
             raise InputError(f"a job that process {before.process} on {before.host} carries out", "one job at a time in a folder",
                              file=job.folder, advice="Wait for it, or end that process.")  # fmt: skip
+        (job.folder / EARLIER).unlink(missing_ok=True)  # from now on the run is our own
         with asked_to_end() as asked:
             return _Attempt(job, before, lock, asked).made()
 

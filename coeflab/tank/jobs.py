@@ -11,7 +11,7 @@ import os
 import socket
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
@@ -30,6 +30,7 @@ if sys.platform != "win32":
     import fcntl
 
 JOB, STATE, LOCK = "job.json", "state.json", ".lock"  # in the folder of every job
+EARLIER = "earlier.json"  # in that of a run whose row an earlier tow made (`coeflab.tank.earlier`)
 KIND = "coeflab job 1"
 ANEW = "`coeflab tow` writes it anew."
 SILENT = 300.0  # s without a sign of life from another machine, after which a job counts as stopped
@@ -302,14 +303,22 @@ def progress(job: Job) -> Progressed:
 
 
 def outstanding(jobs: Sequence[Job]) -> tuple[Job, ...]:
-    """The jobs that a runner has to carry out, in their order: all but those that are kept.
+    """The jobs that a runner has to carry out, in their order: runs that are not kept, and the meshes that these need.
 
     Raises
     ------
     InputError
         A ``state.json`` is no state of a job.
     """
-    return tuple(job for job in jobs if not progress(job).state.is_kept)
+    left = [job for job in jobs if not progress(job).state.is_kept]
+    idle = idle_meshes(jobs, {job.name for job in left})
+    return tuple(job for job in left if job.name not in idle)
+
+
+def idle_meshes(jobs: Sequence[Job], left: Collection[str]) -> frozenset[str]:
+    """Names of the jobs that others need, but none of those that are left to do."""
+    ever = {name for job in jobs for name in job.needs}
+    return frozenset(ever - {name for job in jobs if job.name in left for name in job.needs})
 
 
 def _is_carried_out(folder: Path, found: Progressed) -> bool:

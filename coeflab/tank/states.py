@@ -10,7 +10,7 @@ from pathlib import Path
 from coeflab.core.errors import InputError
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
-from coeflab.tank.jobs import JOB, Job, JobState, Progressed, progress, read_job
+from coeflab.tank.jobs import JOB, Job, JobState, Progressed, idle_meshes, progress, read_job
 
 FAILED = (JobState.CRASHED, JobState.DIVERGED, JobState.UNCONVERGED)  # of a mesh: nothing can be run on it
 
@@ -65,7 +65,8 @@ def rows_of(jobs: Sequence[Job]) -> tuple[JobRow, ...]:
         A state.json is none.
     """
     now = {job.name: progress(job) for job in jobs}
-    return tuple(_row(job, now[job.name], blocked_by(job, now)) for job in jobs)
+    idle = idle_meshes(jobs, {name for name, found in now.items() if not found.state.is_kept})
+    return tuple(_row(job, now[job.name], blocked_by(job, now), job.name in idle) for job in jobs)
 
 
 def blocked_by(job: Job, now: dict[str, Progressed]) -> str:
@@ -73,9 +74,11 @@ def blocked_by(job: Job, now: dict[str, Progressed]) -> str:
     return next((f"{n} is {now[n].state.value}" for n in job.needs if n in now and now[n].state in FAILED), "")
 
 
-def _row(job: Job, found: Progressed, blocked: str) -> JobRow:
+def _row(job: Job, found: Progressed, blocked: str, idle: bool) -> JobRow:
     if found.state.is_kept:
         return JobRow(job, found, 0.0)
+    if idle and found.state is not JobState.RUNNING:
+        return JobRow(job, replace(found, why="not needed: its runs are kept"), 0.0)
     if found.state is JobState.WAITING and blocked:
         return JobRow(job, replace(found, why=blocked), 0.0)
     if found.state in (JobState.WAITING, JobState.CHANGED):

@@ -30,6 +30,7 @@ from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
 from coeflab.tank.declaration import TankFile
+from coeflab.tank.earlier import earlier_run, take_over
 from coeflab.tank.folder import (
     BODY,
     CAMPAIGN,
@@ -311,6 +312,25 @@ def reopened(
     return tank, body, own
 
 
+def taken_over(tow: Tow, campaign: Path) -> tuple[str, ...]:
+    """Take over what an earlier tow of the same cases finished, so that it is not run again; names of these conditions.
+
+    Parameters
+    ----------
+    tow : Tow
+        Laid out.
+    campaign : Path
+        Of the earlier tow, such as a folder of ``cfd_data``.
+
+    Raises
+    ------
+    InputError
+        The folder has no campaign of a tow, or none of its conditions has a case and mesh of this one.
+    """
+    with only_one(tow.folder, "tow"):
+        return take_over(campaign, tow.jobs)
+
+
 def opened(folder: Path) -> Tow:
     """A tow as its folder has it; nothing is written, so that another process may carry it out meanwhile.
 
@@ -487,8 +507,12 @@ def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str, str]:
         if job is None:
             out.append(TowedRun(condition, JobState.WAITING, "no job of that name"))
             continue
-        remarks = [r for name in job.needs if name in states for r in states[name].remarks]
         now = states[condition.name]
+        earlier = earlier_run(condition, job, now.state)
+        if earlier is not None:
+            out.append(earlier)
+            continue
+        remarks = [r for name in job.needs if name in states for r in states[name].remarks]
         out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
     return tuple(out), "", "cfd"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -14,8 +15,9 @@ from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
 from coeflab.report.tables import tow as tables
-from coeflab.tank.folder import CAMPAIGN, PLAN, read_plan
-from coeflab.tank.jobs import Job, JobState, only_one
+from coeflab.tank.folder import CAMPAIGN, PLAN, has_begun, read_plan
+from coeflab.tank.jobs import EARLIER, Job, JobState, only_one, outstanding
+from coeflab.tank.states import states_of
 from coeflab.tank.tank import Tank
 from coeflab.tank.tank_file import read_tank
 from coeflab.tank.towed_body import TowedBody
@@ -135,6 +137,66 @@ def test_a_finished_tow_is_kept_and_gives_the_same_bytes(whole: tuple[Tow, Colle
         late.write("161,-9,-9,-9\n")
     room.collected(again, fitted=False)
     assert {p.name: p.read_bytes() for p in (tow.folder / CAMPAIGN).rglob("*") if p.is_file()} == before
+
+
+def test_what_an_earlier_tow_finished_is_taken_over_with_the_same_bytes(
+    whole: tuple[Tow, Collected], tmp_path: Path
+) -> None:
+    earlier, _ = whole
+    campaign = earlier.folder / CAMPAIGN
+    again = room.laid_out(earlier.tank, earlier.body, tmp_path / "x", earlier.folder / "tank.toml")
+    runs = [job.name for job in again.jobs if job.needs]
+    assert room.taken_over(again, campaign) == tuple(runs)
+    room.carried_out(again, 0, lambda: pytest.fail("nothing is left to run"))
+    room.collected(again, fitted=False)
+    for path in (p for p in campaign.rglob("*") if p.is_file()):
+        assert (tmp_path / "x" / CAMPAIGN / path.relative_to(campaign)).read_bytes() == path.read_bytes(), path.name
+    rows = {row.job.name: row for row in states_of(again.folder)}
+    mesh = next(row for row in rows.values() if not row.job.needs)
+    assert (mesh.left, mesh.progress.why) == (0.0, "not needed: its runs are kept")
+    assert (rows["drift+6"].left, rows["drift+6"].progress.state) == (0.0, JobState.FINISHED)
+
+
+def test_only_new_conditions_are_run_beside_those_that_are_taken_over(
+    whole: tuple[Tow, Collected], tmp_path: Path
+) -> None:
+    matrix = tank_file(tmp_path, yaw="[0.1, 0.2, 0.3]")
+    tank, body = room.read(shipped("geometry") / "tow_spheroid", matrix)
+    tow = room.laid_out(tank, body, tmp_path / "x", matrix)
+    room.taken_over(tow, whole[0].folder / CAMPAIGN)
+    assert [job.name for job in outstanding(tow.jobs) if job.needs] == ["yaw+0.3"]
+    made = towed(tow)
+    assert all(run.counts for run in made.runs)
+    first = {run.condition.name: run.summary for run in whole[1].runs}
+    for run in made.runs:
+        assert run.summary is not None
+        if run.condition.name in first:
+            for name, mean in first[run.condition.name].means.items():
+                assert run.summary.means[name] == pytest.approx(mean, rel=1e-5, abs=1e-9)
+    assert not (tmp_path / "x" / "yaw+0.3" / EARLIER).exists()
+    assert (tmp_path / "x" / "yaw+0.2" / EARLIER).exists()
+
+
+def test_rows_of_other_cases_and_rows_edited_by_hand_are_not_taken_over(
+    whole: tuple[Tow, Collected], tmp_path: Path
+) -> None:
+    campaign = tmp_path / "campaign"
+    shutil.copytree(whole[0].folder / CAMPAIGN, campaign)
+    matrix = tank_file(tmp_path)
+    matrix.write_text(matrix.read_text().replace("1 m/s", "2 m/s"))
+    tank, body = room.read(shipped("geometry") / "tow_spheroid", matrix)
+    other = room.laid_out(tank, body, tmp_path / "other", matrix)
+    with pytest.raises(InputError, match="none with a case and mesh of this tow"):
+        room.taken_over(other, campaign)
+    same = room.laid_out(whole[0].tank, whole[0].body, tmp_path / "same", whole[0].folder / "tank.toml")
+    drift = campaign / "drift.csv"
+    drift.write_text(drift.read_text().replace("drift+6", "drift+7"))
+    with pytest.raises(InputError, match="edited by hand"):
+        room.taken_over(same, campaign)
+    (campaign / "runs.csv").unlink()
+    with pytest.raises(InputError, match=r"no runs\.csv"):
+        room.taken_over(same, campaign)
+    assert not has_begun(same.folder)
 
 
 def test_a_moved_folder_is_still_the_tow(whole: tuple[Tow, Collected], tmp_path: Path) -> None:

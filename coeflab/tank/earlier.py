@@ -1,0 +1,184 @@
+"""Conditions that an earlier tow finished, taken over from its campaign: meshes and fields may be gone, the rows are kept.
+
+A row is taken over where the sha256 of its case and of its mesh in ``runs.csv`` are the keys that the jobs have now. Its
+numbers are those of the tables, digit for digit, so that the campaign is the same bytes as if the runs were still there.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import write_atomically
+from coeflab.core.provenance import sha256_of
+from coeflab.core.text.toml import read_toml
+from coeflab.tables.campaign import FILE
+from coeflab.tables.histories import Convergence
+from coeflab.tables.raw_table import Stated
+from coeflab.tables.runs import RunSummary
+from coeflab.tank.campaign import HISTORIES, RUNS, TowedRun
+from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, progress, write_progress
+from coeflab.tank.test_matrix import TowCondition
+
+_FORCE = re.compile(r"(?P<error>se_)?(?P<name>[XYZKMN])(?P<patch>\(.+\))? \[(?P<unit>N|N\*m)\]")
+_OURS = "a campaign that `coeflab tow` made"
+
+
+def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
+    """Count runs as carried out that the campaign of an earlier tow has with the same case and mesh.
+
+    Parameters
+    ----------
+    campaign : Path
+        Folder with campaign.toml, its tables, runs.csv and histories.
+    jobs : sequence of Job
+        Of the tow, written. Those that are kept already are left as they are.
+
+    Returns
+    -------
+    tuple of str
+        Names of the conditions that were taken over.
+
+    Raises
+    ------
+    InputError
+        The folder has no such campaign, a table is not as campaign.toml has it, or no row is of a case of this tow.
+    OutputError
+        The folder of a job cannot be written.
+    """
+    ended, rows = _ended(campaign), _rows(campaign)
+    keys = {job.name: job.key for job in jobs}
+    taken = []
+    for job in jobs:
+        said = ended.get(job.name)
+        mesh = "+".join(keys.get(name, "") for name in job.needs)
+        if said is None or (said["case sha256"], said["mesh sha256"]) != (job.key, mesh):
+            continue
+        taken.append(job.name)
+        if progress(job).state.is_kept:
+            continue
+        row = _content(said, rows.get(job.name, {}))
+        history = campaign / HISTORIES / f"{job.name}.csv"
+        row["history"] = history.read_bytes().decode() if history.is_file() else ""
+        write_atomically(job.folder / EARLIER, (json.dumps(row, indent=1) + "\n").encode())
+        write_progress(
+            job.folder,
+            Progressed(
+                JobState(said["state"]), job.key, iteration=_number(row["iterations"]), means=row["means"],
+                errors=row["errors"], why=row["why"], remarks=tuple(row["remarks"]),
+            ),
+        )  # fmt: skip
+    if not taken:
+        raise InputError(f"{len(ended)} conditions that ended, none with a case and mesh of this tow", "the same keys in "
+                         f"{RUNS}", file=campaign, column="--finished",
+                         advice="Tow with the tank.toml beside that campaign, the same body and the same version of the solver.")  # fmt: skip
+    return tuple(taken)
+
+
+def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun | None:
+    """A condition as the earlier tow left it; None where its run is our own.
+
+    Parameters
+    ----------
+    condition : TowCondition
+    job : Job
+    state : JobState
+        Now; a run whose key has changed since is None too.
+
+    Raises
+    ------
+    InputError
+        The file in the job's folder is damaged.
+    """
+    path = job.folder / EARLIER
+    if not state.is_kept or not path.is_file():
+        return None
+    try:
+        row: dict[str, Any] = json.loads(path.read_bytes())
+        summary = None
+        if row["means"]:
+            cells = {"cells": Stated(row["cells"], FILE)} if row["cells"] else {}
+            summary = RunSummary(
+                condition.name, Convergence(row["status"]), row["summary_why"], row["means"], row["errors"],
+                iterations=_number(row["iterations"]), stated_conditions=cells,
+                patches={name: (mean, unit) for name, (mean, unit) in row["patches"].items()},
+            )  # fmt: skip
+        return TowedRun(
+            condition,
+            state,
+            row["why"],
+            summary,
+            tuple(row["remarks"]),
+            job.key,
+            row["mesh"],
+            short=row["history"].encode(),
+        )
+    except (ValueError, KeyError, TypeError, AttributeError) as why:
+        advice = "Delete it and state.json beside it: the condition is run anew."
+        raise InputError(
+            f"no row of an earlier tow ({shown(why)[1:-1]})", "what coeflab wrote", file=path, advice=advice
+        ) from None
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else float(value)
+
+
+def _ended(campaign: Path) -> dict[str, dict[str, str]]:
+    """Rows of runs.csv that are kept, by condition."""
+    path = campaign / RUNS
+    try:
+        with path.open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        kept = {r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]}
+    except OSError:
+        raise InputError(f"no {RUNS}", _OURS, file=campaign, column="--finished") from None
+    except (ValueError, KeyError, TypeError, csv.Error) as why:
+        raise InputError(f"no table of runs ({shown(why)[1:-1]})", _OURS, file=path, column="--finished") from None
+    return kept
+
+
+def _rows(campaign: Path) -> dict[str, Mapping[str, str]]:
+    """Rows of the tables that were run, by condition; a table that somebody has edited is refused."""
+    file = read_toml(campaign / FILE)
+    out: dict[str, Mapping[str, str]] = {}
+    for i, table in enumerate(file.content.get("table", [])):
+        if "by_symmetry" in table:
+            continue
+        path = campaign / str(table.get("file"))
+        if not path.is_file() or sha256_of(path) != table.get("sha256"):
+            raise file.fail(f"table[{i}].sha256", f"not the sha256 of {path.name}", "the table as the tow wrote it",
+                            "Rows that were edited by hand cannot be taken over.")  # fmt: skip
+        with path.open(encoding="utf-8", newline="") as stream:
+            rows = csv.DictReader(line for line in stream if not line.startswith("#"))
+            out |= {r["point"]: r for r in rows}
+    return out
+
+
+def _content(said: Mapping[str, str], row: Mapping[str, str]) -> dict[str, Any]:
+    """What the campaign says of a condition: ``runs.csv`` and its row of the table, which is empty for a run without means."""
+    means, errors, patches = {}, {}, {}
+    for head, cell in row.items():
+        found = _FORCE.fullmatch(head)
+        if found is None or not cell:
+            continue
+        if found["patch"]:
+            patches[found["name"] + found["patch"]] = (float(cell), found["unit"])
+        elif found["error"]:
+            errors[found["name"]] = float(cell)
+        else:
+            means[found["name"]] = float(cell)
+    status = said["status"] if said["status"] in list(Convergence) else Convergence.DRIFTING
+    return {
+        "why": said["why"] if said["state"] != JobState.FINISHED else "",
+        "summary_why": said["why"] if said["state"] == JobState.FINISHED else "",
+        "status": status, "means": means, "errors": errors, "patches": patches, "mesh": said["mesh sha256"],
+        "iterations": float(row["iterations"]) if row.get("iterations") else None, "cells": float(row.get("cells") or 0.0),
+        "remarks": [said["remarks"]] if said["remarks"] else [],
+    }  # fmt: skip
