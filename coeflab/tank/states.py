@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
@@ -26,7 +26,8 @@ class JobRow:
     progress : Progressed
         Seen with what is true now; ``why`` of a waiting job names the failed one that it needs.
     left : float
-        Seconds that it is expected to take still: at its pace, else by its estimate. 0 for one that is kept or cannot be
+        Seconds that it is expected to take still: at its pace, else at that of the finished meshes or runs, else by its
+        estimate. 0 for one that is kept or cannot be
         begun; NaN for one that takes longer than was expected.
     """
 
@@ -66,7 +67,18 @@ def rows_of(jobs: Sequence[Job]) -> tuple[JobRow, ...]:
     """
     now = {job.name: progress(job) for job in jobs}
     idle = idle_meshes(jobs, {name for name, found in now.items() if not found.state.is_kept})
-    return tuple(_row(job, now[job.name], blocked_by(job, now), job.name in idle) for job in jobs)
+    finished = [(job, now[job.name]) for job in jobs if now[job.name].state is JobState.FINISHED]
+    paces = {runs: _pace(f for f in finished if bool(f[0].needs) is runs) for runs in (False, True)}
+    return tuple(
+        _row(job, now[job.name], blocked_by(job, now), job.name in idle, job.seconds * paces[bool(job.needs)])
+        for job in jobs
+    )
+
+
+def _pace(finished: Iterable[tuple[Job, Progressed]]) -> float:
+    """Seconds that finished jobs took over those that they were expected to take; 1 without one."""
+    both = [(found.seconds, job.seconds) for job, found in finished if found.seconds > 0.0 and job.seconds > 0.0]
+    return sum(took for took, _ in both) / sum(expected for _, expected in both) if both else 1.0
 
 
 def blocked_by(job: Job, now: dict[str, Progressed]) -> str:
@@ -74,7 +86,7 @@ def blocked_by(job: Job, now: dict[str, Progressed]) -> str:
     return next((f"{n} is {now[n].state.value}" for n in job.needs if n in now and now[n].state in FAILED), "")
 
 
-def _row(job: Job, found: Progressed, blocked: str, idle: bool) -> JobRow:
+def _row(job: Job, found: Progressed, blocked: str, idle: bool, expected: float) -> JobRow:
     if found.state.is_kept:
         return JobRow(job, found, 0.0)
     if idle and found.state is not JobState.RUNNING:
@@ -82,8 +94,8 @@ def _row(job: Job, found: Progressed, blocked: str, idle: bool) -> JobRow:
     if found.state is JobState.WAITING and blocked:
         return JobRow(job, replace(found, why=blocked), 0.0)
     if found.state in (JobState.WAITING, JobState.CHANGED):
-        return JobRow(job, found, job.seconds)
-    left = found.left if isfinite(found.left) else job.seconds - found.seconds
+        return JobRow(job, found, expected)
+    left = found.left if isfinite(found.left) else expected - found.seconds
     return JobRow(job, found, left if left > 0.0 else nan)
 
 

@@ -25,6 +25,7 @@ from coeflab.tank.openfoam.mesh_sizes import (
     MeshKeys,
     MeshSizes,
     mesh_sizes,
+    mirrored_axes,
 )
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
@@ -102,9 +103,10 @@ def mesh_job(
     InputError
         The body reaches through the end of the domain, or the mesh would have too many cells.
     """
-    sizes = mesh_sizes(body, grid.size, half, options, tank.conditions, domain)
+    mirrored = mirrored_axes(body, half)
+    sizes = mesh_sizes(body, grid.size, half, options, tank.conditions, domain, mirrored)
     count = cell_count(body, sizes)
-    if (cells := count.cells) > options.most_cells:
+    if (cells := count.cells * 2.0 ** len(mirrored)) > options.most_cells:
         raise InputError(
             f"a mesh of about {cells:.2g} cells for the grid {grid.name}",
             f"{options.most_cells:.2g} at most",
@@ -112,8 +114,8 @@ def mesh_job(
             advice="Choose fewer cells_per_chord or cells_per_length, a larger grid, or raise most_cells.",
         )
     name, cores = mesh_name(grid, half, controls, domain), tank.cores
-    shared = (SECONDS_A_CELL * cells + SECONDS_A_FACE * count.faces) / cores**SPEEDUP
-    contents = _files(body, sizes, half, cores)
+    shared = (SECONDS_A_CELL * count.cells + SECONDS_A_FACE * count.faces) / cores**SPEEDUP
+    contents = _files(body, sizes, half, mirrored, cores)
     planned = {"cells": round(cells), "coverage": options.coverage, **_geometry(body, half)}
     planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
     place = (folder / name).resolve()
@@ -122,7 +124,7 @@ def mesh_job(
         name=name,
         folder=place,
         solver="openfoam",
-        steps=_steps(cores),
+        steps=_steps(mirrored, cores),
         cores=cores,
         memory=BYTES_AT_LEAST * cores + BYTES_A_CELL * cells,
         seconds=SECONDS_AT_LEAST + shared + SECONDS_ALONE * cells,
@@ -131,13 +133,14 @@ def mesh_job(
     )
 
 
-def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[str, bytes]:
+def _files(body: TowedBody, sizes: MeshSizes, half: Half, mirrored: tuple[int, ...], cores: int) -> dict[str, bytes]:
     from coeflab.tank.towed_body import stl
 
     whole = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])
-    cut = [CUT_SIDE[half]] if half is not Half.WHOLE else []
-    boundary = [{"name": FAR, "type": "patch", "faces": [face for side, face in SIDES.items() if side not in cut]}]
-    boundary += [{"name": CUT, "type": "symmetryPlane", "faces": [SIDES[side]]} for side in cut]
+    planes = {CUT_SIDE[half]: CUT} if half is not Half.WHOLE else {}
+    planes |= {("xyz"[axis], 1): f"mirror_{'xyz'[axis]}" for axis in mirrored}
+    boundary = [{"name": FAR, "type": "patch", "faces": [face for side, face in SIDES.items() if side not in planes]}]
+    boundary += [{"name": name, "type": "symmetryPlane", "faces": [SIDES[side]]} for side, name in planes.items()]
     values: dict[str, Any] = {
         "corners": np.where(whole, sizes.high, sizes.low),
         "counts": sizes.counts,
@@ -156,10 +159,19 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[st
     }
     names = ("blockMeshDict", "snappyHexMeshDict", *WITHOUT_VALUES, *(("decomposeParDict",) if cores > 1 else ()))
     contents = {f"system/{name}": rendered(f"mesh/{name}", **values) for name in names}
+    for axis in mirrored:
+        name = _mirror_dict(axis)
+        contents[name] = rendered("mesh/mirrorMeshDict", name=Path(name).name, normal=np.eye(3)[axis])
+    if mirrored:
+        contents["system/createPatchDict"] = rendered("mesh/createPatchDict")
     for patch in body.patches:
         name = f"{patch}.eMesh"
         contents[f"{GEOMETRY}/{name}"] = rendered("mesh/seeds.eMesh", name=name, points=_seeds(body, patch, sizes))
     return contents | {f"{GEOMETRY}/body.stl": stl(body)}
+
+
+def _mirror_dict(axis: int) -> str:
+    return f"system/mirrorMeshDict_{'xyz'[axis]}"
 
 
 def _seeds(body: TowedBody, patch: str, sizes: MeshSizes) -> Array:
@@ -172,10 +184,12 @@ def _seeds(body: TowedBody, patch: str, sizes: MeshSizes) -> Array:
     return seeds
 
 
-def _steps(cores: int) -> tuple[Step, ...]:
+def _steps(mirrored: tuple[int, ...], cores: int) -> tuple[Step, ...]:
     processors = [f"processor{k}" for k in range(cores)]
     clean = Step("clean", ("rm", "-rf", "constant/polyMesh", MADE, *processors))
-    last = (step("renumberMesh", "renumberMesh", "-overwrite"), step("checkMesh", "checkMesh"))
+    whole = [step(f"mirrorMesh_{'xyz'[a]}", "mirrorMesh", "-dict", _mirror_dict(a), "-overwrite") for a in mirrored]
+    whole += [step("createPatch", "createPatch", "-overwrite")] if mirrored else []  # takes out the planes, now empty
+    last = (*whole, step("renumberMesh", "renumberMesh", "-overwrite"), step("checkMesh", "checkMesh"))
     if cores == 1:
         return (clean, step("blockMesh", "blockMesh"), step("snappyHexMesh", "snappyHexMesh", "-overwrite"), *last)
     return (

@@ -172,8 +172,9 @@ class MeshSizes:
 
 
 def mesh_sizes(
-    body: TowedBody, size: float, half: Half, keys: MeshKeys, conditions: Conditions, domain: float = 1.0
-) -> MeshSizes:
+    body: TowedBody, size: float, half: Half, keys: MeshKeys, conditions: Conditions, domain: float = 1.0,
+    mirrored: tuple[int, ...] = (),
+) -> MeshSizes:  # fmt: skip
     """How fine the mesh of a body is where.
 
     Parameters
@@ -186,6 +187,8 @@ def mesh_sizes(
     conditions : Conditions
     domain : float
         Factor on the distances to the ends of the domain; cells about the body stay what they are.
+    mirrored : tuple of int
+        Axes across which the mesh is to be mirrored (`mirrored_axes`): it is made for negative coordinates only.
 
     Raises
     ------
@@ -206,8 +209,7 @@ def mesh_sizes(
         domain * length * np.array([[keys.behind, keys.beside, keys.beside], [keys.ahead, keys.beside, keys.beside]])
     )
     low, high = np.floor((low - margin[0]) / base) * base, np.ceil((high + margin[1]) / base) * base
-    if half is not Half.WHOLE:
-        high[SYMMETRY_AXIS[half]] = 0.0
+    high[[*mirrored, *([SYMMETRY_AXIS[half]] if half is not Half.WHOLE else [])]] = 0.0
     return MeshSizes(
         low=low,
         high=high,
@@ -219,6 +221,23 @@ def mesh_sizes(
         },
         inside=low + (high - low) * np.array([0.9713, 0.0387, 0.0431]),
     )
+
+
+def mirrored_axes(body: TowedBody, half: Half) -> tuple[int, ...]:
+    """Axes across whose plane the mesh of one side is mirrored: 1 for y = 0, 2 for z = 0.
+
+    A hull's mesh comes out alike on both sides. That of a fin in a mirror plane does not: its trailing edge is thinner than a
+    cell and snaps to one of them, which gave SUBOFF's straight run a side force of a tenth of that at 2 degrees.
+
+    Parameters
+    ----------
+    body : TowedBody
+    half : Half
+    """
+    if not any(chord < body.length for chord in body.chord.values()):
+        return ()
+    cut = None if half is Half.WHOLE else SYMMETRY_AXIS[half]
+    return tuple(axis for axis in (1, 2) if body.mirrors[axis] and axis != cut)
 
 
 def _usable(body: TowedBody, half: Half, keys: MeshKeys, conditions: Conditions) -> None:
