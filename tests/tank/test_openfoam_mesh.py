@@ -20,8 +20,8 @@ from coeflab.core.files import shipped
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam.mesh import mesh_job, mesh_name
-from coeflab.tank.openfoam.mesh_made import MADE, expected_cells, mesh_ended, mesh_made
-from coeflab.tank.openfoam.mesh_sizes import GROWTH, MeshKeys, mesh_sizes, wall_unit
+from coeflab.tank.openfoam.mesh_made import MADE, _binary, _ranges, expected_cells, mesh_ended, mesh_made
+from coeflab.tank.openfoam.mesh_sizes import GROWTH, MeshKeys, mesh_sizes, mirrored_axes, wall_unit
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
 from coeflab.tank.towed_body import TowedBody, towed
@@ -78,6 +78,20 @@ def test_cells_of_half_a_domain_and_of_a_larger_one_are_those_of_the_whole(body:
     steps = (whole.low - larger.low) / whole.edges
     np.testing.assert_allclose(steps, np.rint(steps), atol=1e-9)  # its cells lie where those of the smaller one lie
     assert 0.0 <= -larger.low[1] - (1.5 * 1.4 + 0.1) < whole.edges[1]
+
+
+def test_the_mesh_of_a_body_with_fins_is_made_of_one_side_of_each_mirror(body: TowedBody) -> None:
+    assert body.mirrors[1:] == (True, True)
+    assert mirrored_axes(body, Half.UPPER) == (1,)
+    assert mirrored_axes(body, Half.PORT) == (2,)
+    assert mirrored_axes(body, Half.WHOLE) == (1, 2)
+    assert mirrored_axes(replace(body, mirrors=(False, True, False)), Half.WHOLE) == (1,)
+    assert mirrored_axes(replace(body, chord=dict.fromkeys(body.patches, body.length)), Half.WHOLE) == ()
+    half = mesh_sizes(body, 1.0, Half.UPPER, MeshKeys(), WATER)
+    quarter = mesh_sizes(body, 1.0, Half.UPPER, MeshKeys(), WATER, mirrored=(1,))
+    assert (quarter.high[1], quarter.high[2]) == (0.0, 0.0)
+    assert 2 * quarter.counts[1] == half.counts[1]
+    np.testing.assert_array_equal(quarter.low, half.low)
 
 
 def test_layers_lead_from_the_wanted_y_plus_to_the_cell_on_them(body: TowedBody) -> None:
@@ -218,6 +232,18 @@ def test_it_is_sound_and_has_the_cells_expected(mesh: Job) -> None:
     assert set(made.surface) == {"hull", "rudder_upper"}  # the other rudder is below the cut
     assert min(made.surface.values()) > 0.95
     assert made.layers["hull"] > 0.9
+
+
+@pytest.mark.slow
+@openfoam
+def test_it_is_its_own_mirror_image(mesh: Job) -> None:
+    place = mesh.folder / "constant" / "polyMesh"
+    points = _binary(place / "points", 3)[0]
+    there = {tuple(p) for p in np.round(points, 9) + 0.0}
+    assert there == {tuple(p) for p in np.round(points * (1.0, -1.0, 1.0), 9) + 0.0}
+    patches = _ranges((place / "boundary").read_text())
+    assert [name for name, (count, _) in patches.items() if count] == ["far", "cut", "hull", "rudder_upper"]
+    assert "mirror_y" not in patches
 
 
 @pytest.mark.slow
