@@ -189,6 +189,18 @@ def test_the_rows_of_a_tow_say_what_holds_a_run_up_and_how_long_it_takes(tmp_pat
         states_of(tmp_path / "mesh/fine")
 
 
+def test_what_finished_runs_took_is_expected_of_the_others(tmp_path: Path) -> None:
+    meshes = [prepared(tmp_path, f"mesh/{name}") for name in ("fine", "medium")]
+    for name in ("drift_+2", "drift_+4", "drift_+6"):
+        prepared(tmp_path, name, ("mesh/medium",))
+    prepared(tmp_path, "arm", ("mesh/fine",))
+    write_progress(meshes[1].folder, Progressed(JobState.FINISHED, "k", seconds=3.0))
+    write_progress(tmp_path / "drift_+2", Progressed(JobState.FINISHED, "k", seconds=2.5))
+    write_progress(tmp_path / "drift_+4", Progressed(JobState.FINISHED, "k"))  # taken over: nobody ran it here
+    left = {row.job.name: row.left for row in states_of(tmp_path)}
+    assert left == {"mesh/fine": 3.0, "mesh/medium": 0.0, "arm": 2.5, "drift_+2": 0.0, "drift_+4": 0.0, "drift_+6": 2.5}
+
+
 # --- one job ---------------------------------------------------------------------------------------------------------
 
 
