@@ -181,12 +181,12 @@ class Agreement:
     ----------
     entries : tuple of six, float or None
         Of u, v, w, p, q, r: parts over mesh, less one. None where the mesh moves no water, or less than its error.
-    error : float
-        Estimate for the mesh's entries, the largest of them, over the entry.
+    error : float or None
+        Estimate for the mesh's entries, the largest of them, over the entry; None where none was made.
     """
 
     entries: tuple[float | None, ...]
-    error: float
+    error: float | None
 
     def __post_init__(self) -> None:
         if len(self.entries) != len(MOTIONS):

@@ -180,8 +180,8 @@ def against_mesh(found: Simplification, density: float = 1000.0, panels: int = 6
     heard = own > np.maximum(error, SILENT * largest)
     ratios = np.round(np.diag(parts.matrix) / np.where(heard, own, 1.0) - 1.0, SHARE)
     entries = tuple(float(r) + 0.0 if h else None for r, h in zip(ratios, heard, strict=True))
-    worst = float(np.max(error[heard] / own[heard], initial=0.0))
-    shape = replace(found.shape, agreement=Agreement(entries, round(worst, SHARE)))
+    worst = None if mesh.error is None else round(float(np.max(error[heard] / own[heard], initial=0.0)), SHARE)
+    shape = replace(found.shape, agreement=Agreement(entries, worst))
     return replace(found, shape=shape, body=replace(found.body, shape=shape), compared=(parts, mesh))
 
 

@@ -151,12 +151,13 @@ def test_a_tall_disagreement_makes_parts_rough() -> None:
     assert Parts((part(PROFILE),), far).rough == ("added mass off the mesh's: v -16 %, r +40 %",)
 
 
-def test_the_file_of_every_form_is_read_again(tmp_path: Path) -> None:
+@pytest.mark.parametrize("error", [0.05, None])
+def test_the_file_of_every_form_is_read_again(error: float | None, tmp_path: Path) -> None:
     parts = [
         Part(name.replace(" ", "_"), form, np.array([k, 0.5, 0.0]), rotation(0.0, 0.0, 0.5))
         for k, (name, form) in enumerate(FORMS.items())
     ]
-    made = body(*parts, agreement=Agreement((0.1, None, -0.2, 0.0, 0.3, 0.0), 0.05))
+    made = body(*parts, agreement=Agreement((0.1, None, -0.2, 0.0, 0.3, 0.0), error))
     path = tmp_path / "body.toml"
     path.write_bytes(part_file(made, made.shape, (), {}))
     (tmp_path / "mesh.ply").write_bytes(ply(WEDGE.mesh.vertices, WEDGE.mesh.faces))

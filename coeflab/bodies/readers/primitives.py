@@ -231,7 +231,7 @@ class AgreementKeys(takes.Declaration):
     u, v, w, p, q, r : float
         A motion that moves no water is left out.
     error : float
-        Estimate for the mesh's entries, the largest over its entry.
+        Estimate for the mesh's entries, the largest over its entry. Left out where none was made.
     """
 
     u: takes.Pure | None = None
@@ -240,7 +240,7 @@ class AgreementKeys(takes.Declaration):
     p: takes.Pure | None = None
     q: takes.Pure | None = None
     r: takes.Pure | None = None
-    error: takes.Pure
+    error: takes.Pure | None = None
 
     @property
     def made(self) -> Agreement:

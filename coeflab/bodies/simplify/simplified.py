@@ -84,7 +84,8 @@ def part_file(
         lines += ["", *_comments((AGREEMENT,)), "[against_mesh]"]
         found = zip(MOTIONS, shape.agreement.entries, strict=True)
         lines += [f"{motion} = {_number(value)}" for motion, value in found if value is not None]
-        lines.append(f"error = {_number(shape.agreement.error)}")
+        if shape.agreement.error is not None:
+            lines.append(f"error = {_number(shape.agreement.error)}")
     for part in shape.parts:
         lines += ["", *_comments(remarks.get(part.name, ())), *_part(part)]
     return ("\n".join(lines) + "\n").encode()
@@ -363,7 +364,10 @@ class Simplification:
         if agreement.apart:
             return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}."
         worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
-        unsure = f" The mesh's own error is up to {agreement.error:.0%}." if agreement.error > APART / 2.0 else ""
+        error = agreement.error
+        unsure = " The mesh's own error was not estimated: raise --panels." if error is None else ""
+        if error is not None and error > APART / 2.0:
+            unsure = f" The mesh's own error is up to {error:.0%}."
         return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 
     def part_table(self) -> Table:
