@@ -10,7 +10,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from coeflab.core.files import write_atomically
+from coeflab.core.files import shipped, write_atomically
 from coeflab.published.documents import report_of, studied, written
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
@@ -18,13 +18,15 @@ from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.svg import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.study.study import Study
-from coeflab.workbench import checked
+from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.study import Plan, PlannedTow, Study
+from coeflab.tank.campaign import SIX
+from coeflab.workbench import checked, run
 from coeflab.workbench.vehicle import asked, from_shape, subject
 
 HERE = Path(__file__).resolve().parent
-VEHICLE = "myring_auv"
-STUDIES = ("suboff", "huuv", "flyingfish", "thauv", "urv", VEHICLE)
+VEHICLE, TOW = "myring_auv", "suboff_tow_bare_hull"
+STUDIES = ("suboff", "huuv", "flyingfish", "thauv", "urv", VEHICLE, TOW)
 PIXELS_AN_INCH = 84.0
 
 
@@ -53,13 +55,22 @@ def of_shape() -> Study:
     return checked(from_shape(asked(body)[0], body))
 
 
+def of_tow() -> Study:
+    """What the virtual tow tank measured on the bare hull, as the report of ``coeflab tow suboff_bare_hull`` has it."""
+    title, campaign = "DARPA SUBOFF bare hull, towed by OpenFOAM", shipped("cfd_data") / TOW
+    body = shipped("geometry") / "suboff_bare_hull" / "body.toml"
+    tows = (PlannedTow(title, body.parent.name, TOW, added=campaign),)
+    return run(Plan(TOW, title, (table_at(campaign, DEFAULT_FITS),), body=body, wanted=SIX, tows=tows))
+
+
 def made(name: str) -> Mapping[str, bytes]:
     """The files of one study by their paths below the gallery."""
-    found = of_shape() if name == VEHICLE else studied(name)
+    drawn = {VEHICLE: of_shape, TOW: of_tow}
+    found = drawn[name]() if name in drawn else studied(name)
     document = report_of(found, short=True).document
     pages = {f"{name}/{k.replace('report', 'summary')}": v for k, v in written(document, ["html", "pdf"]).items()}
     (page,) = page_pictures(document, PIXELS_AN_INCH)
-    more = {} if name == VEHICLE else of_suboff(found) if isinstance(found, Study) else of_publication(found)
+    more = {} if name in drawn else of_suboff(found) if isinstance(found, Study) else of_publication(found)
     return pages | {f"{name}/summary.png": page} | more
 
 
