@@ -164,7 +164,7 @@ class Draft:
         from coeflab.core.errors import together
         from coeflab.tables.parts import complaints_of, require_parts, understood_together
         from coeflab.tables.settings import require_one_datum
-        from coeflab.tables.words_above import POINT_OF
+        from coeflab.tables.words.points import POINT_OF
 
         if said.options:
             before, chosen = dict(self.said.options), self.chosen
@@ -247,7 +247,7 @@ class Draft:
         """What looks wrong in what is said so far."""
         from coeflab.tables.parts import JOIN, alike, own
         from coeflab.tables.settings import doubtful_setting
-        from coeflab.tables.words_above import POINT_OF
+        from coeflab.tables.words.points import POINT_OF
 
         sizes = []
         for part in self.parts:
@@ -266,7 +266,7 @@ class Draft:
         """Where the reference point is off the body."""
         from coeflab.core.units import quantity
         from coeflab.law.scaling import beyond_ends
-        from coeflab.tables.words_above import POINT_OF
+        from coeflab.tables.words.points import POINT_OF
 
         point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
         if point is None or datum is None:

@@ -29,7 +29,7 @@ from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.settings import CONFIRMED, EACH, OF_ARMS, SECTIONS, Settings
-from coeflab.tables.words_above import POINT_OF
+from coeflab.tables.words.points import POINT_OF
 
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"

@@ -20,7 +20,7 @@ from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_colu
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
-from coeflab.tables.words_above import BODY_AXES
+from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5

@@ -38,7 +38,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
 from coeflab.tables.settings import Setting, Settings, against_words, read_in, stated_settings
-from coeflab.tables.words_above import POINT_FROM, POINT_OF
+from coeflab.tables.words.points import POINT_FROM, POINT_OF
 
 Progress = Callable[[str], None]
 Value = TypeVar("Value")

@@ -41,7 +41,9 @@ from coeflab.tables.settings import (
     point_by_words,
     read_setting,
 )
-from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, POINT_FROM, POINT_OF, TURN_OF_R, UNSAID, of_the_test
+from coeflab.tables.words.above import of_the_test
+from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
+from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"

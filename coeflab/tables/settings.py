@@ -31,7 +31,8 @@ from coeflab.tables.campaign import (
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.words_above import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF, of_the_test
+from coeflab.tables.words.above import of_the_test
+from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
 
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 _SIZES = {

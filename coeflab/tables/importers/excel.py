@@ -25,7 +25,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
-from coeflab.tables.words_above import words_above
+from coeflab.tables.words.above import words_above
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
 citations = ()

@@ -1,0 +1,3 @@
+"""What words over a table say of its tests; offered, never taken."""
+
+from __future__ import annotations
