@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from coeflab.tables.form import Line, Typed
     from coeflab.tables.imported import Filled
     from coeflab.tables.parts import Part
-    from coeflab.tables.questions import Understood
     from coeflab.tables.settings import Setting
+    from coeflab.tables.understood import Understood
 
 
 @dataclass(slots=True)
@@ -76,13 +76,13 @@ class Draft:
 
     def understand(self) -> None:
         """What follows from what is said so far; `founds` is of it."""
-        from coeflab.tables.parts import understood_together
+        from coeflab.tables.parts_together import understood_together
 
         self.founds = understood_together(self.parts, self.said.columns, self.settings)
 
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
-        from coeflab.tables.parts import form_together
+        from coeflab.tables.parts_together import form_together
 
         return form_together(self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole)
 
@@ -111,7 +111,7 @@ class Draft:
         """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
         from coeflab.core.errors import together
         from coeflab.tables.form import open_lines, typed
-        from coeflab.tables.parts import columns_by_name, complaints_of, settled_together
+        from coeflab.tables.parts_together import columns_by_name, complaints_of, settled_together
 
         self.understand()
         if complaints := complaints_of(self.founds):
@@ -162,7 +162,8 @@ class Draft:
             What they say together is not possible.
         """
         from coeflab.core.errors import together
-        from coeflab.tables.parts import complaints_of, require_parts, understood_together
+        from coeflab.tables.parts import require_parts
+        from coeflab.tables.parts_together import complaints_of, understood_together
         from coeflab.tables.settings import require_one_datum
         from coeflab.tables.words.points import POINT_OF
 
@@ -195,7 +196,7 @@ class Draft:
         """
         from coeflab.core.errors import together
         from coeflab.tables.form import open_lines
-        from coeflab.tables.parts import complaints_of, is_pending, settled_together, understood_together
+        from coeflab.tables.parts_together import complaints_of, is_pending, settled_together, understood_together
         from coeflab.tables.settings import Setting
 
         founds, settings = settled_together(self.parts, self.said.columns, self.settings, accept, self.whole)
@@ -373,7 +374,7 @@ def _mapped(map_: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
     """What ``--map`` says, by the names of the file."""
     from coeflab.core.errors import shown, together
     from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.parts import columns_by_name
+    from coeflab.tables.parts_together import columns_by_name
 
     names = {name: key for name, (key, _) in columns_by_name(parts).items()}
     out: dict[str, ColumnMap] = {}
