@@ -19,10 +19,7 @@ from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.tables.column_map import ROLES, read_column_map
 from coeflab.tables.conditions import BETWEEN, SPELT, UNIT_ASKED, NoConditionError, name_pattern
-from coeflab.tables.form import (
-    Group,
-    Line,
-)
+from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import texts_of
 from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF, proposals

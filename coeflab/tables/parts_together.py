@@ -8,15 +8,7 @@ from dataclasses import replace
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
-from coeflab.tables.form import (
-    UNSHOWN,
-    Line,
-    argument,
-    column_lines,
-    form,
-    question_line,
-    setting_line,
-)
+from coeflab.tables.form import UNSHOWN, Line, argument, column_lines, form, question_line, setting_line
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import Question

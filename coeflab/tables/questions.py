@@ -15,19 +15,10 @@ from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES
 from coeflab.tables.column_map import ROLES, read_column_map
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
-from coeflab.tables.mapping import (
-    Assigned,
-)
+from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import RawTable, Stated
-from coeflab.tables.settings import (
-    Setting,
-    Settings,
-    arm_by_words,
-    frame_of,
-    of_datum,
-    point_by_words,
-)
+from coeflab.tables.settings import Setting, Settings, arm_by_words, frame_of, of_datum, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 

@@ -24,14 +24,7 @@ from coeflab.tables.mapping import (
 from coeflab.tables.proposals import Proposal, proposals
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import (
-    EXTRA,
-    Setting,
-    Settings,
-    against_words,
-    frame_of,
-    read_setting,
-)
+from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 

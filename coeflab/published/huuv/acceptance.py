@@ -7,32 +7,15 @@ import numpy as np
 from coeflab.bodies.closed_forms import plate_coefficient
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
+from coeflab.motion import steady_state
 from coeflab.motion.marching import idle, integrated_forces
-from coeflab.motion.steady_state import (
-    INERTIAL,
-    SteadyTurns,
-    features,
-    kirchhoff,
-    run,
-    steady_motions,
-    steady_turns,
-    wrenches,
-)
 from coeflab.motion.tune.tuning import Tuning, largest_correlations
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.figures import CANNOT, paper_figures, tuning_figures
 from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
 from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, parameter_file, read_huuv, thrust
-from coeflab.published.huuv.tuning import (
-    ERRORS,
-    IN_WORDS,
-    hidden_rows,
-    origin_rows,
-    pool_rows,
-    tuned,
-    tuned_rows,
-)
+from coeflab.published.huuv.tuning import ERRORS, IN_WORDS, hidden_rows, origin_rows, pool_rows, tuned, tuned_rows
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -135,7 +118,7 @@ def _wrench(huuv: Huuv, turns: Turns) -> Array:
 
 def _rows(huuv: Huuv, found: Array) -> tuple[Compared, ...]:
     """Operating points beside velocities u v r."""
-    turns, ours = huuv.accepted, SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool))
+    turns, ours = huuv.accepted, steady_state.SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool))
     rows: list[Compared] = []
     for i, (u, beta, radius) in enumerate(turns.figures):
         case = _case(turns, i)
@@ -155,7 +138,7 @@ def _rows(huuv: Huuv, found: Array) -> tuple[Compared, ...]:
 
 
 def _solved(huuv: Huuv) -> ComparedTable:
-    found = steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
+    found = steady_state.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
     stable = "all are stable" if np.all(found.stable) else "some are not stable"
     return ComparedTable(
         "steady_turns", "Steady turns by root finding", _rows(huuv, found.velocity), "equations 1, 5-7, 34-38",
@@ -166,7 +149,7 @@ def _solved(huuv: Huuv) -> ComparedTable:
 def simulated_rows(huuv: Huuv) -> ComparedTable:
     """The steady turns after two minutes from rest."""
     times = np.array([0.0, LASTS])
-    ends = np.array([run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
+    ends = np.array([steady_state.run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
     return ComparedTable(
         "simulated",
         f"The same after {LASTS:g} s from rest",
@@ -181,7 +164,7 @@ def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
     """(n, 6) velocities that the vehicle of the parameter file settles at."""
     made, turns = vehicle(file, free=("u", "v", "r")), huuv.accepted
     commands = [{"left": float(a), "right": float(b)} for a, b in zip(turns.left, turns.right, strict=True)]
-    return steady_motions(made, wrenches(made, commands))[0]
+    return steady_state.steady_motions(made, steady_state.wrenches(made, commands))[0]
 
 
 def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
@@ -194,7 +177,7 @@ def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
 def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """Sizes alone would not notice a turn to the other side."""
     turning = huuv.accepted.right > huuv.accepted.left
-    solved = steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
+    solved = steady_state.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
     rows = tuple(
         Compared(where, "turns to port, v to starboard", "1", float(np.sum(turning)),
                  float(np.sum(turning & (v > 0.0) & (r < 0.0))), 0.0, Basis.CONSISTENCY)
@@ -206,12 +189,12 @@ def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
 def _coriolis(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """The products of velocities in the forces that are integrated, of the equations and of the parameter file."""
     velocity = np.random.default_rng(SEED).normal(size=(MOTIONS, 3))
-    inertial = features(velocity)[0][:, :, INERTIAL] @ huuv.theta[INERTIAL]
+    inertial = steady_state.features(velocity)[0][:, :, steady_state.INERTIAL] @ huuv.theta[steady_state.INERTIAL]
     moved = idle(vehicle(file, free=("u", "v", "r")))
     nu, level = np.zeros((MOTIONS, 6)), np.tile((1.0, 0.0, 0.0, 0.0), (MOTIONS, 1))
     nu[:, [0, 1, 5]] = velocity
     integrated = integrated_forces(moved, nu, level, np.zeros((MOTIONS, 6)))[..., [0, 1, 5]]
-    theory = kirchhoff(huuv.theta, velocity)
+    theory = steady_state.kirchhoff(huuv.theta, velocity)
     found = (
         ("equations", "force apart from Kirchhoff's", "N, N m", inertial - theory),
         ("equations", "power", "W", np.sum(inertial * velocity, axis=-1)),

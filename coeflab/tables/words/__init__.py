@@ -1,3 +1,1 @@
 """What words over a table say of its tests; offered, never taken."""
-
-from __future__ import annotations
