@@ -261,30 +261,6 @@ def texts_of(column: RawColumn) -> list[str]:
     return [Verbatim("" if np.isnan(x) else f"{x:.12g}") for x in column.values.tolist()]
 
 
-def columns_of(raw: RawTable, mapping: Mapping[str, ColumnMap], campaign: Campaign, table: TableDeclaration) -> Columns:
-    """The columns of a file in SI, by their plain names, in the axes that the campaign declares.
-
-    Rows without a number in a setting are left out; forces without one are excluded.
-
-    Parameters
-    ----------
-    raw : RawTable
-    mapping : mapping of str to ColumnMap
-        What each column is, by its name in the file.
-    campaign : Campaign
-    table : TableDeclaration
-        Its labels and ignored columns join the mapping.
-
-    Raises
-    ------
-    InputError
-        All that is wrong with the columns, by file, line and column.
-    """
-    return _columns(
-        raw, assigned(raw, {**declared_mapping(campaign, table), **mapping}, len(campaign.tables) == 1), campaign
-    )
-
-
 def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:
     rows = usable_rows(known, len(raw))
     if not rows.size:
