@@ -1,3 +1,1 @@
 """Bodies: shapes, meshes, readers, simplification, added mass."""
-
-from __future__ import annotations

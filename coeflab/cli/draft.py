@@ -6,20 +6,33 @@ import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
 from coeflab.cli import show
-from coeflab.core.errors import InputError
-
-if TYPE_CHECKING:
-    from coeflab.tables.column_map import ColumnMap
-    from coeflab.tables.form import Line, Typed
-    from coeflab.tables.imported import Filled
-    from coeflab.tables.parts import Part
-    from coeflab.tables.questions import Understood
-    from coeflab.tables.settings import Setting
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.units import quantity
+from coeflab.law.scaling import beyond_ends
+from coeflab.report.tables import raw_tables
+from coeflab.tables.collect import runs_shown
+from coeflab.tables.column_map import ColumnMap, read_column_map
+from coeflab.tables.conditions import BETWEEN
+from coeflab.tables.form import Line, Typed, of_campaign, open_lines, screen, typed
+from coeflab.tables.imported import Filled
+from coeflab.tables.mapping import assigned
+from coeflab.tables.parts import JOIN, Part, alike, own, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.parts_together import (
+    columns_by_name,
+    complaints_of,
+    form_together,
+    is_pending,
+    settled_together,
+    understood_together,
+)
+from coeflab.tables.settings import Setting, doubtful_setting, read_in, require_one_datum, saved_mapping
+from coeflab.tables.understood import Understood
+from coeflab.tables.words.points import POINT_OF
 
 
 @dataclass(slots=True)
@@ -55,8 +68,6 @@ class Draft:
 
     def read(self) -> None:
         """Read the file, with sheets, tables of the folder or patterns of names as a proposal where it needs some."""
-        from coeflab.tables.parts import read_parts, require_parts, stated_together, with_shared_words
-
         with show.narrated(), show.progress(False) as say:
             parts, chosen = read_parts(self.file, self.said.importer, self.said.options, say)
         self.parts = with_shared_words(parts)
@@ -76,14 +87,10 @@ class Draft:
 
     def understand(self) -> None:
         """What follows from what is said so far; `founds` is of it."""
-        from coeflab.tables.parts import understood_together
-
         self.founds = understood_together(self.parts, self.said.columns, self.settings)
 
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
-        from coeflab.tables.parts import form_together
-
         return form_together(self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole)
 
     def filled(self) -> tuple[Filled, ...]:
@@ -94,11 +101,6 @@ class Draft:
         InputError
             Columns that cannot be what is said of them.
         """
-        from coeflab.tables.form import of_campaign
-        from coeflab.tables.imported import Filled
-        from coeflab.tables.mapping import assigned
-        from coeflab.tables.parts import own
-
         return tuple(
             Filled(
                 part.name, part.raw, part.importer, part.options, assigned(part.raw, found.mapping), found.mapping,
@@ -109,10 +111,6 @@ class Draft:
 
     def asked(self) -> None:
         """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
-        from coeflab.core.errors import together
-        from coeflab.tables.form import open_lines, typed
-        from coeflab.tables.parts import columns_by_name, complaints_of, settled_together
-
         self.understand()
         if complaints := complaints_of(self.founds):
             raise together(complaints)
@@ -161,11 +159,6 @@ class Draft:
         InputError
             What they say together is not possible.
         """
-        from coeflab.core.errors import together
-        from coeflab.tables.parts import complaints_of, require_parts, understood_together
-        from coeflab.tables.settings import require_one_datum
-        from coeflab.tables.words_above import POINT_OF
-
         if said.options:
             before, chosen = dict(self.said.options), self.chosen
             self.said.options |= said.options
@@ -193,11 +186,6 @@ class Draft:
         InputError
             What cannot be, all of it.
         """
-        from coeflab.core.errors import together
-        from coeflab.tables.form import open_lines
-        from coeflab.tables.parts import complaints_of, is_pending, settled_together, understood_together
-        from coeflab.tables.settings import Setting
-
         founds, settings = settled_together(self.parts, self.said.columns, self.settings, accept, self.whole)
         if complaints := complaints_of(founds):
             raise together(complaints)
@@ -230,8 +218,6 @@ class Draft:
 
     def shown(self, lines: Sequence[Line], changed: Collection[str] = ()) -> None:
         """Print the form, and what looks wrong in it."""
-        from coeflab.tables.form import screen
-
         for line in screen(lines, changed, min(show.width(), 100)):
             show.lines(line)
         show.text()
@@ -245,10 +231,6 @@ class Draft:
 
     def warned(self) -> list[str]:
         """What looks wrong in what is said so far."""
-        from coeflab.tables.parts import JOIN, alike, own
-        from coeflab.tables.settings import doubtful_setting
-        from coeflab.tables.words_above import POINT_OF
-
         sizes = []
         for part in self.parts:
             mine = own(self.settings, part, self.parts)
@@ -264,10 +246,6 @@ class Draft:
 
     def _beyond_ends(self) -> str:
         """Where the reference point is off the body."""
-        from coeflab.core.units import quantity
-        from coeflab.law.scaling import beyond_ends
-        from coeflab.tables.words_above import POINT_OF
-
         point, datum, length = (self.settings.get(k) for k in (POINT_OF, "axes.datum", "scaling.length"))
         if point is None or datum is None:
             return ""
@@ -277,9 +255,6 @@ class Draft:
 
 def described(part: Part, found: Understood, *, whole: bool = True) -> None:
     """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not."""
-    from coeflab.report.tables import raw_tables
-    from coeflab.tables.collect import runs_shown
-
     raw = part.raw
     said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     name = f"{part.name}: " * bool(part.name)
@@ -310,9 +285,6 @@ def print_list(title: str, texts: Sequence[str]) -> None:
 
 def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
-    from coeflab.core.errors import shown, together
-    from coeflab.tables.settings import Setting, read_in, require_one_datum, saved_mapping
-
     out = Said()
     if mapping is not None:
         out.columns, out.settings, out.importer, out.options = saved_mapping(mapping)
@@ -343,8 +315,6 @@ def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequ
 
 def options_of(texts: Sequence[str]) -> dict[str, Any]:
     """Options of an importer from ``NAME=VALUE``; numbers where they read as such."""
-    from coeflab.core.errors import shown, together
-
     wrong = [t for t in texts if "=" not in t]
     if wrong:
         raise together([InputError(shown(t), "NAME=VALUE, such as sheet=Drift", column="--option") for t in wrong])
@@ -354,8 +324,6 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
 
 def of_runs(name: Sequence[str], runs: Path | None, state: Path | None = None) -> list[str]:
     """Options of collected runs as ``--option`` takes them."""
-    from coeflab.tables.conditions import BETWEEN
-
     given = {"names": BETWEEN.join(name), "run_list": runs, "state": state}
     return [f"{option}={value}" for option, value in given.items() if value]
 
@@ -371,10 +339,6 @@ def _number(text: str) -> Any:
 
 def _mapped(map_: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
     """What ``--map`` says, by the names of the file."""
-    from coeflab.core.errors import shown, together
-    from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.parts import columns_by_name
-
     names = {name: key for name, (key, _) in columns_by_name(parts).items()}
     out: dict[str, ColumnMap] = {}
     complaints: list[InputError] = []

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import complete, show
+from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
     from coeflab.core.table import Table
@@ -76,7 +77,6 @@ def command(
     Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
     Exit code 1 when a check fails; with --strict when one warns, too.
     """
-    from coeflab.core.errors import InputError, shown
     from coeflab.core.files import located
     from coeflab.core.units import quantity
     from coeflab.core.wording import Verbatim
@@ -149,8 +149,6 @@ def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, 
 
 def further(arguments: list[str]) -> dict[str, int | float | str]:
     """Options for a plugin from ``--name value`` or ``--name=value``; numbers where they read as such."""
-    from coeflab.core.errors import InputError, shown
-
     out: dict[str, int | float | str] = {}
     rest = list(arguments)
     while rest:
@@ -171,7 +169,6 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
 
 
 def _refuse_strange(study: Study, symbols: list[str]) -> None:
-    from coeflab.core.errors import InputError, shown
 
     known = [s.symbol for f in study.fits for s in f.sweeps]
     for symbol in symbols:
@@ -186,7 +183,6 @@ def _refuse_strange(study: Study, symbols: list[str]) -> None:
 
 def _draw(study: Study, symbols: list[str], file: Path) -> None:
     """All figures of the fits in one file; of sweeps those of the wanted symbols, where any are."""
-    from coeflab.core.errors import InputError
     from coeflab.core.files import write_atomically
     from coeflab.report.figures.estimator import estimator_figure
     from coeflab.report.figures.model import distinct, model_figures

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import complete, show
-from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
@@ -75,7 +74,7 @@ def command(
     it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
     first slopes with the checks that fail or warn. Nothing is taken that the form did not show. Exit code 1 when a check fails.
     """
-    from coeflab.core.errors import OutputError
+    from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
     from coeflab.core.files import typed, write_all
     from coeflab.tables.form import of_campaign
     from coeflab.tables.imported import checked, contents

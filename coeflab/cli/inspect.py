@@ -105,13 +105,8 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
     from coeflab.tables.form import open_lines, screen
-    from coeflab.tables.parts import (
-        form_together,
-        read_parts,
-        stated_together,
-        understood_together,
-        with_shared_words,
-    )
+    from coeflab.tables.parts import read_parts, stated_together, with_shared_words
+    from coeflab.tables.parts_together import form_together, understood_together
 
     path = located(table, "cfd_data")
     options = options_of(option)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from coeflab.cli import complete, show
+from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
     from coeflab.motion.manoeuvre import Manoeuvre, Simulation
@@ -67,7 +68,6 @@ def command(
     was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written.
     """
     from coeflab.cli.fit import further
-    from coeflab.core.errors import InputError, shown
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.parameter_file import read_parameter_file
 
@@ -196,7 +196,6 @@ def _arm(body: Path, name: str, options: dict[str, Any], to: str, out: Path | No
 
 def _moved(body: Path, name: str, options: dict[str, Any]) -> tuple[Chain, Manoeuvre, Trajectory]:
     """Read a body.toml and make a manoeuvre; what its keys are to blame for names their lines."""
-    from coeflab.core.errors import InputError
     from coeflab.core.options import described
     from coeflab.core.text.toml import read_toml
     from coeflab.motion.multibody.arm_file import BODY, read_arm
@@ -268,8 +267,6 @@ def current_of(text: str) -> dict[str, float]:
     InputError
         Not three numbers.
     """
-    from coeflab.core.errors import InputError, shown
-
     if not text:
         return {}
     try:
@@ -293,7 +290,6 @@ def _print(made: Simulation, written: list[Path]) -> None:
 
 
 def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
-    from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.report.figures.motion import motion_figures
     from coeflab.report.figures.svg import sheet

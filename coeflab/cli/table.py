@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import complete, show
+from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import TABLE_POINTS
 
 if TYPE_CHECKING:
@@ -43,7 +44,6 @@ def command(
     --alpha also serve tables over v' = sin(beta) and w' = sin(alpha) cos(beta). The column "inside" is 1 within the
     convex hull of the data; cells that the file's rule refuses stay blank.
     """
-    from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_atomically
     from coeflab.law.symbols import FLOW_ANGLES
     from coeflab.vehicle.parameter_file import read_parameter_file
@@ -113,8 +113,6 @@ def wanted(arguments: list[str]) -> dict[str, NDArray[np.float64]]:
     InputError
         Something that is no --NAME=VALUES, a variable given twice, values that cannot be read, or too many points.
     """
-    from coeflab.core.errors import InputError, shown
-
     out: dict[str, NDArray[np.float64]] = {}
     points = 1
     rest = list(arguments)
@@ -134,8 +132,6 @@ def wanted(arguments: list[str]) -> dict[str, NDArray[np.float64]]:
 
 def _values(name: str, text: str, most: int) -> NDArray[np.float64]:
     import numpy as np
-
-    from coeflab.core.errors import InputError, shown
 
     try:
         numbers = [float(x) for x in text.split(":" if ":" in text else ",")]

@@ -14,7 +14,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.hull_flow import HullFlow, carrier, fin_groups, hull_flow, integral
+from coeflab.bodies.fin_groups import carrier, fin_groups
+from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.hull_flow import carrier, fin_groups, hull_flow
+from coeflab.bodies.fin_groups import carrier, fin_groups
+from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline, RingWing
 from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water

@@ -28,21 +28,11 @@ from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.oscillation import Explained, OscillatedForce, Oscillation, describing
 from coeflab.fits.rows.oscillating import oscillated
-from coeflab.fits.statistics.harmonics import (
-    CUBIC,
-    QUADRATIC,
-    SAME,
-    AtZero,
-    RunScatter,
-    at_zero_amplitude,
-)
+from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, SAME, AtZero, RunScatter, at_zero_amplitude
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.planar_motion import (
-    VARIABLES,
-    PlanarMotionTable,
-)
+from coeflab.tables.planar_motion import VARIABLES, PlanarMotionTable
 
 summary = "added mass and damping from oscillating runs (PMM), with what amplitude and frequency do to them"
 citations = ("gertler1959", "ittc_captive", "ittc_roll_decay", "liang_zeger1986", "schwarz1978")

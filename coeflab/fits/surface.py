@@ -17,18 +17,8 @@ from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
+from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
-from coeflab.fits.rows.sweeps import (
-    AREAS,
-    PRIMES,
-    allowed,
-    area_of,
-    area_settings,
-    check_varies,
-    named_response,
-    only_moving,
-    without_blanks,
-)
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
@@ -78,7 +68,7 @@ class Options:
     parity: tuple[str, ...] = words()
     extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
     area: float = measured(0.0, 0.0, 1e6, "area")
-    area_name: str = one_of(PRIMES, *AREAS)
+    area_name: str = one_of(sweeps.PRIMES, *sweeps.AREAS)
 
 
 def _sided(chosen: Options) -> list[str]:
@@ -121,12 +111,12 @@ def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel |
     """One form; None where it has no terms or more than the rows can carry."""
     variables = tuple(rows.x)
     rule = _parities(chosen, rows.response)
-    check_varies(rows)
+    sweeps.check_varies(rows)
     every = power_terms(variables, chosen.degree, form, rule)
     terms = _mirrored(every, chosen, rows.response)
     if not terms or len(terms) >= len(rows.y):
         return None
-    name = named_response(rows.response, area)
+    name = sweeps.named_response(rows.response, area)
     symbols = tuple(f"{name}_{t if t.factors else 0}" for t in terms)
     parities = "".join(f", {r} in {v}" for v, r in rule.items() if r != "full")
     if len(terms) < len(every):
@@ -265,14 +255,14 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         No such rows, a response that the tables lack, more terms than rows, or an area without its name.
     """
-    chosen = parse_options(Options, without_blanks(options, "parity"), "surface")
+    chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
         raise InputError(
             f"the variables {', '.join(chosen.variables) or 'none'}", "two different ones", column="surface.variables"
         )
-    area = area_of(chosen.area, chosen.area_name, scaling)
-    used, said = only_moving(tables, chosen.variables, scaling.length)
-    names = chosen.responses or tuple(n for n in USUAL if allowed(used, n, area))
+    area = sweeps.area_of(chosen.area, chosen.area_name, scaling)
+    used, said = sweeps.only_moving(tables, chosen.variables, scaling.length)
+    names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
     first = tables[0]
@@ -289,7 +279,9 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             "form": chosen.form,
             "parity": " ".join(chosen.parity) or "port-starboard symmetry",
             "extrapolation": chosen.extrapolation,
-            **area_settings(area),
+            **sweeps.area_settings(area),
         },
-        models=tuple(_model(allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names)),
+        models=tuple(
+            _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names)
+        ),
     )

@@ -1,3 +1,1 @@
 """The vocabulary of forces: symbols, terms, scaling, coefficients, added mass, transforms."""
-
-from __future__ import annotations

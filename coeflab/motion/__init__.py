@@ -1,3 +1,1 @@
 """Motions: equations, integrators, manoeuvres, trim, identification, ensembles."""
-
-from __future__ import annotations

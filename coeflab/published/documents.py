@@ -12,8 +12,9 @@ from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import brief
 from coeflab.published import PLAN, validation, validations
-from coeflab.report import content, summary
+from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
+from coeflab.report.answer import acceptance_summary, study_summary
 from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
 from coeflab.report.sections import acceptance as acceptance_document
@@ -72,12 +73,12 @@ def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = Fa
     """
     if isinstance(found, Study):
         if short:
-            return Report(_one_page(summary.study_summary(found)), found.failed)
+            return Report(_one_page(study_summary(found)), found.failed)
         made = content.document(found, full=full)
         return Report(_commanded(made) if full else made, found.failed)
     whole = acceptance_document.document(found, _inputs(found.name))
     if short:
-        return Report(_one_page(summary.acceptance_summary(found, whole)), not found.holds)
+        return Report(_one_page(acceptance_summary(found, whole)), not found.holds)
     parted = _parted(whole, found)
     return Report(_commanded(parted) if full else content.core(parted), not found.holds)
 

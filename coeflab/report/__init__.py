@@ -1,3 +1,1 @@
 """One document for terminal, HTML, PDF and notebook."""
-
-from __future__ import annotations

@@ -1,6 +1,6 @@
 """The first page of a study or a publication: what came out, in one sentence, six rows, two pictures and four chips.
 
-Everything that shows it takes it from here: terminal, notebook, HTML, PDF, summary.
+Everything that shows it takes it from here: terminal, notebook, HTML, PDF, and the summary, a report of that page alone.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
-from coeflab.report.document import Answer, AnswerRow, Chip, Figure
+from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
+from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.tables.models import quality
@@ -38,6 +39,7 @@ BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
+SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
 
 @brief
@@ -528,3 +530,25 @@ def _bar(r: AnswerRow) -> str:
         return "-"
     whole = min(round(BAR * abs(r.share)), BAR)
     return f"{r.share:+.2f} {'#' * whole}{'!' if abs(r.share) > 1.0 else ''}".strip()
+
+
+def study_summary(study: Study) -> Document:
+    """One page on a study."""
+    verbatim = users_texts(study)
+    with keeping(verbatim):
+        made = answer(study)
+    return Document(
+        study.plan.title or study.plan.name, SUBTITLE, (), study.plan.name, digest_of(study.inputs), verbatim=verbatim,
+        answer=_unlinked(made),
+    )  # fmt: skip
+
+
+def acceptance_summary(found: Acceptance, whole: Document) -> Document:
+    """One page on a publication reproduced, of whose whole report it takes name and inputs."""
+    return replace(whole, subtitle=SUBTITLE, sections=(), works=(), answer=_unlinked(whole.answer or answer(found)))
+
+
+def _unlinked(made: Answer) -> Answer:
+    """Without links to sections, of which a summary has none."""
+    rows = tuple(replace(r, anchor="") for r in made.rows)
+    return replace(made, rows=rows, chips=tuple(replace(c, anchor="") for c in made.chips))

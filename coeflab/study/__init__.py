@@ -1,3 +1,1 @@
 """A plan, the study it becomes, and what stands out in it."""
-
-from __future__ import annotations

@@ -17,15 +17,7 @@ from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import Array, brief
 from coeflab.core.units import SI
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
-from coeflab.tables.conditions import (
-    DIMENSIONS,
-    SETTINGS,
-    Condition,
-    NamePattern,
-    name_pattern,
-    named,
-    of_files,
-)
+from coeflab.tables.conditions import DIMENSIONS, SETTINGS, Condition, NamePattern, name_pattern, named, of_files
 from coeflab.tables.histories import ORDER, Convergence
 from coeflab.tables.raw_table import NO_FORCES, RawColumn, RawTable, Stated
 from coeflab.tables.run_list import RunList, joined, read_run_list, required

@@ -89,6 +89,17 @@ class Marks:
         return math.nan if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:") else None
 
 
+def one_reading(text: str, marks: Marks) -> float | None:
+    """The one reading of a number in a text; None where it has two, 1,025 with a decimal comma and with thousands."""
+    plain = text.strip().rstrip(",.")
+    for decimal in (marks.decimal, *({".", ","} - {marks.decimal})):
+        value = Marks(decimal).number(plain)
+        if value is not None:
+            certain = decimal == marks.decimal or not re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", plain)
+            return value if certain else None
+    return None
+
+
 def numeric(cells: Sequence[str], marks: Marks) -> int:
     """How many cells are numbers, or say in letters that they are none."""
     return sum(c not in _DASHES and marks.number(c) is not None for c in cells)

@@ -15,9 +15,10 @@ from coeflab.core.table import folded
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
-from coeflab.tables.questions import Doubt, Question, Understood, without_unit
+from coeflab.tables.questions import Question, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_in, require_one_datum
+from coeflab.tables.understood import Doubt, Understood
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts

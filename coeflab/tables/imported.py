@@ -19,7 +19,7 @@ from coeflab.core.text.toml import toml_text, value
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
-from coeflab.core.wording import identifier
+from coeflab.core.wording import identifier, one_line
 from coeflab.law.symbols import CONTROL_COLUMNS
 from coeflab.tables.campaign import FILE, CampaignFile, read_campaign
 from coeflab.tables.column_map import ColumnMap
@@ -29,7 +29,7 @@ from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.settings import CONFIRMED, EACH, OF_ARMS, SECTIONS, Settings
-from coeflab.tables.words_above import POINT_OF
+from coeflab.tables.words.points import POINT_OF
 
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"
@@ -202,9 +202,9 @@ def _campaign_text(
     declared: Sequence[tuple[Mapping[str, Any], Mapping[str, str]]], tables: Sequence[Filled], source: Path,
 ) -> str:  # fmt: skip
     made = ", ".join(t.file for t in tables)
-    lines = [f"# What the numbers in {made} mean. Made by `coeflab import` from {_plain(source.name)}."]
+    lines = [f"# What the numbers in {made} mean. Made by `coeflab import` from {one_line(source.name)}."]
     for t in tables:
-        lines += [f"# {_plain(f'{t.name}: ' * bool(t.name) + remark)}" for remark in t.raw.remarks]
+        lines += [f"# {one_line(f'{t.name}: ' * bool(t.name) + remark)}" for remark in t.raw.remarks]
     every: list[tuple[str, Mapping[str, Any], Mapping[str, str]]] = [
         (name, keys, {k: comments.get(f"{name}.{k}", "") for k in keys}) for name, keys in sections.items()
     ]
@@ -215,7 +215,7 @@ def _campaign_text(
         lines += ["", f"[[{section}]]" if section == "table" else f"[{section}]"]
         for name, content in keys.items():
             line = f"{name} = {value(content)}"
-            lines.append(f"{line:<41} # {_plain(said[name])}" if said.get(name) else line)
+            lines.append(f"{line:<41} # {one_line(said[name])}" if said.get(name) else line)
         lines += [f"# {hint}" for hint in HINTS.get(section, ()) if hint.partition(" ")[0] not in keys]
     return "\n".join(lines) + "\n"
 
@@ -228,10 +228,6 @@ HINTS = {
         'select = { run = "A", reason = "..." }  only these rows, by a column of labels',
     ),
 }
-
-
-def _plain(text: str) -> str:
-    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def _table(
@@ -256,7 +252,7 @@ def _table(
             labels += [name] * (said.name == "label")
             heads.append(name)
             texts = texts_of(one.column)
-            cells.append([_plain(texts[row]).strip() for row in rows])
+            cells.append([one_line(texts[row]).strip() for row in rows])
             continue
         own = one.column.values * (-1.0 if said.negative else 1.0)
         if said.area:
@@ -277,7 +273,7 @@ def _table(
         words = [{LONG.get(name, name) for name in doubts[row]} for row in rows]
         cells.append([" ".join(name for name in names if name in own) for own in words])
     out = io.StringIO()
-    out.write(f"# Made by `coeflab import` from {_plain(raw.path.name)}; all digits of the file.\n")
+    out.write(f"# Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file.\n")
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
         out.write("# Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".\n")
@@ -296,7 +292,7 @@ def _head(said: ColumnMap) -> str:
 
 def _label(name: str, taken: Sequence[str]) -> str:
     """A name for a label column that is no column of numbers."""
-    out = " ".join(_plain(name).replace("[", "(").replace("]", ")").split()) or "label"
+    out = " ".join(one_line(name).replace("[", "(").replace("]", ")").split()) or "label"
     while out in taken or len(out) < 3 or out in ("point", "cells", "beta", "alpha", "uncertain"):
         out = f"{out} label" if "label" not in out else f"{out}_"
     return out

@@ -20,7 +20,7 @@ from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_colu
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
-from coeflab.tables.words_above import BODY_AXES
+from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
@@ -259,30 +259,6 @@ def texts_of(column: RawColumn) -> list[str]:
     if column.texts:
         return [Verbatim(text) for text in column.texts]
     return [Verbatim("" if np.isnan(x) else f"{x:.12g}") for x in column.values.tolist()]
-
-
-def columns_of(raw: RawTable, mapping: Mapping[str, ColumnMap], campaign: Campaign, table: TableDeclaration) -> Columns:
-    """The columns of a file in SI, by their plain names, in the axes that the campaign declares.
-
-    Rows without a number in a setting are left out; forces without one are excluded.
-
-    Parameters
-    ----------
-    raw : RawTable
-    mapping : mapping of str to ColumnMap
-        What each column is, by its name in the file.
-    campaign : Campaign
-    table : TableDeclaration
-        Its labels and ignored columns join the mapping.
-
-    Raises
-    ------
-    InputError
-        All that is wrong with the columns, by file, line and column.
-    """
-    return _columns(
-        raw, assigned(raw, {**declared_mapping(campaign, table), **mapping}, len(campaign.tables) == 1), campaign
-    )
 
 
 def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:

@@ -28,7 +28,7 @@ from coeflab.tables.column_map import (
 from coeflab.tables.evidence import TURN
 from coeflab.tables.mapping import MARKS
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.words_above import BODY_AXES
+from coeflab.tables.words.axes import BODY_AXES
 
 OPEN = "?"
 UNKNOWN = "no known name"

@@ -2,46 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, Axes, parse_axes
-from coeflab.core.errors import InputError
+from coeflab.core.axes import ANGLE_SIGNS, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
-from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES
-from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map, unturned
-from coeflab.tables.evidence import Evidence, along_x, astern, centre_of, evidence, turn_of
-from coeflab.tables.mapping import (
-    NO_FORCE,
-    Assigned,
-    another_density,
-    assigned,
-    entry_of,
-    error_of,
-    fault,
-    known_as,
-    with_unit,
-)
-from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal, proposals
-from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import (
-    EXTRA,
-    Setting,
-    Settings,
-    against_words,
-    arm_by_words,
-    frame_of,
-    of_datum,
-    point_by_words,
-    read_setting,
-)
-from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, POINT_FROM, POINT_OF, TURN_OF_R, UNSAID, of_the_test
+from coeflab.tables.column_map import ROLES, read_column_map
+from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
+from coeflab.tables.mapping import Assigned
+from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
+from coeflab.tables.raw_table import RawTable, Stated
+from coeflab.tables.settings import Setting, Settings, arm_by_words, frame_of, of_datum, point_by_words
+from coeflab.tables.words.above import of_the_test
+from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
@@ -398,183 +377,6 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
     value = value.casefold() if isinstance(said.value, bool) else value
     return replace(q, default=value, why=said.place, short=said.place, shown="")
-
-
-@dataclass(frozen=True, slots=True)
-class Doubt:
-    """A rate that the numbers contradict.
-
-    Attributes
-    ----------
-    column : RawColumn
-    said : ColumnMap
-        What it is by now, or, where its axis is contradicted, the rate about the other axis.
-    why : str
-    turns : str
-        What a positive number of the column does if it is what is said; empty while the axes are not known.
-    another : bool
-        The axis is contradicted, not the sign.
-    """
-
-    column: RawColumn
-    said: ColumnMap
-    why: str
-    turns: str = ""
-    another: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Understood:
-    """How far a file is understood.
-
-    Attributes
-    ----------
-    proposals : tuple of Proposal
-        One a column, whether or not a person has said otherwise.
-    mapping : mapping of str to ColumnMap
-        What is settled.
-    open : tuple of (RawColumn, Proposal)
-        Columns that nobody has confirmed.
-    columns : tuple of Assigned
-        As they would be if all whole proposals are right.
-    shows : tuple of Evidence
-    questions : tuple of Question
-        What nobody has said yet.
-    complaints : tuple of InputError
-        What is said of columns and cannot be.
-    doubts : tuple of Doubt
-        Rates whose sign the numbers contradict and that no person has judged, and rates about another axis than the forces say.
-    about : mapping of str to str
-        The long explanation of every key, said ones too.
-    """
-
-    proposals: tuple[Proposal, ...]
-    mapping: Mapping[str, ColumnMap]
-    open: tuple[tuple[RawColumn, Proposal], ...]
-    columns: tuple[Assigned, ...]
-    shows: tuple[Evidence, ...]
-    questions: tuple[Question, ...]
-    complaints: tuple[InputError, ...] = ()
-    doubts: tuple[Doubt, ...] = ()
-    about: Mapping[str, str] = field(default_factory=dict)
-
-
-def understood(
-    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False,
-    judged: Collection[str] | None = None,
-) -> Understood:  # fmt: skip
-    """What of a file is settled, what is open, and what its numbers show.
-
-    Parameters
-    ----------
-    raw : RawTable
-    said : mapping of str to ColumnMap
-        What a person said of columns, by their names in the file.
-    settings : mapping of str to Setting
-    accept : bool
-        Take whole proposals as confirmed.
-    judged : collection of str, optional
-        Columns whose sign a person has settled, by default all of ``said``.
-    """
-    offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
-    mapping: dict[str, ColumnMap] = {}
-    still: list[tuple[RawColumn, Proposal]] = []
-    for column, offer in zip(raw.columns, offers, strict=True):
-        one = next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
-        if one is None and offer.whole and (offer.certain or accept):
-            one = read_column_map(offer.text)
-        if one is None:
-            still.append((column, offer))
-        else:
-            mapping[column.name] = one
-    tentative = {c.name: read_column_map(o.text) if o.whole else ColumnMap("ignore") for c, o in still}
-    said_of = mapping | tentative
-    complaints: tuple[InputError, ...] = ()
-    try:
-        columns = assigned(raw, said_of, whole=False)
-    except InputError as why:
-        columns = tuple(_possible(raw, said_of))
-        unfinished = why.found == NO_FORCE and any(not offer.whole for _, offer in still)
-        complaints = () if unfinished else (why, *why.others)
-    likely = _with_frame(raw, settings)
-    frame = frame_of(likely)
-    warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
-    shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
-    names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
-    shows += tuple(
-        Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
-    )
-    asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
-    if frame and (back := astern(columns, frame)):
-        complaints += (_astern(raw, back, frame),)
-    if "conditions.density" in settings:
-        other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
-        complaints += (other,) if other else ()
-    settled = set(said if judged is None else judged)
-    doubts = [
-        _doubt(one, e, frame) for e in shows for one in columns
-        if e.against and one.said.name == e.against and not one.said.error
-        and (e.instead or not settled & {one.column.name, *known_as(one.column)})
-    ]  # fmt: skip
-    yet = tuple(q for q in asked if q.key not in settings)
-    about = {q.key: q.asks for q in asked}
-    doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    return Understood(offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about)
-
-
-def _with_frame(raw: RawTable, settings: Settings) -> Settings:
-    """The settings, with the axes that words over the table say where nobody has declared any."""
-    said = raw.stated.get("axes.frame")
-    if said is None or not said.offered or said.contradicted or "axes.frame" in settings:
-        return settings
-    return {**settings, "axes.frame": Setting(read_setting("axes.frame", said.value), said.place)}
-
-
-def _turned_by_words(
-    raw: RawTable, columns: Sequence[Assigned], frame: Axes | None, settled: Collection[str], doubts: Sequence[Doubt]
-) -> Iterator[Doubt]:
-    """Rates that turn to another side, by the axes, than words over the table say."""
-    words = raw.stated.get(TURN_OF_R)
-    for one in columns if frame and words else ():
-        if one.said.name != "r" or one.said.error or set(settled) & {one.column.name, *known_as(one.column)}:
-            continue
-        turn = turn_of(one.said, frame)  # type: ignore[arg-type]
-        if turn.startswith("turns") and str(words.value) not in turn and one.column not in [d.column for d in doubts]:  # type: ignore[union-attr]
-            yield Doubt(one.column, one.said, f"{words.place}, but by the axes r > 0 {turn}", turn)  # type: ignore[union-attr]
-
-
-def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:
-    said = replace(one.said, name=shows.instead, negative=False) if shows.instead else one.said
-    return Doubt(one.column, said, shows.text, turn_of(said, frame) if frame else "", bool(shows.instead))
-
-
-def _against(shows: Evidence, settings: Settings) -> Evidence:
-    """Evidence of a sign, as a warning where the opposite is declared."""
-    declared = settings.get(shows.key)
-    if declared is None or " ".join(str(declared.value).split()) == shows.value:
-        return shows
-    return replace(shows, text=f"warning: {shows.text}, so {shows.value}; declared is {shows.key} = {declared.value}. One of "
-                   f"them is wrong: the sign of the angle, of the force, or the axes")  # fmt: skip
-
-
-def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
-    other = "CFD (x aft)" if frame.rotation[0][0] > 0.0 else "FRD or FLU (x forward)"
-    return fault(
-        raw, "u is below zero in every row: in these axes the body moves astern", "u above zero", back.column,
-        f"Is the frame {other}? A test astern is read in place, by [columns] of its campaign.toml.",
-    )  # fmt: skip
-
-
-def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
-    """Columns of which what is said of them is possible."""
-    for column in raw.columns:
-        one = entry_of(column, said)
-        if one is None or one.name == "ignore":
-            continue
-        try:
-            yield with_unit(raw, column, one)
-        except InputError:  # among the complaints
-            continue
 
 
 def _point(value: Any) -> str:

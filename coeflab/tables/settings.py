@@ -19,19 +19,11 @@ from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
 from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
-from coeflab.tables.campaign import (
-    CENTRES,
-    CampaignAxes,
-    CampaignConditions,
-    CampaignHead,
-    InputUncertainty,
-    TableDeclaration,
-    TableSource,
-    TowedInertia,
-)  # fmt: skip
+from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.words_above import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF, of_the_test
+from coeflab.tables.words.above import of_the_test
+from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
 
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 _SIZES = {
@@ -40,8 +32,8 @@ _SIZES = {
 SAME_SIZE = 0.01  # share by which a setting may differ from the words of the file
 CONFIRMED = ("confirmed", "from ")
 _KINDS = {
-    "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
-    "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
+    "campaign": campaign.CampaignHead, "axes": campaign.CampaignAxes, "scaling": Scaling, "conditions": campaign.CampaignConditions,
+    "source": campaign.TableSource, "inertia": campaign.TowedInertia, "uncertainty": campaign.InputUncertainty, "table": campaign.TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 ARM_POINT = "table.arm_point"
@@ -162,7 +154,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
     **dict.fromkeys(PLACE_KEYS, _place),
-    "table.centre": _one_of(*CENTRES),
+    "table.centre": _one_of(*campaign.CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
     "scaling.length": _measured("length"),

@@ -29,7 +29,7 @@ from coeflab.tables.dialect import (
     read_head,
 )
 from coeflab.tables.raw_table import Stated
-from coeflab.tables.words_above import words_above
+from coeflab.tables.words.above import words_above
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks": " ", "none": ""}
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}

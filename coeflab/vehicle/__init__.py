@@ -1,3 +1,1 @@
 """The parameter file: the law of one body, its inertia, and where every number comes from."""
-
-from __future__ import annotations

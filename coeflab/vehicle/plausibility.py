@@ -22,16 +22,7 @@ from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
-from coeflab.vehicle.stated_numbers import (
-    AIR,
-    MOMENTS,
-    Written,
-    displaced,
-    gravity,
-    gyration,
-    munk_twice,
-    water,
-)
+from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 
 X_APART = "X steers nothing: exports and motions keep the range of the other components."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth

@@ -9,9 +9,7 @@ from coeflab.bodies.closed_forms import (
     as_ellipse,
     as_rectangle,
     carried,
-    cross_roll,
     ellipse,
-    finned_circle,
     rectangle,
     section_integrals,
     turned,
@@ -19,6 +17,20 @@ from coeflab.bodies.closed_forms import (
 from coeflab.bodies.strips import divided, section_matrices
 
 PI = np.pi
+
+
+def finned_circle(radius: float, semi_span: float) -> float:
+    """Translation across the span of a circle with two thin fins in line, or of any direction with four in a cross.
+
+    Source: Bryson, J. Aeronautical Sciences 21 (1954); Newman (1977), Table 4.3. Zero radius is a plate or a cross.
+    """
+    s, r = semi_span, radius
+    return float(np.pi * (s**2 - r**2 + r**4 / s**2))
+
+
+def cross_roll(semi_span: float) -> float:
+    """Roll of a cross of two thin plates of half-length ``semi_span`` about its centre: 2 s^4 / pi (Newman 1977)."""
+    return 2.0 * semi_span**4 / np.pi
 
 
 def computed(contour: np.ndarray, count: int = 120) -> np.ndarray:

@@ -23,10 +23,10 @@ from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.questions import understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
 from coeflab.tables.settings import Setting, read_setting
+from coeflab.tables.understood import understood
 from tests.cli.conftest import Run, flat
 from tests.cli.survey import too_long
 from tests.tables.runs_as_text import FILE, write_run

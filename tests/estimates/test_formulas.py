@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_slope, spheroid_munk_slope
-from coeflab.bodies.hull_flow import FLAT, STERN, fin_groups, foil_on_body, friction_line, hull_flow
+from coeflab.bodies.fin_groups import fin_groups, foil_on_body
+from coeflab.bodies.hull_flow import FLAT, STERN, friction_line, hull_flow
 from coeflab.core.errors import InputError
 from coeflab.estimates import bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
 from tests.estimates.bodies import (

@@ -191,9 +191,8 @@ NO_PRIMES = {
     "motion/multibody/compiled.py": (1, "dynamic pressure on the drag area of a vehicle"),
     "motion/multibody/kane.py": (1, "dynamic pressure on the drag area of a vehicle"),
     "motion/multibody/thrusters.py": (1, "dynamic pressure on the area of a propeller's blades"),
-    "published/huuv/five_dof.py": (1, "dynamic pressure on the reference area of the paper's coefficients"),
-    "published/huuv/five_dof_file.py": (1, "dynamic pressure on the reference area of the paper's coefficients"),
-    "published/urv/errata.py": (3, "dynamic pressure on a drag area, as printed and as corrected"),
+    "published/huuv/five_dof.py": (2, "dynamic pressure on the reference area of the paper's coefficients"),
+    "published/urv/acceptance.py": (3, "dynamic pressure on a drag area, as printed and as corrected"),
     "published/urv/model.py": (1, "drag of a strip, written apart from the kernel"),
     "published/urv/theory.py": (3, "drag in closed form, dynamic pressure on areas"),
 }

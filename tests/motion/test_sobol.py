@@ -64,7 +64,7 @@ def test_same_numbers_as_scipy() -> None:
 
 def test_bootstrap_is_that_of_one_replicate_at_a_time() -> None:
     f_a, f_b, f_ab = results(ishigami, *design(256, 3, 4), singles(3))
-    from coeflab.fits.statistics.diagnostics import draw_counts
+    from coeflab.motion.uncertainty.sobol import draw_counts
 
     replicates = 200
     each = []

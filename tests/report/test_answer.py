@@ -12,14 +12,13 @@ import pytest
 from coeflab.cli.show import plain_lines
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
-from coeflab.report.answer import answer, answer_table
+from coeflab.report.answer import answer, answer_table, study_summary
 from coeflab.report.content import document, verdict
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.figures.panel import SIZE
 from coeflab.report.figures.svg import text_width
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.report.summary import study_summary
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set

@@ -15,13 +15,13 @@ import pytest
 
 from coeflab.core.wording import Verbatim
 from coeflab.report import notation as lettering
+from coeflab.report.answer import study_summary
 from coeflab.report.content import document
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.formats import html as page
 from coeflab.report.formats import pdf
 from coeflab.report.notation import Symbol, cell_runs, keeping, kept, runs, users_texts
 from coeflab.report.printable import shortened
-from coeflab.report.summary import study_summary
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.workbench import run

@@ -22,9 +22,9 @@ from coeflab.tables.form import Group, form, screen
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.proposals import proposals, proposed
-from coeflab.tables.questions import understood
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
+from coeflab.tables.understood import understood
 from tests.cli.test_import import without_slopes
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw

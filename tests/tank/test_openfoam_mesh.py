@@ -19,8 +19,16 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
-from coeflab.tank.openfoam.mesh import mesh_job, mesh_name
-from coeflab.tank.openfoam.mesh_made import MADE, _binary, _ranges, expected_cells, mesh_ended, mesh_made
+from coeflab.tank.openfoam.mesh import (
+    MADE,
+    _binary,
+    _ranges,
+    expected_cells,
+    mesh_ended,
+    mesh_job,
+    mesh_made,
+    mesh_name,
+)
 from coeflab.tank.openfoam.mesh_sizes import GROWTH, MeshKeys, mesh_sizes, mirrored_axes, wall_unit
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half

@@ -13,18 +13,8 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.family import family
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.panels import influence
 from coeflab.bodies.panels.added_mass import PanelSolution, Wall, memory_needed, panel_added_mass
-from coeflab.bodies.panels.influence import (
-    bisected,
-    panels_of,
-    seen_by,
-    sharpness,
-    slenderness,
-    slivers,
-    split_in_four,
-    thin_share,
-    unmatched_edges,
-)
 from coeflab.bodies.panels.refinement import Refinement, refined, volume_gap
 from coeflab.bodies.shape import Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError, shown
@@ -209,13 +199,13 @@ def _panelled(shape: Shape, panels: int, chosen: Options) -> _Panelled:
     """Families of closed parts and of sheets; what of a sheet lies within a closed part is left out."""
     most = 3 if chosen.extrapolate == "yes" else 1
     solid, sheets = _split(shape)
-    area = float(panels_of(sheets).area.sum()) if len(sheets) else 0.0
+    area = float(influence.panels_of(sheets).area.sum()) if len(sheets) else 0.0
     if solid is None:
         alone = _sheets(sheets, min(panels // 2, MOST_SHEETS), most)
         return _Panelled(tuple((np.zeros((0, 3, 3)), t) for t in alone), None, False)
     gated = solid if isinstance(solid, TriangleMesh) else meshed(solid, panels)
     _gate(gated, made=gated is not solid)
-    edges = sharpness(gated.vertices, gated.faces) > SHARP
+    edges = influence.sharpness(gated.vertices, gated.faces) > SHARP
     if not len(sheets):
         closed = family(solid, panels, most)
         return _Panelled(tuple((c, sheets) for c in closed), gated, edges)
@@ -257,31 +247,31 @@ def _rectangle(part: Part) -> Array:
 
 def _sheets(corners: Array, count: int, most: int) -> list[Array]:
     """Sheets at up to three counts, each a quarter of the one before; the rims stay where they are."""
-    coarse = bisected(corners, count // RATIO**2)
+    coarse = influence.bisected(corners, count // RATIO**2)
     out = [coarse]
     while len(out) < 3 and len(out[0]) * RATIO <= max(count * 2, len(coarse)):
-        out.insert(0, split_in_four(out[0]))
+        out.insert(0, influence.split_in_four(out[0]))
     return out[:most]
 
 
 def _within(sheets: Array, closed: Array) -> NDArray[np.bool_]:
     """Which panels of a sheet lie inside closed surfaces, by the solid angle of these."""
-    return np.asarray(seen_by(sheets.mean(axis=1), panels_of(closed))[0].sum(axis=1) > INSIDE)
+    return np.asarray(influence.seen_by(sheets.mean(axis=1), influence.panels_of(closed))[0].sum(axis=1) > INSIDE)
 
 
 def _gate(mesh: TriangleMesh, made: bool) -> None:
     """Refuse what the method cannot do; faces without area where parts that we meshed were united are just left out."""
-    flat = int(np.count_nonzero(slivers(mesh.vertices[mesh.faces])))
+    flat = int(np.count_nonzero(influence.slivers(mesh.vertices[mesh.faces])))
     if flat and not made:
         raise InputError(f"{flat} faces without area", "triangles", advice="Clean the mesh of degenerate faces.")
-    torn = unmatched_edges(mesh.faces)
+    torn = influence.unmatched_edges(mesh.faces)
     if torn:
         raise InputError(
             f"{torn} edges that are not shared by two faces wound alike",
             "a closed surface whose faces look outward",
             advice="Close the holes, merge the vertices, and wind all faces alike.",
         )
-    ratio = slenderness(mesh.integrals.second_moments)
+    ratio = influence.slenderness(mesh.integrals.second_moments)
     if ratio < THIN:
         raise InputError(
             f"a body whose smallest side is {ratio:.3g} of the next",
@@ -292,7 +282,7 @@ def _gate(mesh: TriangleMesh, made: bool) -> None:
 
 def _thin(corners: Array) -> float:
     """Share of the surface on which panels are larger than the body is thick."""
-    share = thin_share(panels_of(corners))
+    share = influence.thin_share(influence.panels_of(corners))
     if share > THIN_SHARE:
         raise InputError(
             f"a body thinner than its panels are large on {share:.0%} of its surface",

@@ -1,3 +1,1 @@
 """Added mass by panels on the surface."""
-
-from __future__ import annotations

@@ -12,16 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.arm_keys import (
-    DIMENSIONS,
-    ArmKeys,
-    ArmPhaseKeys,
-    ControllerKeys,
-    LinkKeys,
-    PropulsorKeys,
-    StartKeys,
-    VehicleKeys,
-)
+from coeflab.bodies import arm_keys
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import BodyFile
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
@@ -64,13 +55,13 @@ class File(BodyFile):
     """
 
     reader: ClassVar[str] = "arm"
-    vehicle: VehicleKeys
-    arm: ArmKeys
-    link: tuple[LinkKeys, ...] = ()
-    thruster: tuple[PropulsorKeys, ...] = ()
-    controller: ControllerKeys = field(default_factory=ControllerKeys)
-    start: StartKeys = field(default_factory=StartKeys)
-    phase: tuple[ArmPhaseKeys, ...] = ()
+    vehicle: arm_keys.VehicleKeys
+    arm: arm_keys.ArmKeys
+    link: tuple[arm_keys.LinkKeys, ...] = ()
+    thruster: tuple[arm_keys.PropulsorKeys, ...] = ()
+    controller: arm_keys.ControllerKeys = field(default_factory=arm_keys.ControllerKeys)
+    start: arm_keys.StartKeys = field(default_factory=arm_keys.StartKeys)
+    phase: tuple[arm_keys.ArmPhaseKeys, ...] = ()
     basis: dict[str, takes.Text] = field(default_factory=dict)
 
     def check(self) -> None:
@@ -110,7 +101,7 @@ class File(BodyFile):
             except InputError as why:
                 raise InputError(why.found, why.expected, column=key, advice=why.advice) from None
 
-    def positions(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+    def positions(self, phase: arm_keys.ArmPhaseKeys) -> tuple[float, ...]:
         """Joint positions that a phase goes to, rad and m, within the joints' limits."""
         found = self._of_joints(phase.joints, 0)
         for link, value in zip(self.link, found, strict=False):
@@ -123,7 +114,7 @@ class File(BodyFile):
                 )
         return found
 
-    def torques(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+    def torques(self, phase: arm_keys.ArmPhaseKeys) -> tuple[float, ...]:
         """Torques and forces of the joints in a phase, N m and N."""
         return self._of_joints(phase.torque, 2)
 
@@ -131,7 +122,7 @@ class File(BodyFile):
         """Rates of the joints at the start, rad/s and m/s."""
         return self._of_joints(self.start.rates, 1)
 
-    def commands(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+    def commands(self, phase: arm_keys.ArmPhaseKeys) -> tuple[float, ...]:
         """Commands of the thrusters in a phase: N m by torque, V by voltage, N without a model."""
         return tuple(
             _volts(value) if one.voltage is not None else with_unit(value, "force" if one.torque is None else "moment")
@@ -140,7 +131,8 @@ class File(BodyFile):
 
     def _of_joints(self, values: tuple[Any, ...], which: int) -> tuple[float, ...]:
         return tuple(
-            with_unit(value, DIMENSIONS[link.joint][which]) for link, value in zip(self.link, values, strict=False)
+            with_unit(value, arm_keys.DIMENSIONS[link.joint][which])
+            for link, value in zip(self.link, values, strict=False)
         )
 
     @property

@@ -1,3 +1,1 @@
 """A mesh as simple parts."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """What fits return."""
-
-from __future__ import annotations

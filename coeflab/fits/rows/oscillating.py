@@ -14,17 +14,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.fits.results.oscillation import OscillatedForce
-from coeflab.fits.statistics.harmonics import (
-    SAME,
-    WHOLE,
-    Harmonics,
-    Phasors,
-    cycles_of,
-    derivative,
-    refined,
-    regress,
-    series,
-)
+from coeflab.fits.statistics import harmonics
 from coeflab.fits.statistics.linear_model import t_factor
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.law.scaling import Scaling
@@ -52,7 +42,7 @@ class _Motion:
 
     omega: float
     start: float
-    velocity: Phasors
+    velocity: harmonics.Phasors
     phase: float
 
     def theta(self, time: Array) -> Array:
@@ -63,8 +53,8 @@ class _Motion:
 def _checked_record(run: PlanarMotionRun, record: TimeSeries, orders: int) -> None:
     if len(record.time) < 3:
         raise run.fail(f"{len(record.time)} samples", "a record of one cycle and more", file=record.file)
-    cycles = cycles_of(run.omega * record.time)
-    if cycles < 1.0 - WHOLE:
+    cycles = harmonics.cycles_of(run.omega * record.time)
+    if cycles < 1.0 - harmonics.WHOLE:
         raise run.fail(
             f"a record of {cycles:.2g} cycles at {run.omega / (2.0 * np.pi):g} Hz",
             "at least one whole cycle",
@@ -94,7 +84,7 @@ def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int)
         if run.motion in ("yaw", "pitch") and not run.drift and not run.attack:
             # The carriage keeps its speed, and the slope of a pure path is the angle.
             angle = run.amplitude * np.sin(GRID + run.phase + omega * start)
-            velocity[0] = regress(GRID, run.speed / np.cos(angle)[:, None], orders).phasors[0]
+            velocity[0] = harmonics.regress(GRID, run.speed / np.cos(angle)[:, None], orders).phasors[0]
     else:
         omega = _frequency(run, record, orders)
         _from_columns(run, record, gain, omega, velocity)
@@ -117,8 +107,8 @@ def _frequency(run: PlanarMotionRun, record: TimeSeries, orders: int) -> float:
             file=record.file,
         )
     name, values = own
-    omega = refined(record.time, values, run.omega, orders)
-    left = float(regress(omega * (record.time - record.time[0]), values[:, None], orders).unexplained[0])
+    omega = harmonics.refined(record.time, values, run.omega, orders)
+    left = float(harmonics.regress(omega * (record.time - record.time[0]), values[:, None], orders).unexplained[0])
     if left > UNEXPLAINED or abs(omega / run.omega - 1.0) > AGREE:
         declared = f"{run.omega / (2.0 * np.pi):.4g} Hz"
         found = (
@@ -133,17 +123,19 @@ def _frequency(run: PlanarMotionRun, record: TimeSeries, orders: int) -> float:
     return omega
 
 
-def _from_columns(run: PlanarMotionRun, record: TimeSeries, gain: Filter, omega: float, velocity: Phasors) -> None:
+def _from_columns(
+    run: PlanarMotionRun, record: TimeSeries, gain: Filter, omega: float, velocity: harmonics.Phasors
+) -> None:
     """Fill in phasors (6, K + 1) of velocities; columns that contradict each other or the list of runs are refused."""
     orders = velocity.shape[1] - 1
     theta = omega * (record.time - record.time[0])
     undone = np.array([gain.gain(omega, k) if k else 1.0 for k in range(orders + 1)])
 
-    def phasors(values: Array) -> Phasors:
-        return np.asarray(regress(theta, values[:, None], orders).phasors[0] / undone)
+    def phasors(values: Array) -> harmonics.Phasors:
+        return np.asarray(harmonics.regress(theta, values[:, None], orders).phasors[0] / undone)
 
     moved = {n: phasors(v) for n, v in record.displacements.items()}
-    found: list[tuple[str, int, Phasors]] = []
+    found: list[tuple[str, int, harmonics.Phasors]] = []
     for n, v in record.velocities.items():
         found.append((n, MOTIONS.index(n), phasors(v)))
     if moved:
@@ -154,7 +146,7 @@ def _from_columns(run: PlanarMotionRun, record: TimeSeries, gain: Filter, omega:
         found.append((f"{n}dot", MOTIONS.index(n), rate))
     own = MOTIONS.index(VARIABLES[run.motion])
     size = max(abs(p[1]) for _, i, p in found if i == own)
-    first: dict[int, tuple[str, Phasors]] = {}
+    first: dict[int, tuple[str, harmonics.Phasors]] = {}
     for name, i, p in found:
         if i not in first:
             velocity[i, 1:] = p[1:]
@@ -183,14 +175,14 @@ def _from_columns(run: PlanarMotionRun, record: TimeSeries, gain: Filter, omega:
 
 
 def _of_displacements(
-    moved: Mapping[str, Phasors], run: PlanarMotionRun, omega: float, orders: int
-) -> dict[int, Phasors]:
+    moved: Mapping[str, harmonics.Phasors], run: PlanarMotionRun, omega: float, orders: int
+) -> dict[int, harmonics.Phasors]:
     """Velocities of the body by index, from where it is and how it is turned on a carriage of constant speed.
 
     One angle turns at a time: v = ydot cos psi - U sin psi, w = zdot cos theta + U sin theta; r, q, p are the rates of the angles.
     """
-    at = {n: series(p[None], GRID)[:, 0] for n, p in moved.items()}
-    rate = {n: series(derivative(p[None], omega), GRID)[:, 0] for n, p in moved.items()}
+    at = {n: harmonics.series(p[None], GRID)[:, 0] for n, p in moved.items()}
+    rate = {n: harmonics.series(harmonics.derivative(p[None], omega), GRID)[:, 0] for n, p in moved.items()}
     out: dict[int, Array] = {}
     for name, offset, angle, sign, held in (("v", "y", "psi", -1.0, -run.drift), ("w", "z", "theta", 1.0, run.attack)):
         if offset in at or angle in at:
@@ -200,7 +192,7 @@ def _of_displacements(
     for name, angle in (("p", "phi"), ("q", "theta"), ("r", "psi")):
         if angle in at:
             out[MOTIONS.index(name)] = rate[angle]
-    return {i: regress(GRID, values[:, None], orders).phasors[0] for i, values in out.items()}
+    return {i: harmonics.regress(GRID, values[:, None], orders).phasors[0] for i, values in out.items()}
 
 
 def _pure(run: PlanarMotionRun, motion: _Motion, length: float) -> None:
@@ -217,7 +209,7 @@ def _pure(run: PlanarMotionRun, motion: _Motion, length: float) -> None:
             )  # fmt: skip
 
 
-def _inertia(table: PlanarMotionTable, motion: _Motion) -> Phasors:
+def _inertia(table: PlanarMotionTable, motion: _Motion) -> harmonics.Phasors:
     """(6, K + 1) phasors of M_RB nudot + C_RB(nu) nu, what holds the model on its path."""
     orders = motion.velocity.shape[1] - 1
     if table.inertia is None:
@@ -227,10 +219,10 @@ def _inertia(table: PlanarMotionTable, motion: _Motion) -> Phasors:
         raise InputError("no inertia", "Ix, Iy, Iz of the oscillating model", column="inertia.inertia")
     centre = model.centre_of_gravity - table.point
     tensor = np.diag(model.inertia) + parallel_axis(model.mass, centre)
-    nu = series(motion.velocity, GRID)
-    rates = series(derivative(motion.velocity, motion.omega), GRID)
+    nu = harmonics.series(motion.velocity, GRID)
+    rates = harmonics.series(harmonics.derivative(motion.velocity, motion.omega), GRID)
     held = rates @ rigid_body_inertia(model.mass, centre, tensor).T + rigid_body_force(model.mass, centre, tensor, nu)
-    return regress(GRID, held, orders).phasors
+    return harmonics.regress(GRID, held, orders).phasors
 
 
 def _forces(
@@ -239,9 +231,9 @@ def _forces(
     motion: _Motion,
     names: Sequence[str],
     orders: int,
-) -> tuple[Harmonics, Phasors]:
+) -> tuple[harmonics.Harmonics, harmonics.Phasors]:
     """Harmonics of the recorded forces over the phase of the velocity, and their phasors with the filter undone."""
-    found = regress(motion.theta(record.time), np.column_stack([record.forces[c] for c in names]), orders)
+    found = harmonics.regress(motion.theta(record.time), np.column_stack([record.forces[c] for c in names]), orders)
     gains = np.array([[table.filters[c].gain(motion.omega, k) if k else 1.0 for k in range(orders + 1)] for c in names])
     return found, found.phasors / gains
 
@@ -259,7 +251,7 @@ def oscillated(
     turn = np.exp(-1j * motion.phase * np.arange(orders + 1))
     if run.in_air is not None:
         air = _motion(run, run.in_air, gain, orders)
-        if abs(air.omega / motion.omega - 1.0) > SAME:
+        if abs(air.omega / motion.omega - 1.0) > harmonics.SAME:
             raise run.fail(
                 f"{air.omega / (2.0 * np.pi):.4g} Hz in air", f"the motion in water, {motion.omega / (2.0 * np.pi):.4g} Hz",
                 file=run.in_air.file,
@@ -303,7 +295,7 @@ def oscillated(
             sizes=np.abs(phasors[j, 1:]) / unit,
             theta=theta,
             measured=run.record.forces[c] / unit,
-            fitted=series(found.phasors[j : j + 1], theta)[:, 0] / unit,
-            used=bool(abs(aside) <= SAME),
+            fitted=harmonics.series(found.phasors[j : j + 1], theta)[:, 0] / unit,
+            used=bool(abs(aside) <= harmonics.SAME),
         )
     return forces, variances, found.freedom

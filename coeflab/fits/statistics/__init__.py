@@ -1,3 +1,1 @@
 """Regression and resampling: arrays in, arrays out."""
-
-from __future__ import annotations

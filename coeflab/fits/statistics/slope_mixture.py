@@ -26,7 +26,6 @@ import numpy as np
 from scipy import special
 
 from coeflab.core.types import Array, remembered
-from coeflab.fits.statistics.diagnostics import mixture_quantiles
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.many_rows import Strips
 
@@ -54,6 +53,9 @@ ROUNDING, WEIGHTLESS = 3e-8, 1e-10
 PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, MOST_LIKELY = 0.8, 16, 2.0, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+# Members kept for the quantiles of a mixture, and where its distribution is tabulated.
+KEPT = 256
+TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -408,3 +410,32 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
         mean, terms = mean + share * centre, terms + share * b
         second = second + share * (spread + np.outer(centre, centre))
     return mean, second - np.outer(mean, mean), terms
+
+
+def mixture_quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array, tail: Array) -> tuple[Array, Array]:
+    """Lower, median, upper (b, 3) and standard deviation (b,) of Student mixtures (b, c); tail (b,)."""
+    keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
+    log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
+    w = special.softmax(log_weight, axis=1)
+    middle = (w * mean).sum(1)
+    sd = np.sqrt((w * (scale**2 + (mean - middle[:, None]) ** 2)).sum(1))
+    goal = np.stack([tail, np.full(len(tail), 0.5), 1.0 - tail], 1)
+    reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - tail) / 4.0) * sd
+    low, high = np.repeat((middle - reach)[:, None], 3, 1), np.repeat((middle + reach)[:, None], 3, 1)
+    most = freedom.max()
+    tables = [special.stdtr(nu, TABLE * np.sqrt(nu / (1.0 - TABLE**2))) for nu in (most, most - 1.0)]
+    first = (freedom == most)[:, None]
+
+    def below(z: Array) -> Array:
+        u = (z[..., None] - mean[:, None]) / scale[:, None]
+        u /= np.sqrt(freedom[:, None] + u * u)
+        share = np.interp(u, TABLE, tables[0])
+        if not first.all():
+            share = np.where(first, share, np.interp(u, TABLE, tables[1]))
+        return np.asarray((w[:, None] * share).sum(2))
+
+    for _ in range(22):
+        z = 0.5 * (low + high)
+        right = below(z) < goal
+        low, high = np.where(right, z, low), np.where(right, high, z)
+    return 0.5 * (low + high), sd

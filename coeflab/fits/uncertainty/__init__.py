@@ -1,3 +1,1 @@
 """Budgets, grid convergence and propagation."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Coefficients and tables as CSV."""
-
-from __future__ import annotations

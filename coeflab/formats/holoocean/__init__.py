@@ -1,3 +1,1 @@
 """HoloOcean."""
-
-from __future__ import annotations

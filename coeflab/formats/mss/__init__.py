@@ -1,3 +1,1 @@
 """The Marine Systems Simulator (MSS)."""
-
-from __future__ import annotations

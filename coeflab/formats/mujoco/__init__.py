@@ -1,3 +1,1 @@
 """MuJoCo."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Fossen's Python Vehicle Simulator."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Stonefish."""
-
-from __future__ import annotations

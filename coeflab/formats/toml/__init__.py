@@ -1,3 +1,1 @@
 """Coefficients and tables as TOML."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """uuv_simulator and DAVE."""
-
-from __future__ import annotations

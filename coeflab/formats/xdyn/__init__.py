@@ -1,3 +1,1 @@
 """xdyn and lxdyn."""
-
-from __future__ import annotations

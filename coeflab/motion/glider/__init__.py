@@ -1,3 +1,1 @@
 """Gliders in the vertical plane."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Coefficients from time series of motions."""
-
-from __future__ import annotations

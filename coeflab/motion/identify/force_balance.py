@@ -36,16 +36,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
-from coeflab.motion.identify.identification import (
-    ALONG,
-    Products,
-    allowed,
-    candidates,
-    column,
-    products,
-    reliability,
-    same,
-)
+from coeflab.motion.identify import identification
 from coeflab.motion.identify.series import MotionSeries
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -210,7 +201,7 @@ def _sides(s: MotionSeries, vehicle: Vehicle, component: str, terms: Sequence[Ca
     """Values of terms and load (n, p + 1), momentum (n, 1) and velocities, whose rates belong to the balance."""
     i, nu = COMPONENTS.index(component), np.asarray(s.velocity)
     columns = dict(zip((*MOTIONS, *CONTROLS), np.hstack([nu, s.controls]).T, strict=True))
-    values = [np.zeros(len(nu)) if t.rate else column(component, t.term, columns, t.rest) for t in terms]
+    values = [np.zeros(len(nu)) if t.rate else identification.column(component, t.term, columns, t.rest) for t in terms]
     load = (
         rigid_body_force(vehicle.mass, vehicle.centre, vehicle.inertia, nu) - vehicle.restoring(s.attitude) - s.wrench
     )
@@ -251,7 +242,7 @@ def centres(s: MotionSeries, half: float) -> Array:
 
 def weak(
     series: Sequence[MotionSeries], vehicle: Vehicle, component: str, terms: Sequence[Candidate], half: float
-) -> Products:
+) -> identification.Products:
     """The balance averaged over windows of ``2 half`` seconds, once over the even and once over the odd rows."""
     sides: tuple[list[Array], list[Array]] = ([], [])
     stretch: list[NDArray[np.int64]] = []
@@ -264,7 +255,7 @@ def weak(
             kept, moved = Windows(time, middles, half).averages(*np.split(fine, [values.shape[1]], axis=1))
             out.append(_joined(kept, moved[:, -1], moved[:, :-1], terms))
         stretch.append(stretches(middles, half))
-    return products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
+    return identification.products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
 
 
 def row_noise(s: MotionSeries, apart: int = 1) -> Array:
@@ -308,7 +299,7 @@ def _unbiased(
 
 def differenced(
     series: Sequence[MotionSeries], vehicle: Vehicle, component: str, terms: Sequence[Candidate], half: float
-) -> Products:
+) -> identification.Products:
     """The balance at every row, accelerations by central differences: ordinary least squares, for clean series."""
     rows, stretch = [], []
     for s in series:
@@ -316,7 +307,7 @@ def differenced(
         rates = np.gradient(np.column_stack([nu, momentum]), s.time, axis=0)
         rows.append(_joined(values, rates[:, -1], rates[:, :-1], terms))
         stretch.append(stretches(s.time, half))
-    return products(np.vstack(rows), np.vstack(rows), _numbered(stretch))
+    return identification.products(np.vstack(rows), np.vstack(rows), _numbered(stretch))
 
 
 def stretches(time: Array, half: float) -> NDArray[np.int64]:
@@ -342,7 +333,7 @@ def excited(series: Sequence[MotionSeries], half: float) -> dict[str, float]:
         for part, out in zip(_halves(s), both, strict=True):
             columns = np.hstack([part.velocity, part.controls])
             out.append(Windows(part.time, middles, half).averages(columns, columns[:, :1])[0])
-    share = reliability(np.vstack(both[0]), np.vstack(both[1]))
+    share = identification.reliability(np.vstack(both[0]), np.vstack(both[1]))
     return dict(zip((*MOTIONS, *CONTROLS), map(float, share), strict=True))
 
 
@@ -378,7 +369,7 @@ def candidate_terms(
         A symbol that is none, of a component whose motion the series do not have, or an acceleration along which no force
         is known: M nu_dot alone fixes no scale.
     """
-    components = [c for c in COMPONENTS if ALONG[c] in moving]
+    components = [c for c in COMPONENTS if identification.ALONG[c] in moving]
     ordered = [m for m in (*MOTIONS, *CONTROLS) if m in moving]
     if asked and tuple(asked) != ("file",):
         named = [_named(s, parameters) for s in asked]
@@ -402,11 +393,11 @@ def candidate_terms(
         return [t for t in listed if not t.rate or (accelerations and t.component in driven)]
     out: list[Candidate] = []
     for c in components:
-        made = candidates(c, ordered, symmetric)
+        made = identification.candidates(c, ordered, symmetric)
         out += [_named(_written(c, t, parameters), parameters) for t in made]
         if accelerations and c in driven:
             free = [m for m in MOTIONS if m in moving]
-            dots = [m for m in free if not symmetric or allowed(c, _one(m))]
+            dots = [m for m in free if not symmetric or identification.allowed(c, _one(m))]
             out += [_named(f"{c}{m}dot", parameters) for m in dots]
     return out
 
@@ -424,7 +415,7 @@ def _written(component: str, term: Term, parameters: ParameterFile) -> str:
     for c in parameters.coefficients:
         if c.symbol[0] == component and not _accelerates(c.symbol):
             text = derivative(c.symbol).text
-            if same(parse_suffix(text[1:]), term):
+            if identification.same(parse_suffix(text[1:]), term):
                 return text
     return component + term.suffix
 

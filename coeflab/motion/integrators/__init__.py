@@ -1,3 +1,1 @@
 """Marches through a manoeuvre."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """A vehicle with an arm of any number of links: nouns, Kane's equations, thrusters, motion."""
-
-from __future__ import annotations

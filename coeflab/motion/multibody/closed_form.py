@@ -22,18 +22,8 @@ import sympy as sp  # type: ignore[import-untyped]
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
+from coeflab.motion.multibody import composite
 from coeflab.motion.multibody.chain import Base, Chain, Link
-from coeflab.motion.multibody.composite import (
-    Body,
-    Step,
-    about_origin,
-    blocks,
-    inward,
-    joined,
-    momentum,
-    moved_in,
-    scaled,
-)  # fmt: skip
 from coeflab.motion.multibody.tape import (
     ROUNDING,
     ZERO,
@@ -117,7 +107,7 @@ class Derivation:
         one, nil = sp.S.One, sp.S.Zero
         return a, d, [[one, nil, nil], [nil, c, -s], [nil, s, c]], joint.theta
 
-    def _body(self, k: int, body: Base | Link) -> Body:
+    def _body(self, k: int, body: Base | Link) -> composite.Body:
         """Body k in the axes of its joint frame; the vehicle about its centre of mass."""
         of, name = self.of, body.name
         link = body if isinstance(body, Link) else None
@@ -147,10 +137,10 @@ class Derivation:
             drag = of(f"C_{mark}", strip.coefficient, "-", f"{said}, C_D")
             half = self.density * drag * width * length * sp.Float(0.5)
             strips.append((start, (axis[0], axis[1], axis[2]), length, half))
-        out = Body(mass, centre, inertia, added, self.density * volume, lifted, tuple(strips))
+        out = composite.Body(mass, centre, inertia, added, self.density * volume, lifted, tuple(strips))
         return out if link is None else self._in_joint_frame(k, out)
 
-    def _in_joint_frame(self, k: int, body: Body) -> Body:
+    def _in_joint_frame(self, k: int, body: composite.Body) -> composite.Body:
         """A link of frame k in the axes of its joint frame: turned by Rx(alpha), moved by a."""
         a, _, turn, _ = self.rows[k - 1]
         back = transposed(turn)
@@ -165,10 +155,10 @@ class Derivation:
         added = None if body.added is None else (turned(body.added[0]), turned(body.added[1]), turned(body.added[2]))
         strips = tuple((placed(start), times(turn, axis), length, half) for start, axis, length, half in body.strips)
         centre, lifted = placed(body.centre), placed(body.lifted)
-        return Body(body.mass, centre, turned(body.inertia), added, body.displaced, lifted, strips)
+        return composite.Body(body.mass, centre, turned(body.inertia), added, body.displaced, lifted, strips)
 
     @cached_property
-    def steps(self) -> list[Step]:
+    def steps(self) -> list[composite.Step]:
         """Cosines and sines of the joints, and where the joint frames stand."""
         t = self.tape
         t.stage = "joints"
@@ -191,7 +181,7 @@ class Derivation:
                 c, s = t.name(sp.cos(angle), f"cos{k}"), t.name(sp.sin(angle), f"sin{k}")
             shift = t.vector(plus(place, times(fixed, (nil, nil, d))))
             named = [[t.name(e) for e in row] for row in fixed]
-            out.append(Step(shift, named, c, s, joint.turns))
+            out.append(composite.Step(shift, named, c, s, joint.turns))
             fixed, place = turn, (a, nil, nil)
         return out
 
@@ -205,19 +195,19 @@ class Derivation:
         for k in range(self.n, 0, -1):
             t.stage = f"inertia of link {k} and what it carries"
             step = steps[k - 1]
-            whole = joined(t, about_origin(t, self.bodies[k]), whole)
-            force = momentum(whole, step.turns)
+            whole = composite.joined(t, composite.about_origin(t, self.bodies[k]), whole)
+            force = composite.momentum(whole, step.turns)
             out[5 + k, 5 + k] = force[1][2] if step.turns else force[0][2]
             for j in range(k, 0, -1):
-                force = inward(t, steps[j - 1], force)
+                force = composite.inward(t, steps[j - 1], force)
                 if j > 1:
                     out[4 + j, 5 + k] = out[5 + k, 4 + j] = force[1][2] if steps[j - 2].turns else force[0][2]
             for i, e in enumerate((*force[0], *force[1])):
                 out[i, 5 + k] = out[5 + k, i] = e
-            whole = moved_in(t, step, whole)
+            whole = composite.moved_in(t, step, whole)
         t.stage = "inertia of the vehicle with its arm"
-        whole = joined(t, about_origin(t, self.bodies[0]), whole)
-        a, b, d = blocks(whole)
+        whole = composite.joined(t, composite.about_origin(t, self.bodies[0]), whole)
+        a, b, d = composite.blocks(whole)
         for i in range(3):
             for j in range(3):
                 out[i, j], out[3 + i, 3 + j] = a[i][j], d[i][j]
@@ -232,7 +222,7 @@ class Derivation:
     @cached_property
     def heavy(self) -> list[Vector]:
         """Gravity in the axes of every body."""
-        return self.spread(scaled(self.gravity, self.down))
+        return self.spread(composite.scaled(self.gravity, self.down))
 
     @cached_property
     def water(self) -> list[Vector]:
@@ -288,7 +278,7 @@ class Derivation:
             t.stage = f"forces on link {k} and what it carries"
             force, moment = t.vector(force), t.vector(moment)
             out[5 + k] = moment[2] if steps[k - 1].turns else force[2]
-            force, moment = inward(t, steps[k - 1], (force, moment))
+            force, moment = composite.inward(t, steps[k - 1], (force, moment))
             more, turning = wrenches[k - 1]
             force, moment = plus(force, more), plus(moment, turning)
         t.stage = "forces on the vehicle with its arm"
@@ -326,11 +316,11 @@ class Derivation:
             t.stage = f"forces of a field on link {k}" if k else "forces of a field on the vehicle"
             amount, lever = sp.S.Zero, ZERO
             if "mass" in kinds:
-                amount, lever = body.mass, scaled(body.mass, body.centre)
+                amount, lever = body.mass, composite.scaled(body.mass, body.centre)
             if "displaced" in kinds:
-                amount, lever = amount - body.displaced, plus(lever, scaled(-body.displaced, body.lifted))
+                amount, lever = amount - body.displaced, plus(lever, composite.scaled(-body.displaced, body.lifted))
             amount, lever = t.name(amount), t.vector(lever)
-            out.append((t.vector(scaled(amount, along)), t.vector(cross(lever, along))))
+            out.append((t.vector(composite.scaled(amount, along)), t.vector(cross(lever, along))))
         return out
 
     @cached_property
@@ -391,9 +381,9 @@ def _mass_matrix(one: Derivation) -> Outputs:
 
 def _equations(one: Derivation) -> Outputs:
     """M and all forces but the drives', in one go."""
-    total = [(scaled(-1, f), scaled(-1, m)) for f, m in one.inertial]
+    total = [(composite.scaled(-1, f), composite.scaled(-1, m)) for f, m in one.inertial]
     heavy = one.uniform(("mass", "displaced"), one.heavy)
-    carried = [(scaled(-1, f), scaled(-1, m)) for f, m in one.uniform(("displaced",), one.water)]
+    carried = [(composite.scaled(-1, f), composite.scaled(-1, m)) for f, m in one.uniform(("displaced",), one.water)]
     for more in (heavy, carried, one.dragging):
         total = [(plus(f, g), plus(m, n)) for (f, m), (g, n) in zip(total, more, strict=True)]
     return {"M": (one.mass, INERTIA), "f": (one.generalised(total), FORCES)}
@@ -412,7 +402,7 @@ def _buoyancy(one: Derivation) -> Outputs:
 
 
 def _fluid_acceleration(one: Derivation) -> Outputs:
-    against = [scaled(-1, v) for v in one.water]
+    against = [composite.scaled(-1, v) for v in one.water]
     return {"f": (one.generalised(one.uniform(("displaced",), against)), FORCES)}
 
 

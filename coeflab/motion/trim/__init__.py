@@ -1,3 +1,1 @@
 """Steady motions and operating points."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Parameters tuned to measured motions."""
-
-from __future__ import annotations

@@ -1,3 +1,1 @@
 """Uncertainty carried through manoeuvres."""
-
-from __future__ import annotations

@@ -14,14 +14,13 @@ The rows that Sobol indices of a parameter file take, and which of them have to 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtri
 
 from coeflab.core.types import Array, brief
-from coeflab.fits.statistics.diagnostics import drawn_counts
 from coeflab.fits.uncertainty.propagation import HIGH, LOW
 from coeflab.motion.uncertainty.draws import CORRELATED, Uncertain
 
@@ -29,6 +28,8 @@ REPLICATES = 1000
 LEAST_ROWS = 8
 EDGE = 2.0**-40
 DEGREE = 3
+BLOCK = 128
+TOGETHER = 8_000_000  # rows times replicates that are held at once, 64 MB an array
 
 
 @brief
@@ -223,3 +224,30 @@ def sobol_design(varied: Uncertain, members: int, seed: int, still: Collection[s
         tuple(k for k, g in enumerate(groups) if not set(g) <= set(still)), base,
         tuple(varied.designed(z) for z in (a, b, *exchanged(a, b, places))), varied.left_out(),
     )  # fmt: skip
+
+
+def pieces(n: int, replicates: int) -> list[int]:
+    """Sizes of the pieces in which so many replicates of n rows are made: one, unless they would not fit into memory."""
+    most = max(1, TOGETHER // max(n, 1))
+    return [min(most, replicates - start) for start in range(0, replicates, most)]
+
+
+def draw_counts(n: int, replicates: int, seed: int) -> Array:
+    """How often each of n rows is drawn in each replicate, shape (replicates, n)."""
+    return _counts(np.random.default_rng(seed), n, replicates)
+
+
+def drawn_counts(n: int, replicates: int, seed: int) -> Iterator[Array]:
+    """`draw_counts` in `pieces`, for many rows."""
+    rng = np.random.default_rng(seed)
+    return (_counts(rng, n, size) for size in pieces(n, replicates))
+
+
+def _counts(rng: np.random.Generator, n: int, replicates: int) -> Array:
+    drawn = rng.integers(0, n, size=(replicates, n))
+    counts = np.empty((replicates, n))
+    for start in range(0, replicates, BLOCK):
+        some = drawn[start : start + BLOCK]
+        some += n * np.arange(len(some))[:, None]
+        counts[start : start + BLOCK] = np.bincount(some.ravel(), minlength=some.size).reshape(some.shape)
+    return counts

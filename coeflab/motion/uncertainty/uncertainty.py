@@ -24,13 +24,7 @@ from coeflab.motion.marching import KERNELS, chosen_step, march_by_tolerance
 from coeflab.motion.trajectory import Ended, Trajectory
 from coeflab.motion.uncertainty.batches import Batch, Setup, Store, carried_out, figures_of, prepared, run_batch
 from coeflab.motion.uncertainty.draws import Uncertain, drawn, drawn_stability, unfelt
-from coeflab.motion.uncertainty.sobol import (
-    SobolDesign,
-    known_share,
-    share_noise,
-    sobol_design,
-    sobol_indices,
-)
+from coeflab.motion.uncertainty.sobol import SobolDesign, known_share, share_noise, sobol_design, sobol_indices
 from coeflab.motion.uncertainty.spread import MOST_LACKING, Importance, Spread, shares, spread
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.derived import INDICES

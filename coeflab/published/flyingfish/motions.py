@@ -21,20 +21,8 @@ from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.trim.operating_point import operating_point
 from coeflab.motion.trim.trim import trim as trimmed
 from coeflab.motion.vehicle import Vehicle, vehicle
+from coeflab.published.flyingfish import model
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
-from coeflab.published.flyingfish.model import (
-    CONSTANTS,
-    EQUATIONS,
-    MEDIA,
-    ROTORS,
-    UNKNOWNS,
-    FlyingFish,
-    Medium,
-    calibrated,
-    rotor_wrench,
-    steady_residuals,
-    unknowns_of,
-)
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 
@@ -54,7 +42,7 @@ STRAIGHT = 20.0
 DEPTH, UNDER, ABOVE = 2.0, 2500.0, 5000.0  # m below the surface, and rotor speeds of the hop
 CROSSED = 1e-6
 BENCH, ONE_PERCENT = "flyingfish_bench_synthetic", 0.01
-BENCH_AT: dict[Medium, float] = {"water": 2000.0, "air": 6000.0}
+BENCH_AT: dict[model.Medium, float] = {"water": 2000.0, "air": 6000.0}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +58,7 @@ class Craft:
         Tilts in rad and rotor speeds in rpm, nearest to the printed rows by equation 40 with its sign corrected.
     """
 
-    fish: FlyingFish
+    fish: model.FlyingFish
     constants: Array
     water: Vehicle
     air: Vehicle
@@ -83,20 +71,20 @@ class Craft:
 
 def commands(point: Array) -> dict[str, float]:
     """Tilts and rotor speeds by the names of thrusters."""
-    speeds = {f"rotor{name}": float(point[4 + i]) for i, name in enumerate(ROTORS)}
-    return speeds | {f"rotor{name}.tilt": float(point[i]) for i, name in enumerate(ROTORS)}
+    speeds = {f"rotor{name}": float(point[4 + i]) for i, name in enumerate(model.ROTORS)}
+    return speeds | {f"rotor{name}.tilt": float(point[i]) for i, name in enumerate(model.ROTORS)}
 
 
-def craft(fish: FlyingFish, rows: int | None = None) -> Craft:
+def craft(fish: model.FlyingFish, rows: int | None = None) -> Craft:
     """Vehicles, and trims of the first rows or of all; the constants are those of the data, as in the parameter files."""
-    constants = np.array([fish.constants[name] for name in CONSTANTS])
-    water, air = (vehicle(flyingfish_file(fish, medium)) for medium in MEDIA)
+    constants = np.array([fish.constants[name] for name in model.CONSTANTS])
+    water, air = (vehicle(flyingfish_file(fish, medium)) for medium in model.MEDIA)
 
     def by_equations(row: int) -> Array:
         motion = fish.motion[row : row + 1]
 
         def left(x: Array) -> Array:
-            return steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
+            return model.steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
 
         return _nearest(fish, row, left)
 
@@ -104,7 +92,7 @@ def craft(fish: FlyingFish, rows: int | None = None) -> Craft:
     return Craft(fish, constants, water, air, np.array([by_equations(row) for row in range(count)]).reshape(-1, 8))
 
 
-def without_trims(fish: FlyingFish) -> tuple[ComparedTable, ...]:
+def without_trims(fish: model.FlyingFish) -> tuple[ComparedTable, ...]:
     """The tables that take a fraction of a second."""
     c = craft(fish, 0)
     return equations(c, "water"), equations(c, "air"), third(fish), surface(c)
@@ -118,14 +106,14 @@ def compared(c: Craft) -> tuple[ComparedTable, ...]:
     )  # fmt: skip
 
 
-def _nearest(fish: FlyingFish, row: int, left: Callable[[Array], Array], first: Array | None = None) -> Array:
+def _nearest(fish: model.FlyingFish, row: int, left: Callable[[Array], Array], first: Array | None = None) -> Array:
     """Nan where there is no trim."""
     start = None if first is None else first.tolist()
-    found = operating_point(unknowns_of(fish, row), EQUATIONS, left, start, starts=0)
+    found = operating_point(model.unknowns_of(fish, row), model.EQUATIONS, left, start, starts=0)
     return np.asarray(found.found.point) if found.outcome.solved else np.full(8, np.nan)
 
 
-def equations(c: Craft, medium: Medium) -> ComparedTable:
+def equations(c: Craft, medium: model.Medium) -> ComparedTable:
     """Rates of random states: the printed equations, Euler angles and all, and what a march of the parameter file takes."""
     rng = np.random.default_rng(SEED)
     wet = medium == "water"
@@ -147,7 +135,7 @@ def equations(c: Craft, medium: Medium) -> ComparedTable:
     rotors = c.fish.rotors
     if wet:
         thrust, torque = (a * speeds + b * speeds**2 for a, b in (rotors.thrust, rotors.torque))
-        push = rotor_wrench(tilts, thrust, torque, arm, c.fish.constants["rotor_height"], -1.0)
+        push = model.rotor_wrench(tilts, thrust, torque, arm, c.fish.constants["rotor_height"], -1.0)
     else:
         thrust, torque = (a * speeds + b * speeds**2 for a, b in (EQUATION_45, EQUATION_46))
         push = aerial_wrench(thrust, torque, arm)
@@ -214,7 +202,7 @@ def hovering(c: Craft) -> ComparedTable:
         Compared(
             "hovering", f"omega{name}", "rpm", speed_for(weight / 4.0), still[f"rotor{name}"], 1e-3, Basis.CONSISTENCY
         )
-        for name in ROTORS
+        for name in model.ROTORS
     ]
     linear, square = EQUATION_49[0][0], EQUATION_49[1][0]
     pull = -weight * np.sin(DESCENT)
@@ -224,7 +212,7 @@ def hovering(c: Craft) -> ComparedTable:
     ).point.values
     case = f"pitch {np.degrees(DESCENT):g} deg"
     rows.append(Compared(case, "u", "m/s", fast, ahead["u"], 1e-6, Basis.CONSISTENCY))
-    thrust = sum(EQUATION_45[0] * n + EQUATION_45[1] * n**2 for n in (ahead[f"rotor{name}"] for name in ROTORS))
+    thrust = sum(EQUATION_45[0] * n + EQUATION_45[1] * n**2 for n in (ahead[f"rotor{name}"] for name in model.ROTORS))
     rows.append(Compared(case, "sum of T", "N", weight * float(np.cos(DESCENT)), thrust, 1e-6, Basis.CONSISTENCY))
     return ComparedTable(
         "hovering", "Trims in air", tuple(rows), "Equations 7-18, 31-34, 45, 46, 49",
@@ -256,7 +244,7 @@ def both_readings(c: Craft) -> ComparedTable:
             )
         )
         found = _nearest(fish, row, left, c.trims[row])
-        for i, name in enumerate(UNKNOWNS):
+        for i, name in enumerate(model.UNKNOWNS):
             unit, factor, within = ("deg", np.degrees(1.0), 1e-3) if i < 4 else ("rpm", 1.0, 1e-2)
             rows.append(
                 Compared(
@@ -279,16 +267,16 @@ def both_readings(c: Craft) -> ComparedTable:
     )  # fmt: skip
 
 
-def third(fish: FlyingFish) -> ComparedTable:
+def third(fish: model.FlyingFish) -> ComparedTable:
     """Motion 3 read over the ground and in body axes: the velocity that its printed tilts and speeds keep."""
     taught = [0, 1, 8, 9]
-    constants = calibrated(fish.rotors, fish.motion[taught], fish.angles[taught], fish.speeds[taught])
+    constants = model.calibrated(fish.rotors, fish.motion[taught], fish.angles[taught], fish.speeds[taught])
     angles, speeds = fish.angles[2:3], fish.speeds[2:3]
     pitch = float(fish.motion[2, 4])
 
     def left(velocity: Array) -> Array:
         motion = np.array([[velocity[0], velocity[1], 0.0, 0.0, pitch]])
-        return steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
+        return model.steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
 
     from scipy.optimize import fsolve
 
@@ -342,8 +330,8 @@ def tracks(c: Craft) -> ComparedTable:
 
 def hop(c: Craft) -> Trajectory:
     """From rest under water with rotors turned up, out, up to where it stands, down and to the surface again."""
-    wet = {f"rotor{n}": UNDER for n in ROTORS} | {f"rotor{n}.tilt": float(np.pi) for n in ROTORS}
-    dry = {f"rotor{n}": ABOVE for n in ROTORS}
+    wet = {f"rotor{n}": UNDER for n in model.ROTORS} | {f"rotor{n}.tilt": float(np.pi) for n in model.ROTORS}
+    dry = {f"rotor{n}": ABOVE for n in model.ROTORS}
     phases = (
         Phase("water", wet, 4.0, Until("depth", False, -DEPTH)),
         Phase("air", dry, 2.0, Until("depth", True, -DEPTH), 1),
@@ -391,13 +379,13 @@ def surface(c: Craft) -> ComparedTable:
     )  # fmt: skip
 
 
-def benches(fish: FlyingFish) -> Mapping[Medium, BenchTest]:
+def benches(fish: model.FlyingFish) -> Mapping[model.Medium, BenchTest]:
     """The synthetic bench tests, identified."""
     folder = Path(str(shipped("cfd_data"))) / BENCH
-    return {m: bench_test([folder / f"{m}.csv"], flyingfish_file(fish, m), "rotor1") for m in MEDIA}
+    return {m: bench_test([folder / f"{m}.csv"], flyingfish_file(fish, m), "rotor1") for m in model.MEDIA}
 
 
-def bench(fish: FlyingFish) -> ComparedTable:
+def bench(fish: model.FlyingFish) -> ComparedTable:
     """Curves identified from synthetic bench tests against the printed ones."""
     printed = {"water": (tuple(fish.rotors.thrust), (1.81713e-7, 5.1233e-9)), "air": (EQUATION_45, EQUATION_46)}
     rows = [

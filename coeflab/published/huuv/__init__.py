@@ -1,3 +1,1 @@
 """HUUV, a hybrid underwater vehicle steered by two thrusters."""
-
-from __future__ import annotations

@@ -11,13 +11,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.motion.steady_state import steady_turns, turn_figures
 from coeflab.motion.tune.tuning import Tuning
-from coeflab.published.huuv.five_dof import (
-    FiveDof,
-    assumed_body,
-    elevator_laws,
-    hull_laws,
-    turning_laws,
-)
+from coeflab.published.huuv.five_dof import FiveDof, assumed_body, elevator_laws, hull_laws, turning_laws
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, commands, thrust
 from coeflab.published.huuv.tuning import IN_WORDS

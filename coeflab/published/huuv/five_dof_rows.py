@@ -15,23 +15,7 @@ from coeflab.motion.dynamics import from_euler
 from coeflab.motion.simulation import simulate
 from coeflab.motion.steady_state import steady_turns, turn_figures
 from coeflab.motion.vehicle import vehicle
-from coeflab.published.huuv.five_dof import (
-    AT,
-    FiveDof,
-    angles,
-    assumed_body,
-    coriolis,
-    damping,
-    elevator_damping,
-    elevator_laws,
-    hull_damping,
-    hull_laws,
-    inertia,
-    simple_masses,
-    steady,
-    thrusts,
-    unbalanced,
-)
+from coeflab.published.huuv import five_dof
 from coeflab.published.huuv.model import MATLAB, Turns, commands, thrust
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -77,17 +61,17 @@ def dived(file: ParameterFile) -> dict[float, Dive]:
     for angle in DIVES:
         orders = [f"left={COMMAND:g}", f"right={COMMAND:g}", f"db={float(np.radians(angle))!r}"]
         made = simulate(file, "straight_run", {"commands": orders, "duration": DURATION}, free=FREE).trajectory
-        end = made.velocity[-1, AT]
+        end = made.velocity[-1, five_dof.AT]
         out[angle] = Dive(made.time, made.position[:, 2], made.angles[:, 1], made.velocity[:, 0], end)
     return out
 
 
-def stated_rows(five: FiveDof, file: ParameterFile) -> tuple[ComparedTable, ...]:
+def stated_rows(five: five_dof.FiveDof, file: ParameterFile) -> tuple[ComparedTable, ...]:
     """What needs no motion in time."""
     return (_forces(five, file), _geometry(five), _straight(five))
 
 
-def moving_rows(five: FiveDof, dives: Mapping[float, Dive]) -> tuple[ComparedTable, ...]:
+def moving_rows(five: five_dof.FiveDof, dives: Mapping[float, Dive]) -> tuple[ComparedTable, ...]:
     """What has been simulated with the parameter file, beside the equations; and the turns with other masses."""
     return (_dives(five, dives), _turns(five))
 
@@ -101,11 +85,13 @@ def _row(
     return Compared(case, what, unit, held, ours, tolerance, Basis.CONSISTENCY, relative)
 
 
-def _by_hand(five: FiveDof) -> list[Compared]:
+def _by_hand(five: five_dof.FiveDof) -> list[Compared]:
     rows = []
     for i, (nu, pitch, delta, ordered, forces) in enumerate(BY_HAND, start=1):
         left, right = (np.array([c]) for c in ordered)
-        found = unbalanced(five, np.array([nu]), np.array([pitch]), np.array([delta]), thrusts(five, left, right))[0]
+        found = five_dof.unbalanced(
+            five, np.array([nu]), np.array([pitch]), np.array([delta]), five_dof.thrusts(five, left, right)
+        )[0]
         rows += [
             _row(f"state {i}, worked out apart", name, "N" if name in "XYZ" else "N m", against, float(one), 1e-5)
             for name, against, one in zip(ROWS, forces, found, strict=True)
@@ -113,14 +99,16 @@ def _by_hand(five: FiveDof) -> list[Compared]:
     return rows
 
 
-def _commanded(five: FiveDof) -> list[Compared]:
+def _commanded(five: five_dof.FiveDof) -> list[Compared]:
     """Thrusters by their two inputs, and elevators beyond their largest angle, at 1 m/s; numbers by hand."""
     ahead, none = np.array([[1.0, 0.0, 0.0, 0.0, 0.0]]), np.zeros(1)
-    tau = thrusts(five, *commands(np.array([50.0]), np.array([10.0])))[0]
-    held = -elevator_damping(five, ahead, np.radians([40.0]))[0]
-    still = float(elevator_laws(five, none)[0][0])
+    tau = five_dof.thrusts(five, *commands(np.array([50.0]), np.array([10.0])))[0]
+    held = -five_dof.elevator_damping(five, ahead, np.radians([40.0]))[0]
+    still = float(five_dof.elevator_laws(five, none)[0][0])
     moved = replace(five, constants={**five.constants, "C_D0": 2.0 * still})
-    apart = float(np.max(np.abs(damping(moved, ahead, np.array([0.3])) - damping(five, ahead, np.array([0.3])))))
+    apart = float(
+        np.max(np.abs(five_dof.damping(moved, ahead, np.array([0.3])) - five_dof.damping(five, ahead, np.array([0.3]))))
+    )
     told, beyond = "inputs 50 % and 10 %", "elevators ordered to 40 deg, held at 30 deg"
     return [
         _row(told, "X", "N", 11.864, float(tau[0]), 1e-5),
@@ -133,12 +121,12 @@ def _commanded(five: FiveDof) -> list[Compared]:
     ]
 
 
-def _matrices(five: FiveDof) -> tuple[Compared, ...]:
+def _matrices(five: five_dof.FiveDof) -> tuple[Compared, ...]:
     nu = np.random.default_rng(SEED).normal(size=(MOTIONS, 5))
     whole = np.zeros((MOTIONS, 6))
-    whole[:, AT] = nu
-    theory = momentum_force(whole @ (five.rigid + five.added).T, whole)[:, AT]
-    matrix, m = coriolis(five, nu), inertia(five)
+    whole[:, five_dof.AT] = nu
+    theory = momentum_force(whole @ (five.rigid + five.added).T, whole)[:, five_dof.AT]
+    matrix, m = five_dof.coriolis(five, nu), five_dof.inertia(five)
     held = -np.einsum("nij,nj->ni", matrix, nu)
     case = f"{MOTIONS} random motions"
     return (
@@ -148,7 +136,7 @@ def _matrices(five: FiveDof) -> tuple[Compared, ...]:
     )  # fmt: skip
 
 
-def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
+def _forces(five: five_dof.FiveDof, file: ParameterFile) -> ComparedTable:
     """Forces of the file, elevators at no drift, where its V^2 is that of equations 15-17; power of the hull's forces."""
     rng = np.random.default_rng(SEED)
     c = five.level.chosen
@@ -162,14 +150,14 @@ def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
     rows = [*_by_hand(five), *_commanded(five), *_matrices(five)]
     for case, motion, angle in cases:
         whole, controls = np.zeros((MOTIONS, 6)), np.zeros((MOTIONS, 3))
-        whole[:, AT], controls[:, 2] = motion, angle
+        whole[:, five_dof.AT], controls[:, 2] = motion, angle
         attitude = np.array([from_euler(0.0, float(p), 0.0) for p in pitch])
-        found = made.unbalanced(whole, attitude, controls, np.zeros(6))[:, AT]
-        apart = np.max(np.abs(found - unbalanced(five, motion, pitch, angle, none)))
+        found = made.unbalanced(whole, attitude, controls, np.zeros(6))[:, five_dof.AT]
+        apart = np.max(np.abs(found - five_dof.unbalanced(five, motion, pitch, angle, none)))
         rows.append(_row(case, "parameter file less equations", "N, N m", 0.0, max(float(apart), FINEST), EXACT))
-    speed, alpha, beta = angles(nu)
-    power = np.sum(hull_damping(five, nu)[:, :3] * nu[:, :3], axis=1)
-    drag = speed**3 * hull_laws(five, alpha, beta)["C_D"]
+    speed, alpha, beta = five_dof.angles(nu)
+    power = np.sum(five_dof.hull_damping(five, nu)[:, :3] * nu[:, :3], axis=1)
+    drag = speed**3 * five_dof.hull_laws(five, alpha, beta)["C_D"]
     rows.append(_row("hull", "power less V F_D", "W", 0.0, max(float(np.max(np.abs(power - drag))), FINEST), EXACT))
     return ComparedTable(
         "five_dof_forces", "Five degrees of freedom: every term of equation 1, and the parameter file", tuple(rows), "equations 1-17, 23-38",
@@ -181,9 +169,9 @@ def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
     )  # fmt: skip
 
 
-def _geometry(five: FiveDof) -> ComparedTable:
-    body = assumed_body()
-    by_hand, matrix = simple_masses(body, five.density), five.geometry
+def _geometry(five: five_dof.FiveDof) -> ComparedTable:
+    body = five_dof.assumed_body()
+    by_hand, matrix = five_dof.simple_masses(body, five.density), five.geometry
     shape = body.require_shape()
     parts = shape.parts if isinstance(shape, Parts) else ()
     mast = [p.form for p in parts if isinstance(p.form, Cylinder)][1]
@@ -219,16 +207,16 @@ def _geometry(five: FiveDof) -> ComparedTable:
     )  # fmt: skip
 
 
-def _straight(five: FiveDof) -> ComparedTable:
+def _straight(five: five_dof.FiveDof) -> ComparedTable:
     """Nine straight runs in five degrees of freedom, beside the horizontal model's closed form."""
     ordered = np.array(STRAIGHT)
     c = five.level.constants
-    push = thrusts(five, *commands(ordered, np.zeros(len(ordered))))
+    push = five_dof.thrusts(five, *commands(ordered, np.zeros(len(ordered))))
     speed = np.sqrt(push[:, 0] / c["d0"])
     start = np.column_stack([speed, np.zeros((len(speed), 4))])
     neutral = replace(five, constants={**five.constants, "displaced": c["m"] / five.density})
-    found, growth = steady(neutral, np.zeros(len(speed)), push, start)
-    floating, _ = steady(five, np.zeros(len(speed)), push, start)
+    found, growth = five_dof.steady(neutral, np.zeros(len(speed)), push, start)
+    floating, _ = five_dof.steady(five, np.zeros(len(speed)), push, start)
     rows = tuple(
         _row(f"{command:g} %", "u, neutrally buoyant", "m/s", float(u), float(ours), 1e-9, True)
         for command, u, ours in zip(ordered, speed, found[:, 0], strict=True)
@@ -243,13 +231,13 @@ def _straight(five: FiveDof) -> ComparedTable:
     )  # fmt: skip
 
 
-def _dives(five: FiveDof, dives: Mapping[float, Dive]) -> ComparedTable:
+def _dives(five: five_dof.FiveDof, dives: Mapping[float, Dive]) -> ComparedTable:
     """Where simulations of the parameter file end, and where forces vanish."""
     at = np.radians(list(dives))
     both = np.full(len(at), COMMAND)
-    push = thrusts(five, both, both)
+    push = five_dof.thrusts(five, both, both)
     speed = np.sqrt(push[:, 0] / five.level.constants["d0"])
-    found, _ = steady(five, at, push, np.column_stack([speed, np.zeros((len(at), 4))]))
+    found, _ = five_dof.steady(five, at, push, np.column_stack([speed, np.zeros((len(at), 4))]))
     rows = []
     for (angle, dive), (u, _, w, pitch, _) in zip(dives.items(), found, strict=True):
         pairs = (
@@ -270,7 +258,7 @@ def _dives(five: FiveDof, dives: Mapping[float, Dive]) -> ComparedTable:
     )  # fmt: skip
 
 
-def with_masses(five: FiveDof, how: str, turns: Turns) -> Array:
+def with_masses(five: five_dof.FiveDof, how: str, turns: Turns) -> Array:
     """(n, 3) u, |beta| and R of turns with the masses of the steady turns or of the assumed geometry, heave and pitch left out.
 
     Parameters
@@ -296,15 +284,15 @@ def with_masses(five: FiveDof, how: str, turns: Turns) -> Array:
     return turn_figures(steady_turns(level.theta, push).velocity)[0]
 
 
-def _turns(five: FiveDof) -> ComparedTable:
+def _turns(five: five_dof.FiveDof) -> ComparedTable:
     """Steady turns with heave and pitch, and with other masses."""
     turns = five.level.accepted
     turning = np.isfinite(turns.figures[:, 2])
     some = Turns(turns.left[turning], turns.right[turning], turns.figures[turning])
-    push = thrusts(five, some.left, some.right)
+    push = five_dof.thrusts(five, some.left, some.right)
     level = steady_turns(five.level.theta, push[:, [0, 1, 4]]).velocity
     none = np.zeros(len(level))
-    found, growth = steady(five, none, push, np.column_stack([level[:, :2], none, none, level[:, 2]]))
+    found, growth = five_dof.steady(five, none, push, np.column_stack([level[:, :2], none, none, level[:, 2]]))
     speed = np.linalg.norm(found[:, :3], axis=1)
     radius = speed * np.cos(found[:, 3]) / np.abs(found[:, 4])
     rows = []

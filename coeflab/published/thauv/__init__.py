@@ -1,3 +1,1 @@
 """THAUV, a twin-hull glider."""
-
-from __future__ import annotations

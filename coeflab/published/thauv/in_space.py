@@ -38,12 +38,7 @@ from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import (
-    CurveSegment,
-    ParameterCurve,
-    ParameterHydrostatics,
-    ParameterThruster,
-)
+from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterHydrostatics, ParameterThruster
 
 FlownSpiral = tuple[GlideRun, Spiral | None]
 UNIT = Scaling(1.0, "unit length (the paper prints none)")

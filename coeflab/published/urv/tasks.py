@@ -20,16 +20,7 @@ from coeflab.published.urv.model import dry, wet
 from coeflab.published.urv.theory import SPEEDS, Q, none, same
 from coeflab.report.acceptance import ComparedTable
 from coeflab.report.document import Figure
-from coeflab.report.figures.arm import (
-    ArmMotion,
-    animation,
-    frames_figure,
-    joints_figure,
-    path_figure,
-    poses_figure,
-    station_figure,
-    thrust_figure,
-)
+from coeflab.report.figures import arm
 
 CONSERVED, BALANCED = 1e-8, 1e-6
 LASTS, RELATIVE = 5.0, 1e-9
@@ -220,8 +211,8 @@ def figures() -> Iterator[tuple[str, Figure]]:
     end, kept = runs["end"], runs["torque"]
     yield (
         "urv_frames",
-        frames_figure(
-            ArmMotion(end.chain, model.hull(), kept.time[:1], kept.state[:1]),
+        arm.frames_figure(
+            arm.ArmMotion(end.chain, model.hull(), kept.time[:1], kept.state[:1]),
             "urv-frames",
             "Our picture of the paper's Figure 1: frame 0 on the vehicle at c₀ from its centre of mass, x forward, y left and z up; frames 1 "
             "to 3 of the arm; north, east, down. Hull and links are the chosen spheroid and cylinders.",
@@ -229,33 +220,33 @@ def figures() -> Iterator[tuple[str, Figure]]:
     )
     yield (
         "urv_poses",
-        poses_figure(
-            ArmMotion(end.chain, model.hull(), end.time, end.state), "urv-poses", "End effector on a straight line",
+        arm.poses_figure(
+            arm.ArmMotion(end.chain, model.hull(), end.time, end.state), "urv-poses", "End effector on a straight line",
             "Computed torque, torque-driven thrusters. The line is the path of the end effector. urv_motion.html plays it.",
         ),
     )  # fmt: skip
     yield (
         "urv_path",
-        path_figure(
+        arm.path_figure(
             end.end, end.end_wanted, "urv-path", "Path of the end effector",
             "The same run; dots where the track asks for it. The axes have scales of their own.",
         ),
     )  # fmt: skip
-    yield "urv_joints", joints_figure(kept, "urv-joints", "Joints that move while the vehicle keeps its station")
+    yield "urv_joints", arm.joints_figure(kept, "urv-joints", "Joints that move while the vehicle keeps its station")
     named = [
         (TITLES[name].split(", ")[-1] if name != "station" else "station keeping", runs[name])
         for name in ("torque", "voltage", "station")
     ]
     yield (
         "urv_station",
-        station_figure(
+        arm.station_figure(
             named, "urv-station", "Station keeping while the joints move",
             "Computed torque with torque-driven and with voltage-driven thrusters, and station keeping without the model.",
         ),
     )  # fmt: skip
     yield (
         "urv_thrust",
-        thrust_figure(
+        arm.thrust_figure(
             kept,
             "urv-thrust",
             "Thrust while the joints move",
@@ -271,8 +262,8 @@ def page() -> bytes:
         f"Vehicle with links 1 to 3 of a PUMA 560: the end effector goes {float(np.linalg.norm(REACH)):.2g} m along a straight line while the "
         "vehicle keeps its station, by computed torque with torque-driven thrusters."
     )
-    return animation(
-        ArmMotion(run.chain, model.hull(), run.time, run.state),
+    return arm.animation(
+        arm.ArmMotion(run.chain, model.hull(), run.time, run.state),
         "URV with an arm: end effector on a straight line",
         said,
     )

@@ -1,3 +1,1 @@
 """Results as drawings."""
-
-from __future__ import annotations

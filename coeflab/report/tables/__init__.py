@@ -1,3 +1,1 @@
 """Results as tables."""
-
-from __future__ import annotations

@@ -25,7 +25,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
-from coeflab.tables.words_above import words_above
+from coeflab.tables.words.above import words_above
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
 citations = ()
@@ -39,7 +39,6 @@ _ERROR = re.compile(rb"""<c\b(?=[^>]*\st\s*=\s*["']e["'])[^>]*\sr\s*=\s*["']([A-
 _ODS = re.compile(rb"<table:(?:table-row|table-cell|covered-table-cell|table)\b[^>]*>")
 _REPEATED = re.compile(rb"""table:number-(?:rows|columns)-repeated\s*=\s*["']([0-9]+)["']""")
 _CHUNK = 1 << 20
-Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN, COMMA = Marks(), Marks(",")
 _COMMA = re.compile(

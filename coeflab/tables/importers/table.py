@@ -17,36 +17,22 @@ from coeflab.core.limits import CSV_LINE, TABLE_CELLS, TABLE_CUT_LINES, TABLE_TE
 from coeflab.core.options import parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.tables import text_dialect
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
 from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.text_dialect import (
-    COMMENTS,
-    RULE,
-    AmbiguousError,
-    Options,
-    TextDialect,
-    encoding_of,
-    first_bytes,
-    first_lines,
-    is_comment,
-    sniff,
-    split_line,
-    undecoded,
-    unread,
-)
 
 summary = "any delimited text: delimiter, decimal mark, units and encoding detected and reported"
 citations = ()
 reads = "tables of delimited text"
 
 _BLOCK = 1 << 20  # letters
-_COMMENT_BEGINS = frozenset(c[0] for c in COMMENTS)
+_COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
 _PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
 
 
-def _blocks(path: Path, dialect: TextDialect) -> Iterator[tuple[int, list[str], bool]]:
+def _blocks(path: Path, dialect: text_dialect.TextDialect) -> Iterator[tuple[int, list[str], bool]]:
     """Lines from the first row on, many at a time: number of the first, lines, whether the last has an end."""
     rest, line = "", 1
     with path.open(encoding=dialect.encoding, newline=None) as stream:
@@ -67,7 +53,7 @@ class _Body:
     """The rows as they are read."""
 
     path: Path
-    dialect: TextDialect
+    dialect: text_dialect.TextDialect
     keep: frozenset[int]
     columns: list[list[Array]]
     met: list[Cells]
@@ -153,13 +139,17 @@ class _Body:
         """The cells of one line, None where it is no row."""
         d = self.dialect
         if ended and d.numbers and text.lstrip()[:1] not in _COMMENT_BEGINS:
-            cells = split_line(text, d.delimiter)
+            cells = text_dialect.split_line(text, d.delimiter)
             if len(cells) == d.width and _PLAIN.fullmatch(cells[d.numbers[0]]):
                 return cells
         stripped = text.strip()
-        if not stripped or is_comment(stripped, d.comments) or (stripped[0] in "-=+|:_" and RULE.fullmatch(stripped)):
+        if (
+            not stripped
+            or text_dialect.is_comment(stripped, d.comments)
+            or (stripped[0] in "-=+|:_" and text_dialect.RULE.fullmatch(stripped))
+        ):
             return None
-        cells = split_line(text, d.delimiter)
+        cells = text_dialect.split_line(text, d.delimiter)
         while len(cells) > d.width and not cells[-1]:
             cells.pop()
         if tuple(cells) in d.head.written:
@@ -209,7 +199,7 @@ class _Body:
         return self.met[k].values(cells, lines, marks, plain)
 
 
-def _read(path: Path, dialect: TextDialect, keep: frozenset[int]) -> _Body:
+def _read(path: Path, dialect: text_dialect.TextDialect, keep: frozenset[int]) -> _Body:
     empty = [Cells() for _ in range(dialect.width)]
     body = _Body(path, dialect, keep, [[] for _ in empty], empty, {})
     for line, lines, ended in _blocks(path, dialect):
@@ -236,13 +226,13 @@ def recognises(path: Path) -> bool:
     if is_house_table(path):
         return False
     try:
-        sample, whole = first_bytes(path)
-        encoding = encoding_of(sample, Options(), path)
-        lines, _ = first_lines(sample, whole, encoding, path)
+        sample, whole = text_dialect.first_bytes(path)
+        encoding = text_dialect.encoding_of(sample, text_dialect.Options(), path)
+        lines, _ = text_dialect.first_lines(sample, whole, encoding, path)
         if is_of_openfoam(lines) or kind_of(head(path)):
             return False
-        dialect = sniff(path, Options())
-    except AmbiguousError:
+        dialect = text_dialect.sniff(path, text_dialect.Options())
+    except text_dialect.AmbiguousError:
         return True
     except InputError:
         return False
@@ -264,8 +254,8 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     InputError
         No table, rows of other lengths, numbers that can be read in two ways, or too many cells.
     """
-    given = parse_options(Options, options, "table")
-    dialect = sniff(path, given)
+    given = parse_options(text_dialect.Options, options, "table")
+    dialect = text_dialect.sniff(path, given)
     try:
         body = _read(path, dialect, dialect.words)
         textual = frozenset(k for k, met in enumerate(body.met) if met.text)
@@ -274,9 +264,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     except UnicodeDecodeError as why:
         if dialect.encoding == "utf-8" and not given.encoding:
             return raw(path, {**options, "encoding": "cp1252"})
-        raise undecoded(why, dialect.encoding, path) from None
+        raise text_dialect.undecoded(why, dialect.encoding, path) from None
     except OSError as why:
-        raise unread(path, why) from None
+        raise text_dialect.unread(path, why) from None
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
     return RawTable(

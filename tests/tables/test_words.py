@@ -15,10 +15,14 @@ from coeflab.tables.dialect import Marks
 from coeflab.tables.form import form
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
-from coeflab.tables.questions import Question, questions, understood
+from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, against_words, read_in, require_one_datum
-from coeflab.tables.words_above import POINT_FROM, TURN_OF_R, water_density, words_above
+from coeflab.tables.understood import understood
+from coeflab.tables.words.above import words_above
+from coeflab.tables.words.axes import TURN_OF_R
+from coeflab.tables.words.points import POINT_FROM
+from coeflab.tables.words.water import water_density
 
 
 def said(*lines: str, marks: Marks | None = None) -> dict[str, Stated]:

@@ -1,0 +1,192 @@
+"""What several tables of one campaign settle, ask and show together: one question where they agree, one a table where not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from coeflab.core.errors import InputError
+from coeflab.tables.column_map import ColumnMap
+from coeflab.tables.evidence import Evidence
+from coeflab.tables.form import UNSHOWN, Line, argument, column_lines, form, question_line, setting_line
+from coeflab.tables.mapping import known_as
+from coeflab.tables.parts import ALONE, SPLIT, Part, own
+from coeflab.tables.questions import Question
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import Setting, Settings, against_words, read_in
+from coeflab.tables.understood import Understood, understood
+from coeflab.tables.words.points import POINT_FROM, POINT_OF
+
+
+def understood_together(
+    parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool = False
+) -> tuple[Understood, ...]:
+    """`understood` of every part, by what is said of all and of it."""
+    out = []
+    for part in parts:
+        said = own(columns, part, parts)
+        if part.name:
+            known = {n for c in part.raw.columns for n in (c.name, *known_as(c))}
+            said = {name: one for name, one in said.items() if name in known}
+        found = understood(part.raw, said, own(settings, part, parts), accept)
+        if part.name:
+            found = replace(found, shows=tuple(_placed(part.name, e) for e in found.shows))
+        out.append(found)
+    return tuple(out)
+
+
+def _placed(name: str, shows: Evidence) -> Evidence:
+    head = "warning: " * shows.text.startswith("warning: ")
+    return replace(shows, text=f"{head}{name}: {shows.text.removeprefix('warning: ')}")
+
+
+def questions_together(
+    parts: Sequence[Part], founds: Sequence[Understood], whole: str = ""
+) -> list[tuple[str, Question]]:
+    """What is not said yet: one question a key where the parts agree, else one a part, or one that names what differs.
+
+    Parameters
+    ----------
+    parts, founds : sequences
+    whole : str
+        Name of what was imported, for the citation.
+    """
+    out: list[tuple[str, Question]] = []
+    for key in dict.fromkeys(q.key for found in founds for q in found.questions):
+        have = [(p, q) for p, f in zip(parts, founds, strict=True) for q in f.questions if q.key == key]
+        strong = [(p, q) for p, q in have if not q.why.startswith(("median", "it cancels"))] or have
+        if len({q.why.startswith("it cancels") for _, q in have}) > 1 and not key.startswith(ALONE):
+            have = strong
+        values = {q.default for _, q in strong if q.default}
+        named = [q for _, q in strong if q.default and q.short not in ("not stated", "not stated: LOA, LBP ...")]
+        if key == "source.citation" and whole:
+            out.append((key, replace(strong[0][1], default=whole)))
+        elif len(values) > 1 and strong[0][1].harmless and len({q.default for q in named}) == 1:
+            out.append((key, named[0]))
+        elif (len(values) > 1 and key.startswith(SPLIT)) or (key == POINT_OF and not values and _points_differ(parts)):
+            out += [(f"{p.name}/{key}", q) for p, q in have]
+        elif len(values) > 1:
+            each = "; ".join(f"{p.name}: {q.default} ({q.short or q.why})" for p, q in strong if q.default)
+            one = strong[0][1]
+            out.append(
+                (key, replace(one, default="", shown="", harmless=False, choices=f"{each}; {one.choices}".rstrip("; ")))
+            )
+        elif key.startswith(ALONE) and len({(q.default, q.shown) for _, q in have}) > 1:
+            out += [(f"{p.name}/{key}", q) for p, q in have]
+        else:
+            out.append(
+                (key, next((q for _, q in strong if q.default), next((q for _, q in strong if q.shown), strong[0][1])))
+            )
+    return out
+
+
+def _points_differ(parts: Sequence[Part]) -> bool:
+    """Whether words of several tables name several points, so that each has to be said from one of them."""
+    return len(parts) > 1 and any(
+        p.raw.stated[k].contradicted for p in parts for k in ("axes.datum", POINT_FROM) if k in p.raw.stated
+    )
+
+
+def settled_together(
+    parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool, whole: str = ""
+) -> tuple[tuple[Understood, ...], dict[str, Setting]]:
+    """What follows when proposals are accepted, one from the other until nothing more does; else of harmless ones alone.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+    columns : mapping of str to ColumnMap
+    settings : mapping of str to Setting
+    accept : bool
+    whole : str
+        See `questions_together`.
+    """
+    out = dict(settings)
+    while True:
+        founds = understood_together(parts, columns, out, accept)
+        fresh: dict[str, Setting] = {}
+        for key, q in questions_together(parts, founds, whole):
+            if q.default and (accept or q.harmless):
+                fresh |= {k: Setting(v, q.why) for k, v in read_in(key, q.default).items() if k not in out}
+        if not fresh:
+            return founds, out
+        out |= fresh
+
+
+def complaints_of(founds: Sequence[Understood]) -> list[InputError]:
+    """Those of all parts."""
+    return [one for found in founds for one in found.complaints]
+
+
+def is_pending(parts: Sequence[Part], founds: Sequence[Understood]) -> bool:
+    """Whether something is open or waits to be accepted."""
+    waits = any(found.doubts or found.open for found in founds)
+    return waits or any(not q.harmless for _, q in questions_together(parts, founds))
+
+
+def form_together(
+    parts: Sequence[Part], founds: Sequence[Understood], settings: Settings, read_by: Sequence[Line] = (),
+    numbers: dict[str, int] | None = None, whole: str = "",
+) -> tuple[Line, ...]:  # fmt: skip
+    """All lines of the form, open ones first: one for what the parts share.
+
+    Parameters
+    ----------
+    parts, founds : sequences
+    settings : mapping of str to Setting
+        What is known, with names of parts where it is said of one.
+    read_by : sequence of Line
+    numbers : dict of str to int, optional
+        See `coeflab.tables.form.form`.
+    whole : str
+        See `questions_together`.
+    """
+    if len(parts) == 1:
+        return form(parts[0].raw, founds[0], settings, read_by, numbers)
+    out = [*read_by, *_columns(parts, founds)]
+    out += [replace(question_line(q), key=key, argument=argument("--set", key, q.default or "?")) for key, q in
+            questions_together(parts, founds, whole)]  # fmt: skip
+    words: dict[str, str] = {}
+    for part in parts:
+        words |= {key: f"{part.name}, {place}" for key, _, place in against_words(part.raw, own(settings, part, parts))}
+    about = {key: text for found in founds for key, text in found.about.items()}
+    for key, one in settings.items():
+        plain = key.rpartition("/")[2]
+        if not plain.startswith(UNSHOWN):
+            line = setting_line(plain, one, about.get(plain, plain), words.get(plain, ""))
+            out.append(replace(line, key=key))
+    taken: dict[str, int] = {} if numbers is None else numbers
+    ordered = sorted(out, key=lambda line: line.group)
+    return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
+
+
+def _columns(parts: Sequence[Part], founds: Sequence[Understood]) -> Iterator[Line]:
+    """One line for columns of one name that are the same in all parts, else one a part."""
+    have: dict[str, list[tuple[Part, Line]]] = {}
+    for part, found in zip(parts, founds, strict=True):
+        for line in column_lines(part.raw, found):
+            have.setdefault(line.key, []).append((part, line))
+    for name, lines in have.items():
+        if len({(line.value, line.group) for _, line in lines}) == 1:
+            first, where = lines[0][1], ""
+            if len(lines) < len(parts):
+                where = "; " + ", ".join(p.name for p, _ in lines)
+            head, _, span = first.why.partition(";")
+            yield replace(first, why=f"{head}{where};{span}".rstrip(";"))
+            continue
+        for part, line in lines:
+            said = line.argument.replace(f"{name}=", f"{part.name}/{name}=", 1)
+            yield replace(line, key=f"{part.name}/{name}", argument=said)
+
+
+def columns_by_name(parts: Sequence[Part]) -> dict[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]]:
+    """By every name that a person may type for a column, with and without that of a part: its key, and where it stands."""
+    out: dict[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]] = {}
+    for part in parts:
+        for column in part.raw.columns:
+            for name in (column.name, *known_as(column)):
+                key, places = out.get(name, (column.name, ()))
+                out[name] = (key, (*places, (part.raw, column)))
+                if part.name:
+                    out[f"{part.name}/{name}"] = (f"{part.name}/{column.name}", ((part.raw, column),))
+    return out

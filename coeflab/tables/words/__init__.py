@@ -1,0 +1,1 @@
+"""What words over a table say of its tests; offered, never taken."""
