@@ -278,7 +278,9 @@ def _forms(sweep: Sweep) -> Table:
         return every
     best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
     without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
-    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}, of {len(every.rows)}; none is recommended."]
+    notes = [
+        f"Each form in the widest of its windows that fits (p of the lack of fit >= {SUITS:g}); none is recommended."
+    ]
     notes += [f"In no window: {', '.join(without)}."] if without else []
     rows = tuple(every.rows[i] for i in sorted(best.values()))
     headers = tuple("p" if h == "lack of fit" else h for h in every.headers)

@@ -126,7 +126,16 @@ def _moved(study: Study) -> None:
         rows += [
             (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
-        ] or [(made.vehicle.name, name, "none", "", "", made.trajectory.ended.value)]
+        ] or [
+            (
+                made.vehicle.name,
+                name,
+                "none",
+                "",
+                "",
+                made.figures[0].status if made.figures else made.trajectory.ended.value,
+            )
+        ]
     if not show.whole():
         headers = ("file", "manoeuvre", "figure", "value", "unit", "status")
         show.table(

@@ -93,4 +93,4 @@ def _print(found: Acceptance) -> None:
         show.text("--wide prints every number, erratum and statement.")
     bare = [p.name for p in found.parameter_files if not p.measured]
     if bare:
-        show.text(f"No measured points in {', '.join(bare)}: these laws are not compared with any.")
+        show.text(f"Without measured points to compare the force law with: {', '.join(bare)}.")

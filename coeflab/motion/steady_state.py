@@ -540,8 +540,8 @@ def _statement(index: str, has_angle: bool, critical: float | None, speed: Array
         return "Nothing restores the heading, so all roots grow in proportion to speed and there is no critical speed."
     if not has_angle:
         return (
-            "The file states no hydrostatics, so the restoring moment of weight and buoyancy (BG) is not in it and no critical "
-            "speed can be given: these are the roots of the limit of high speed."
+            "The file states no hydrostatics. The restoring moment of weight and buoyancy (BG) is left out: the roots hold at high speed "
+            "only, and no critical speed can be given."
         )
     if critical is None:
         return f"No root changes the sign of its real part between {speed[0]:.3g} and {speed[-1]:.3g} m/s."

@@ -245,8 +245,8 @@ def held_of_study(study: Study) -> Held:
 def headline(numbers: Held) -> tuple[str, ...]:
     """How many numbers hold by basis, and how many of them validate anything where not all do: one or two sentences."""
     every = [sum(pair[k] for pair in numbers.values()) for k in (0, 1)]
-    by_basis = "; ".join(f"{b}: {good} of {count}" for b, (good, count) in numbers.items() if count)
-    first = f"{every[0]} of {every[1]} numbers within the tolerance{f' ({by_basis})' if by_basis else ''}."
+    by_basis = "; ".join(f"{b} {good} of {count}" for b, (good, count) in numbers.items() if count)
+    first = f"{every[0]} of the {every[1]} compared numbers lie within their tolerance{f': {by_basis}' if by_basis else ''}."
     good, count = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
     if not count:
         return (
@@ -255,7 +255,10 @@ def headline(numbers: Held) -> tuple[str, ...]:
         )
     if count == every[1]:
         return (first,)
-    return first, f"Only what is predicted, or printed and recomputed, is validation: {good} of {count} within."
+    return (
+        first,
+        f"Only predicted numbers, and printed numbers that we recompute, are validation: {good} of {count} lie within.",
+    )
 
 
 def tables(acceptance: Acceptance) -> tuple[Table, ...]:

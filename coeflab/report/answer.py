@@ -379,7 +379,7 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
         out.append(f"Ours: {listed(sources)}{by}.")
         also = [f.campaign for f in study.fits if f.campaign not in (*sources, *towed_rows) and _gives(f, rows)]
         if also:
-            out.append(f"Fitted too, in the report: {listed(list(dict.fromkeys(also)))}.")
+            out.append(f"Also fitted, see Coefficients in the report: {listed(list(dict.fromkeys(also)))}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     own = [r for r in rows if r.source in towed_rows]
@@ -392,7 +392,11 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     if others:
         twice = [(r.name, r.scaling, r.other_scaling) for r in others]
-        lengths = [f"; {name} read with {_readings(first, other)}" for name, first, other in twice if other is not None]
+        lengths = [
+            f"; {name} made dimensionless {_readings(first, other)}"
+            for name, first, other in twice
+            if other is not None
+        ]
         out.append(f"{listed([r.name for r in others])}: {others[0].body}, no verdict{''.join(lengths)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
@@ -405,7 +409,7 @@ def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     larger = [100.0 * (other.ratio(symbol, first) - 1.0) for symbol in ("Yv", "Nr")]
-    return f"{first.length_name} ({other.length_name}: Yv' {larger[0]:+.1f} %, Nr' {larger[1]:+.1f} %)"
+    return f"by {first.length_name} (by {other.length_name}, Yv' would change by {larger[0]:+.1f} %, Nr' by {larger[1]:+.1f} %)"
 
 
 def _of_models(study: Study) -> Answer:

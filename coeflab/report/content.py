@@ -290,8 +290,8 @@ WIDE = 0.25  # of the published value: a wider U95 passes what a reader would ca
 
 
 WHAT_COUNTS = (
-    "Predicted: a computed coefficient against the same one measured on the same body. Printed and recomputed: a coefficient or stability index "
-    "that we compute from the authors' data or printed numbers, against the one that they print.",
+    "Predicted: a coefficient from CFD, compared with the one measured on the same body. Printed and recomputed: a coefficient or stability "
+    "index that we compute from the authors' data or printed numbers, compared with the one that they print.",
 )
 
 
@@ -312,7 +312,7 @@ def _re_analysis(study: Study) -> list[str]:
         out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
     shares = [(c, c.combined / abs(c.published)) for c in judged if c.passed and c.combined and c.published]
     if wide := [f"{_named(c)} ({share_text(share)})" for c, share in shares if share > WIDE]:
-        out.append(f"Weak tests, whose U95 is above {share_text(WIDE)} of the published value: {listed(wide)}.")
+        out.append(f"Weak tests (U95 above {share_text(WIDE)} of the published value): {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     held = held_of_study(study)
@@ -322,8 +322,9 @@ def _re_analysis(study: Study) -> list[str]:
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
         out.append(
-            f"Predicted outside the tolerance, |E| > U_V: {each}. U_V does not contain turbulence model, Reynolds number and rig, so "
-            "this alone does not fail the study. A failed comparison with the authors' own evaluation or a failed check would."
+            f"Predicted coefficients that differ from the test by more than U_V: {each}. U_V leaves out turbulence model, Reynolds "
+            "number and rig, so such a difference does not fail the study. Only a failed comparison with the authors' own evaluation, or a "
+            "failed check, does."
         )
     out.append(
         "This is a re-analysis: both sides use the same measurements. A pass says that our evaluation reproduces theirs within "
@@ -341,13 +342,14 @@ def verdict(study: Study) -> Section:
     if others:
         names = listed(list(dict.fromkeys(c.reference for c in others)))
         text.append(
-            f"No verdict on {names}: another body or another method. A difference may come from the appendages or from an error."
+            f"No verdict on {names}: this is another body or another method, so a difference need not be an error."
         )
     text += [*in_words(study), *_without_value(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     warned = sum(c.severity is Severity.WARN for c in study.checks)
     if study.checks:
-        text.append(f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned.")
+        count = _counted(len(study.checks), "check")
+        text.append(f"Of {count}, {len(failed) or 'none'} failed and {warned or 'none'} gave a warning.")
     if study.failed:
         text.append("The study as a whole fails.")
     elif study.checks or study.comparisons:
@@ -414,8 +416,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text = (
-        "The force law of every parameter file is compared with the measured points that it was fitted to. Three times the scatter of repeated "
-        "runs plus 5 % of the largest force is allowed. A larger difference inside the range of the law is a failure.",
+        "The force law of every parameter file is compared with the measured points that it was fitted to. The difference may be "
+        "three times the scatter of repeated runs plus 5 % of the largest force. A larger one inside the range of the law is a failure.",
     )
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
@@ -427,8 +429,8 @@ def _comparison(study: Study) -> tuple[Section, ...]:
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f'"{r.name}" has two readings, since the length behind its primes is not certain: {r.scaling} (values as printed), or '
-                f"{r.other_scaling} (every value rescaled)."
+                f'"{r.name}" stands twice in the table, as its source does not say which length made its values dimensionless: {r.scaling} '
+                f"(values as printed), or {r.other_scaling} (every value rescaled)."
             )
     shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
     apart = filled(tables.differences(study))

@@ -377,7 +377,7 @@ def reproduction(study: Study) -> Section:
         where = f"The study {name} is shipped with coeflab, its plan and its data; the command works in any folder."
         return _section((where, SAME), (command(name),), study.inputs)
     where = (
-        f"Run this in the folder of {file.name}; what the plan names has to lie where the plan says. coeflab run {file.name} writes "
+        f"Run this in the folder of {file.name}; the files that the plan names must be at the paths it states. coeflab run {file.name} writes "
         "the same HTML, and beside it the parameter files and the coefficients."
     )
     return _section((where, SAME), (command(file.name),), study.inputs)

@@ -136,7 +136,13 @@ def _row(
         turned = replace(own, symbol=symbol, value=sign * own.value)
         equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
         return TowedRow(
-            symbol, turned, u_grid, "", f"{equal} by fourfold symmetry", published, why_none=f"as {primed(source)}"
+            symbol,
+            turned,
+            u_grid,
+            "",
+            f"equals {equal}, by fourfold symmetry",
+            published,
+            why_none=f"as {primed(source)}",
         )
     why = _left_out(study, tow.campaign, symbol)
     made = None if budget is None else _against(study, budget, own, fits, tests)
@@ -206,7 +212,9 @@ def _against(
                 budget, campaign=f"{r.name}, {method}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
             )  # fmt: skip
             ratio = r.scaling.ratio(own.symbol, ours.scaling)
-            return validation(budget, test, ratio), "; ".join(filter(None, (other, f"another method: {method}")))
+            return validation(budget, test, ratio), "; ".join(
+                filter(None, (other, f"the test is by another method, {method}"))
+            )
     return None
 
 

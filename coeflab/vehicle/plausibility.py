@@ -24,7 +24,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 
-X_APART = "X steers nothing: exports and motions keep the range of the other components."
+X_APART = "X does not enter steering: exports and motions keep the range of the other components."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
@@ -348,9 +348,9 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             out.append(
                 Check("law at points", f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)
             )
-        said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, at {f.worst_at or 'no point'}"
+        said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
         if taken := _taken_off(parameters, f.component, f.table):
-            said += f", less the set-up's X that is odd in drift, up to {100.0 * taken / largest:.2g} %"
+            said += f", after subtracting the part of X odd in drift, an offset of the set-up, up to {100.0 * taken / largest:.2g} %"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
@@ -363,7 +363,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         elif f.beyond:
             severity = Severity.WARN
             comment = (
-                f"At {', '.join(f.beyond)}, outside the range of the law, it differs by up to {100.0 * f.worst_beyond / largest:.2g} %. "
+                f"At points {', '.join(f.beyond)}, outside its range, the law differs by up to {100.0 * f.worst_beyond / largest:.2g} %. "
             ) + (X_APART if f.component == "X" else "Exports and motions use the smaller range.")
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)

@@ -58,10 +58,10 @@ def test_together(change: tuple[float, ...], values: tuple[float, ...], expected
 
 def test_where_it_went() -> None:
     assert moved_in_words(TunedParameter("m", "kg", 19.0, 20.5, 0.4, 0.25, OK)) == (
-        "m: from 19.0000 to 20.50 +- 0.40 kg (ok, prior share 25 %)"
+        "m: from 19.0000 to 20.50 +- 0.40 kg (determined, prior share 25 %)"
     )
     assert moved_in_words(TunedParameter("m", "kg", 19.0, 20.5, None, 0.0, OPEN)) == (
-        "m: from 19.0000 to 20.5000 kg (not_identifiable)"
+        "m: from 19.0000 to 20.5000 kg (not identifiable)"
     )
 
 

@@ -61,11 +61,14 @@ def test_parts_without_content_are_left_out():
 
 def test_the_verdict_counts_and_names_what_fails():
     assert acceptance_document.verdict(found(2.05)).paragraphs[0] == (
-        "3 of 3 numbers within the tolerance (printed and recomputed: 2 of 2; calibration: 1 of 1)."
+        "3 of the 3 compared numbers lie within their tolerance: printed and recomputed 2 of 2; calibration 1 of 1."
     )
     failed = acceptance_document.verdict(found(2.5))
-    assert failed.paragraphs[0].startswith("2 of 3 numbers within the tolerance (")
-    assert failed.paragraphs[1] == "Only what is predicted, or printed and recomputed, is validation: 2 of 2 within."
+    assert failed.paragraphs[0].startswith("2 of the 3 compared numbers lie within their tolerance: ")
+    assert (
+        failed.paragraphs[1]
+        == "Only predicted numbers, and printed numbers that we recompute, are validation: 2 of 2 lie within."
+    )
     assert failed.paragraphs[2] == "Outside, Turns: u of case 2."
     assert failed.paragraphs[3:] == (
         "Printed and recomputed: published, and computed here from other published numbers.",
@@ -78,9 +81,11 @@ def test_numbers_met_another_way_count_once():
     made = found(2.05)
     again = replace(made.tables[0], key="again", repeats="turns_a")
     first, second = acceptance_document.headline(replace(made, tables=(*made.tables, again)))
-    assert first.startswith("3 of 3 numbers within")
-    assert first.endswith("3 more comparisons repeat these numbers in another way and do not count: 3 within.")
-    assert second == "Only what is predicted, or printed and recomputed, is validation: 2 of 2 within."
+    assert first.startswith("3 of the 3 compared numbers lie within")
+    assert first.endswith(
+        "3 more comparisons repeat these numbers in another way and do not count; 3 of them lie within."
+    )
+    assert second == "Only predicted numbers, and printed numbers that we recompute, are validation: 2 of 2 lie within."
     failing = replace(again, rows=(*again.rows, Compared("case 4", "u", "m/s", 1.0, 2.0, 0.1, Basis.PRINTED)))
     assert not replace(made, tables=(*made.tables, failing)).holds
 

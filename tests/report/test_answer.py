@@ -105,7 +105,9 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     twice = replace(OTHER, other_scaling=replace(LENGTH, length=2.2, length_name="LWL"))
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
-    assert any("read with LOA (LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes)
+    assert any(
+        "made dimensionless by LOA (by LWL, Yv' would change by +21.0 %, Nr' by +46.4 %)" in note for note in made.notes
+    )
 
 
 @pytest.mark.parametrize(
@@ -351,13 +353,18 @@ def test_suboff(suboff: Study):
     made = answer(suboff)
     said = verdict(suboff).paragraphs
     assert said[1] == (
-        "Weak tests, whose U95 is above 25 % of the published value: Zw' of suboff_roddy_1 (45 %), Yv' of suboff_roddy_3 (52 %) and "
+        "Weak tests (U95 above 25 % of the published value): Zw' of suboff_roddy_1 (45 %), Yv' of suboff_roddy_3 (52 %) and "
         "Kv' of suboff_roddy_3 (39 %)."
     )
-    assert said[2] == "22 of 24 numbers within the tolerance (predicted: 7 of 9; printed and recomputed: 15 of 15)."
-    assert said[3].startswith("Predicted: a computed coefficient against the same one measured")
-    assert said[4].startswith("Predicted outside the tolerance, |E| > U_V: Kv' of suboff_cfd_barehull")
-    assert "this alone does not fail the study" in said[4]
+    assert (
+        said[2]
+        == "22 of the 24 compared numbers lie within their tolerance: predicted 7 of 9; printed and recomputed 15 of 15."
+    )
+    assert said[3].startswith("Predicted: a coefficient from CFD, compared with the one measured")
+    assert said[4].startswith(
+        "Predicted coefficients that differ from the test by more than U_V: Kv' of suboff_cfd_barehull"
+    )
+    assert "such a difference does not fail the study" in said[4]
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence

@@ -148,7 +148,7 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
-    assert ("Weak tests, whose U95 is above 25 % of the published value: Yv' of tow (26 %)." in text) == is_weak
+    assert ("Weak tests (U95 above 25 % of the published value): Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
     assert "Weak" not in words(failed, "verdict")
 

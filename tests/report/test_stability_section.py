@@ -101,7 +101,7 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
-    assert said.endswith(" From literature: Yr', Nr'.")
+    assert said.endswith(" From literature, not from our fits: Yr' and Nr'.")
     assert "literature" not in in_words(with_files(file))[0]
 
 
@@ -156,9 +156,9 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
     study = with_files(diving)
     (said,) = in_words(study)
-    start = "With controls fixed, straight motion is unstable at high speed (no restoring moment), no U95: synthetic"
+    start = "With controls fixed, straight motion is unstable at high speed (without restoring moment), no U95: synthetic"
     assert said.startswith(start)
-    assert ", at 1.50 m/s not determined, as BG is not known. It is stable, no U95: synthetic (G_h" in said
+    assert "; at 1.50 m/s it is not determined, as BG is not known. It is stable, no U95: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)

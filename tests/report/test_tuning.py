@@ -53,8 +53,8 @@ def test_curves_name_their_groups(tuning: Tuning) -> None:
 
 def test_tables(tuning: Tuning) -> None:
     rows = {row[0]: row for row in tuning_tables.parameters(tuning).rows}
-    assert rows["side"][2:] == ("1.0000", "2.00", "0.25", "40 %", "ok")
-    assert rows["mass"][4:] == ("-", "-", "not_identifiable")
+    assert rows["side"][2:] == ("1.0000", "2.00", "0.25", "40 %", "determined")
+    assert rows["mass"][4:] == ("-", "-", "not identifiable")
     assert tuning_tables.parameters(tuning).notes[-1] == "A statement."
     assert [row[2] for row in tuning_tables.quantities(tuning).rows] == ["6", "5"]
     assert tuning_tables.quantities(tuning).rows[0][3:] == ("0.300", "0.100", "0.100")

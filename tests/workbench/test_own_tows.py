@@ -106,7 +106,7 @@ def test_attack_of_a_fourfold_body_is_stated_from_drift(bodies: tuple[Towed, ...
     assert by["Zw"].value == by["Yv"].value
     assert by["Mw"].value == -(by["Nv"].value or 0.0)
     assert (by["Zw"].u95, by["Zw"].u_grid) == (by["Yv"].u95, by["Yv"].u_grid)
-    assert by["Mw"].why == "-Nv' by fourfold symmetry"
+    assert by["Mw"].why == "equals -Nv', by fourfold symmetry"
     assert by["Mw"].validation is None
     assert all(r.u_grid for r in by.values())
 
@@ -114,7 +114,7 @@ def test_attack_of_a_fourfold_body_is_stated_from_drift(bodies: tuple[Towed, ...
 def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies: tuple[Towed, ...]) -> None:
     bare = {r.symbol: r for r in bodies[0].rows}
     assert [s for s, r in bare.items() if r.verdict is not None] == ["Yv", "Nv"]
-    assert bare["Yr"].why_none == "another method: PMM"
+    assert bare["Yr"].why_none == "the test is by another method, PMM"
     pmm = bare["Yr"].validation
     assert pmm is not None
     assert pmm.measured == pytest.approx(0.001811)

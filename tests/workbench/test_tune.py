@@ -133,7 +133,7 @@ def test_side_force_and_mass_are_known_only_together(plan: Write) -> None:
     assert status["C_D 1"] == OK
     assert any("mass" in text and "C_S beta" in text for text in tuned.tuning.together)
     assert tuned.tuning.parameter("mass").u95 is None
-    assert any("C_S beta^3" in n and "not_identifiable" in n for n in tuned.parameters.provenance.notes)
+    assert any("C_S beta^3" in n and "not identifiable" in n for n in tuned.parameters.provenance.notes)
 
 
 def test_priors_and_bounds(plan: Write) -> None:

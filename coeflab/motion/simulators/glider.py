@@ -144,7 +144,7 @@ def _statements(vehicle: Glider, alpha: Array, outside: NDArray[np.bool_], u: Ar
             f"reaches {steepest:.1f} deg there, by extrapolation."
         )
     if np.any(u < -1e-9):
-        out.append("The glider moves astern for a while, for which the polar is not made.")
+        out.append("The glider moves astern for a while; its polar does not cover that.")
     return tuple(out)
 
 

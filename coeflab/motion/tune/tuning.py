@@ -32,6 +32,12 @@ STATUSES = {
     BOUND: "it ended at a bound, so there is no interval",
     OPEN: "the data do not determine it: its 95 % half-width would exceed its own size; no interval",
 }
+WORDS = {
+    OK: "determined",
+    PRIOR: "mostly prior",
+    BOUND: "at its bound",
+    OPEN: "not identifiable",
+}  # of a status, for people
 MOSTLY = 0.9  # of the variance from the prior: the data hardly add to it
 SAME_RATIO = 0.25  # changes alike within a quarter read as a ratio
 TAKES_PART = 0.05  # of the largest change: less is not named
@@ -225,7 +231,7 @@ def moved_in_words(p: TunedParameter) -> str:
     """From where to where a parameter went."""
     after = number(p.after, 6) if p.u95 is None else plus_minus(p.after, p.u95)
     prior = f", prior share {100.0 * p.prior_share:.0f} %" if p.prior_share else ""
-    return f"{p.name}: from {number(p.before, 6)} to {after} {p.unit} ({p.status}{prior})"
+    return f"{p.name}: from {number(p.before, 6)} to {after} {p.unit} ({WORDS[p.status]}{prior})"
 
 
 # A place with the number of its parameter.

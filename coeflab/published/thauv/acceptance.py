@@ -155,8 +155,8 @@ ERRATA = (
     "Section 5: 483 g is what both engines take in together.",
 )
 CALIBRATED = (
-    "m3 - m1, the moment below and a moment ahead for each stage are calibrated on the six published speeds: what meets "
-    "them is in-sample. Four constants from six numbers of two digits leave little to test."
+    "m3 - m1, the moment below and a moment ahead for each stage are calibrated on the six published speeds: agreement "
+    "with them proves nothing. Four constants from six numbers of two digits leave little to test."
 )
 
 
@@ -281,7 +281,7 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
         (
             "The second stage dives at 1060 s and surfaces at 1430 s, as printed; the first climb at 660 s is assumed.",
             "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to compare them with.",
-            f"Every dive ends within {far:.0e} m/s of the steady glide of its balance, which is ours too and not counted.",
+            f"Every dive ends within {far:.0e} m/s of our own steady glide; that comparison does not count.",
         ), "speeds",
     )  # fmt: skip
 

@@ -74,7 +74,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
     factor, power = power_of_ten(max(abs(f) for f in frame))
     up = (frame[0] * factor, frame[1] * factor)
     left_out = int(np.sum((y < frame[0]) | (y > frame[1])))
-    title = f"{name}, {sweep.campaign[:LONGEST]}: the slope at rest"
+    title = f"{name}, {sweep.campaign[:LONGEST]}: the slope at zero {'rate' if sweep.variable in ('p', 'q', 'r') else 'angle'}"
     description = (
         f"{len(x)} points of {quotient} against |{sweep.variable}'|; {name} = {plus_minus(value, row.u95)} is where they end at rest"
         + (f"; {published} {coefficient(at)}." if at is not None else ".")
@@ -168,7 +168,11 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     if not kept:
         return None
     name = f"value / {compared}" if compared else "value ± U95, over the value"
-    title = f"Every coefficient over {compared}" if compared else "U95 of every coefficient, over its value"
+    title = (
+        f"Every coefficient, divided by that of {compared}"
+        if compared
+        else "U95 of every coefficient, divided by its value"
+    )
     n = len(kept)
     level = np.arange(n, 0.0, -1.0)
     across = _reach(kept)

@@ -212,7 +212,7 @@ def headline(found: Acceptance) -> tuple[str, ...]:
     again = found.repeated
     first, *others = acceptance_tables.headline(acceptance_tables.held(found))
     if again:
-        first += f" {len(again)} more comparisons repeat these numbers in another way and do not count: {sum(r.holds for r in again)} within."
+        first += f" {len(again)} more comparisons repeat these numbers in another way and do not count; {sum(r.holds for r in again)} of them lie within."
     return first, *others
 
 

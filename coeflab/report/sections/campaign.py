@@ -312,8 +312,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Coefficients of the bodies that we tow by CFD ourselves. Grid: the part of U95 that the grid study gives, in % of the value.",
-        "E = S - D is compared with U_V (ASME V&V 20). There is a verdict only where the same body was tested, at steady angles.",
+        "Coefficients from our own CFD tows. Grid: the part of U95 that the grid study gives, in % of the value.",
+        "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). Only a steady "
+        "test of the same body gives a verdict.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)

@@ -26,8 +26,8 @@ TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
     "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
     "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
-    "Input: declared errors of the inputs, and the grid. Of a term of higher degree it is the uncertainty of its slope. A dash: not assessed, so "
-    "not in U95.",
+    "Input: declared errors of the inputs, and the grid. For a term of higher degree, input is what the uncertainty of the slope adds. A dash: not "
+    "assessed, so not in U95.",
 )
 
 FIXED = (

@@ -42,7 +42,7 @@ ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
     "between methods. A computation or a measurement replaces each: coeflab merge."
 )
-TOGETHER = "share of its variance that goes if this number alone is known; numbers of one method go together: more than 100 % in all."
+TOGETHER = "share of its variance that vanishes if this number alone is known. Numbers of one method are correlated: the shares exceed 100 % in all."
 SHARES = (
     "Shares of the variance that would go if that one number were known, over draws of all of them. The largest is the number that "
     "is worth the next computation or test. Estimates of one method go together, so that the shares may add up to more than one."
@@ -233,7 +233,7 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
         notes.append(f"{called}: {_how(made)}.")
         if carried and not any(c.question.manoeuvre == name for c in carried):
             notes.append(
-                f"{called}: no 95 %, as only the first manoeuvre is drawn; coeflab uncertainty FILE --manoeuvre {name} has it."
+                f"{called}: no 95 %, as only the first manoeuvre is repeated with random coefficients; coeflab uncertainty FILE --manoeuvre {name} has it."
             )
         for f in made.figures:
             factor, unit = shown_unit(f.unit)

@@ -19,7 +19,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Loss, Refused
+from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import primed
 from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.steady_state import RootLocus, root_locus
@@ -118,11 +118,11 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
         each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
         if FAST in verdict:
             speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-            each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
-        out.append(f"{verdict.replace(FAST, f'{FAST} (no restoring moment)')}: {each}")
+            each += f"; at {speeds} m/s it is not determined, as BG is not known" if speeds else ""
+        out.append(f"{verdict.replace(FAST, f'{FAST} (without restoring moment)')}: {each}")
     mixed = [_from_literature(p, d.name) for p in study.parameter_files.values() for d in stability(p)]
     by_others = dict.fromkeys(s for stated in mixed if len(stated) < len(INDICES["G_h"]) - 1 for s in stated)
-    stated = f" From literature: {', '.join(map(primed, by_others))}." if by_others else ""
+    stated = f" From literature, not from our fits: {listed([primed(s) for s in by_others])}." if by_others else ""
     return [f"With controls fixed, straight motion is {'. It is '.join(out)}.{stated}"] if out else []
 
 
@@ -223,7 +223,7 @@ def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
             values = (*derivatives, f"m' = {number(p.mass.mass_prime, 5)}", f"xG' = {number(centre, 5)}")
             rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
     headers = ("parameter file", "index", "computed from", "derivatives from")
-    notes = ("m' and xG': Mass and inertia used, in the appendix.",)
+    notes = ("m' and xG' come from the table Mass and inertia used; --full prints it.",)
     return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))
 
 
@@ -330,6 +330,14 @@ def _sentence(refused: Refused) -> str:
     return f"{refused.parameters} for {refused.target}. Found {why.found}; expected {why.expected}."
 
 
+KINDS = {
+    Kind.NOT_HELD: "a term that the target's force law does not have",
+    Kind.MISSING: "a number that the target needs and the parameter file does not state",
+    Kind.REPLACED: "a number of the parameter file in whose place the target gets another",
+    Kind.MISMATCH: "a number that the target understands in another way",
+}
+
+
 def summary(study: Study) -> Table:
     """One row an export, those that were refused last."""
     rows = tuple(
@@ -338,7 +346,10 @@ def summary(study: Study) -> Table:
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
     headers = ("parameter file", "target", "loss", "largest difference in %", "accelerations", "files")
+    lossy = [made.loss for made in study.exports if made.loss is not None]
+    kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
+        *(f"{kind}: {KINDS[kind]}." for kind in Kind if kind in kinds),
         "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
     )

@@ -85,7 +85,7 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
     if not controls:
         notes.append("Points with a deflected control are left out: no force of controls is compared.")
     notes += [
-        f"{f.component}, {f.table}: outside the range of the law lie {', '.join(f.beyond)}; the largest difference there is "
+        f"{f.component}, {f.table}: points {', '.join(f.beyond)} lie outside the range of the law; the largest difference there is "
         f"{percent(f.worst_beyond / f.largest if f.largest else 0.0)}."
         for f in found
         if f.beyond

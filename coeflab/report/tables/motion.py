@@ -25,7 +25,7 @@ from coeflab.motion.glider.space import Spiral
 from coeflab.motion.identify.identification import Identified, IdentifiedTerm
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.tune.tuning import STATUSES, Tuning, largest_correlations
+from coeflab.motion.tune.tuning import STATUSES, WORDS, Tuning, largest_correlations
 
 DEGREES = {"rad": "deg", "rad/s": "deg/s"}
 
@@ -285,12 +285,12 @@ def parameters(tuning: Tuning) -> Table:
             number(p.before, 5),
             *((number(p.after, 5), ABSENT) if p.u95 is None else with_u95(p.after, p.u95)),
             ABSENT if p.u95 is None else f"{100.0 * p.prior_share:.0f} %",
-            p.status,
+            WORDS[p.status],
         )
         for p in tuning.parameters
     )
     used = dict.fromkeys(p.status for p in tuning.parameters)
-    notes = (*(f"{s}: {STATUSES[s]}." for s in used), *tuning.statements)
+    notes = (*(f"{WORDS[s]}: {STATUSES[s]}." for s in used), *tuning.statements)
     headers = ("parameter", "unit", "before", "after", "U95", "prior", "status")
     return Table(f"{tuning.name}: parameters", headers, rows, notes, frozenset({0, 1, 6}))
 

@@ -236,7 +236,7 @@ def tow_against(found: Towed) -> Table:
     notes = [f"D of {', '.join(symbols)}: {test}." for test, symbols in tests.items()]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     open_parts = dict.fromkeys(u for r in found.rows if r.validation is not None for u in r.validation.lacking)
-    notes += [f"Not in U_V of the tow: {'; '.join(open_parts)}."] if open_parts else []
+    notes += [f"U_V of the tow leaves out: {'; '.join(open_parts)}."] if open_parts else []
     headers = ("", "S, tow", "D, test", "E = S - D", "U_V", "verdict")
     return Table(
         f"Comparison error of the tow: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5})
@@ -443,7 +443,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
         f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)} {why}"
         for why, rows in by.items()
     ]
-    return f"Left out: {'; '.join(said)}." if said else ""
+    return f"Points left out: {'; '.join(said)}." if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:

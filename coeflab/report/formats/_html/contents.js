@@ -64,6 +64,8 @@ const contents = document.querySelector("details.contents"), list = contents.que
   let asked = 0;  // many folds that open at once are looked at once
   const soon = () => { asked ||= requestAnimationFrame(() => { asked = 0; stack(); }); };
   phone.addEventListener("change", stack);
+  let width = innerWidth;
+  addEventListener("resize", () => { if (phone.matches && innerWidth !== width) soon(); width = innerWidth; });
   for (const fold of document.querySelectorAll(".fold")) fold.addEventListener("toggle", soon);
   stack();
 }
