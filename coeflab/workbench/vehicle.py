@@ -148,7 +148,7 @@ def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
     if not ahead.any():
         return ()
     return (
-        f"limit: from {np.argmax(ahead):d} deg of drift the law gives an X that points ahead, which is wrong: use it below that angle",
+        f"limit: from {np.argmax(ahead):d} deg of drift the law gives an X that points ahead; it is a law of small drift: use it below",
     )
 
 
