@@ -47,6 +47,16 @@ def typed(name: str | Path) -> Path:
     return path
 
 
+def stem(name: str) -> str:
+    """A name that files can bear: letters, digits, - and _, 80 at most.
+
+    Parameters
+    ----------
+    name : str
+    """
+    return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in name)[:80]
+
+
 def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     """The path that a plan or a person means: relative to ``base``, to the current folder, or a shipped name.
 

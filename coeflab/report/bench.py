@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import brief
+from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.slope_at_origin import NODES
 from coeflab.fits.statistics import origin_slope, slope_mixture, slopes
@@ -116,10 +117,6 @@ def _plain(value: Any) -> Any:
     return [_plain(v) for v in value] if isinstance(value, tuple) else value
 
 
-def _finite(value: float) -> float | None:
-    return float(value) if isfinite(value) else None
-
-
 def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:
     """One sweep; labels that repeat are numbered, so that each names its row across the sweeps of a table."""
     seen: Counter[str] = Counter()
@@ -146,7 +143,7 @@ def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:
         "x": s.x.tolist(), "y": s.y.tolist(), "se": None if s.se is None else s.se.tolist(), "labels": keys,
         "odd": bool(s.symmetry), "oneSided": s.one_sided, "offset": s.offset, "value": s.value, "u95": found.u95,
         "status": found.status.value, "across": s.angle_name,
-        "leftOut": [(p.x, _finite(p.y), p.label, p.reason) for p in s.left_out if isfinite(p.x)],
+        "leftOut": [(p.x, finite(p.y), p.label, p.reason) for p in s.left_out if isfinite(p.x)],
         "base": {
             "at": s.curve[0].tolist(), "curve": s.curve[1].tolist(), "half": s.curve[2].tolist(), "fit": s.u95, "random": s.random,
             "misfit": (s.by_row * (s.y - s.fitted)).tolist(), "removed": s.wrong.tolist(), "reason": s.reason,
@@ -275,14 +272,14 @@ def _arrays(vehicle: Vehicle, manoeuvre: Manoeuvre) -> dict[str, Any]:
         "fastest": min(1e3, 100.0 * max(speed, vehicle.speed)),
         "start": start.tolist(),
         "orders": {
-            "angles": orders.angles.tolist(), "begin": orders.begin.tolist(), "rate": [_finite(r) for r in orders.rate],
+            "angles": orders.angles.tolist(), "begin": orders.begin.tolist(), "rate": [finite(r) for r in orders.rate],
             "wrench": orders.wrench.tolist(), "watched": [w >= 0 for w in orders.watched.tolist()],
             "sign": orders.sign.tolist(), "value": orders.value.tolist(), "longest": orders.longest.tolist(),
         },
         "law": {
             "coefficient": law.coefficient.tolist(), "component": law.component.tolist(), "powers": law.powers.tolist(),
             "rows": [[row for row in rows if row] for rows in law.gathered.T.tolist()], "source": law.source.tolist(),
-            "prime": law.prime.tolist(), "low": [_finite(v) for v in law.low], "high": [_finite(v) for v in law.high],
+            "prime": law.prime.tolist(), "low": [finite(v) for v in law.low], "high": [finite(v) for v in law.high],
             "tabled": law.tabled.tolist(), "angled": law.angled,
         },
         "quadratics": [

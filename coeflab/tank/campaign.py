@@ -43,7 +43,6 @@ VARIANT = "variant"
 LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
 _QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
             "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
-_SIDE = ("X", "Y", "N")
 SMOOTH = "none per point: a smooth law, whose fits do not show the scatter of the methods"
 
 

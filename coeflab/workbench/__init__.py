@@ -15,6 +15,7 @@ import numpy as np
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
 from coeflab.core.errors import CoeflabError, InputError, ScalingMismatchError, shown
+from coeflab.core.files import stem
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check, Severity
@@ -293,16 +294,12 @@ def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ..
     bodies: dict[str, list[str]] = {}
     for f in fits:
         bodies.setdefault(f.body, []).append(f.campaign)
-    names = [_file_name(b) for b in bodies]
+    names = [stem(b) for b in bodies]
     numbered = [n if names.count(n) == 1 else f"{n}_{names[:i].count(n) + 1}" for i, n in enumerate(names)]
     groups = zip(numbered, bodies.items(), strict=True)
     return tuple(
         PlannedParameterFile(n, b, tuple(dict.fromkeys(c)), (), plan.hull, plan.method) for n, (b, c) in groups
     )
-
-
-def _file_name(body: str) -> str:
-    return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in body)[:80]
 
 
 def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[str, ...]) -> list[Coefficient]:

@@ -14,7 +14,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.simplify.source import mesh_body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located
+from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
@@ -150,11 +150,6 @@ def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
     return (
         f"limit: from {np.argmax(ahead):d} deg of drift the law gives an X that points ahead; it is a law of small drift: use it below",
     )
-
-
-def stem(name: str) -> str:
-    """A name that files can bear."""
-    return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in name)[:80]
 
 
 def first_manoeuvres(

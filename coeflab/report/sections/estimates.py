@@ -246,11 +246,6 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
     return Table("First manoeuvres", heads, tuple(rows), (*notes, *_held(moves)), frozenset({0, 1, 3}))
 
 
-def missing_table(shape: FromShape) -> Table:
-    """What is missing, one row each."""
-    return Table("Missing", ("",), tuple((m,) for m in shape.missing), (), frozenset({0}))
-
-
 def sentence(study: Study) -> str:
     """What came out, in one sentence."""
     shape, parameters = _shape(study), next(iter(study.parameter_files.values()))

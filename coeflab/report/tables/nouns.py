@@ -13,7 +13,6 @@ from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import COMPONENTS, primed
 
 if TYPE_CHECKING:
-    from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.results.fitted_model import FittedModel
     from coeflab.law.added_mass import AddedMass
     from coeflab.law.coefficient import Coefficient
@@ -100,13 +99,6 @@ def terms(model: FittedModel) -> Table:
         )
     title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
     return Table(title, ("", "term", "value", "U95", "U95 %"), tuple(rows), model.statements, frozenset({0, 1}))
-
-
-def fit_tables(result: FitResult) -> tuple[Table, ...]:
-    """The coefficients of a fit, and the terms of each of its models."""
-    title = f"{result.fit} of {result.campaign} ({result.body}), primed"
-    found = (coefficients(result.coefficients.coefficients, title),) if result.coefficients.coefficients else ()
-    return (*found, *(terms(m) for m in result.models))
 
 
 def matrix(result: AddedMass) -> Table:
