@@ -411,7 +411,11 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
 def _found(one: Assigned | None, row: int) -> str:
     """Why a force cell gives no number: what is written there, or that there is none."""
     text = one.column.texts[row].strip() if one is not None and np.isnan(one.values[row]) else ""
-    return f"{shown(text)} is no number" if text else "no number in the source"
+    try:
+        float(text or "nan")
+    except ValueError:
+        return f"{shown(text)} is no number"
+    return "no number in the source"
 
 
 def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> ForceTable:
