@@ -264,6 +264,12 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
             made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
             show.sentence(f"{points}; {made}." if made else f"{points}.")
+            if (
+                c.parts.model_form
+                and c.parts.model_form > (c.parts.random or 0.0)
+                and (why := tables.line_reaches(sweep))
+            ):
+                show.sentence(why)
         show.text()
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
             show.table(content)

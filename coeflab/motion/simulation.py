@@ -12,7 +12,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
 from coeflab.law.symbols import MOTIONS
-from coeflab.motion.approach import at_once, decisive, undetermined_at_once, unlimited
+from coeflab.motion.approach import at_once, decisive, linear_growth, undetermined_at_once, unlimited
 from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
@@ -97,6 +97,14 @@ def moved(
 
 
 @one_thread()
+def unstable_course(body: Vehicle, speed: float) -> str:
+    """Whether straight motion in the horizontal plane is unstable with controls fixed, in words; empty where it is not."""
+    growth = linear_growth(body, ("v", "r"), speed) if speed > 0.0 and {"v", "r"} <= set(body.free) else 0.0
+    if growth <= 0.0:
+        return ""
+    return f"with controls fixed, straight motion at {speed:.3g} m/s is unstable in the horizontal plane: it grows by {growth:.2g} 1/s"
+
+
 def simulate(
     parameters: ParameterFile,
     manoeuvre: str,
@@ -135,11 +143,12 @@ def simulate(
     )
     until, why = determined_until(trajectory, body)
     rolling = rolls(trajectory) if "p" in body.free else ""
+    course = unstable_course(body, float(trajectory.velocity[0, 0]))
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
     nothing = undetermined_at_once(body, plan, figures)
     return Simulation(
-        body, plan, trajectory, figures, (*statements, *filter(None, (rolling, why))), until, works, nothing
+        body, plan, trajectory, figures, (*statements, *filter(None, (course, rolling, why))), until, works, nothing
     )
 
 

@@ -212,6 +212,8 @@ def _about_ours(reference: Reference, among: CoefficientSet) -> bool:
 def _short(title: str) -> str:
     """The beginning of a title, up to its colon."""
     head = title.partition(":")[0].strip()
+    if len(head) > LONGEST // 3:
+        head = head.partition(" (")[0]
     return head if len(head) <= LONGEST // 3 else head[: LONGEST // 3].rsplit(" ", 1)[0].rstrip(",") + " ..."
 
 

@@ -122,7 +122,7 @@ _TOKENS = re.compile(
             rf"(?P<model>{_EDGE}-?(?:[CK]_[A-Za-z]|[XYZKMN]'?)_(?:0|{_POWER}(?: {_POWER})*){_END})",
             rf"(?P<bare>{_EDGE}(?:[XYZKMN]0|{_FIRST}|{_SECOND}){_END})",
             rf"(?P<known>{_EDGE}-?(?:[CGKMU]_[A-Za-z]{{1,5}}0?|[A-Za-z]_(?:dot|[A-Za-z]{{1,2}})|U95|[xyz][BG]|k[12]){_END})",
-            rf"(?P<greek>{_EDGE}(?:delta_[rsb]|(?:alpha|beta)_deg|δ[rsb]|[{''.join(GREEK.values())}]|(?<!\d )psi|(?!psi)(?:{_ANGLES})){_END}(?![/_-])(?! (?:wing|version|release)\b))",
+            rf"(?P<greek>{_EDGE}(?:delta_[rsb]|(?:theta|phi|psi|omega)_(?:\d|[xyz])|(?:alpha|beta)_deg|δ[rsb]|[{''.join(GREEK.values())}]|(?<!\d )psi|(?!psi)(?:{_ANGLES})){_END}(?![/_-])(?! (?:wing|version|release)\b))",
             rf"(?P<letter>{_EDGE}(?<![^^]\d )(?<!\A\d )(?!N m\b)(?:[XYZKMNULuvwpqrxyz]|V(?=\s*[=<>^)/])|(?<=\A)V(?=\Z))(?![\w.$\\'*-])(?!/(?:\w\w|\())(?!\]))",
             r"(?P<power>(?<=[\w'|)])\^(?:-?\d+|[knT])(?![\w$}]))",
             rf"(?P<high>[{HIGH}]+)",

@@ -384,6 +384,16 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     )  # fmt: skip
 
 
+def _found(one: Assigned | None, row: int) -> str:
+    """Why a force cell gives no number: what is written there, or that there is none."""
+    text = one.column.texts[row].strip() if one is not None and np.isnan(one.values[row]) else ""
+    try:
+        float(text or "nan")
+    except ValueError:
+        return f"{shown(text)} is no number"
+    return "no number in the source"
+
+
 def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> ForceTable:
     """A table in SI and FRD from its file and the ``[columns]`` of its campaign; what was left out stands in its notes.
 
@@ -398,8 +408,11 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     columns = _columns(raw, known, campaign)
     out = force_table(columns, campaign, table)
     rows = usable_rows(known, len(raw))
+    written = {one.said.name: one for one in known if one.said.role == "force" and one.column.texts}
     exclusions = tuple(
-        replace(e, reason=e.reason.replace(BLANK, "no number in the source")) if e.component and not e.uncertain else e
+        replace(e, reason=e.reason.replace(BLANK, _found(written.get(e.component), int(rows[e.row]))))
+        if e.component and not e.uncertain
+        else e
         for e in out.exclusions
     )
     body = BODY_AXES in raw.stated
