@@ -156,7 +156,9 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
     study = with_files(diving)
     (said,) = in_words(study)
-    start = "With controls fixed, straight motion is unstable at high speed (without restoring moment), no U95: synthetic"
+    start = (
+        "With controls fixed, straight motion is unstable at high speed (without restoring moment), no U95: synthetic"
+    )
     assert said.startswith(start)
     assert "; at 1.50 m/s it is not determined, as BG is not known. It is stable, no U95: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]

@@ -139,7 +139,9 @@ def test_odd_x_of_the_set_up_is_taken_off_the_points_and_said() -> None:
     assert (at.n_points, at.beyond) == (len(V), ())
     assert at.share < 1e-9
     share = 100.0 * 7e-4 * V.max() / float(np.abs(table.primed_force("X", 2.0)).max())
-    assert f"after subtracting the part of X odd in drift, an offset of the set-up, up to {share:.2g} %" in found.statistic
+    assert (
+        f"after subtracting the part of X odd in drift, an offset of the set-up, up to {share:.2g} %" in found.statistic
+    )
     assert found.severity is Severity.PASS
 
 

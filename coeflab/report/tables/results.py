@@ -312,7 +312,7 @@ def line_reaches(sweep: Sweep, least: float = 0.05) -> str:
     whole = max(e.window for e in sweep.forms)
     fits = max((e.window for e in lines if e.lack_of_fit >= least), default=0.0)
     if fits >= whole * (1.0 - 1e-9):
-        return f"A line fits to the largest setting, {_window(sweep, whole)}."
+        return ""
     if not fits:
         return "A line fits in no window, so the form of the curve widens U95."
     return f"A line fits to {_window(sweep, fits)} of {_window(sweep, whole)} only: the form of the curve widens U95."
