@@ -139,7 +139,7 @@ def test_without_published_values_there_is_no_verdict_and_no_comparison():
 def test_a_pass_says_what_it_means():
     text = words(small_study(FULL, published=True), "verdict")
     assert "all passed" in text
-    assert "re-analysis" in text
+    assert "re-analyse their own measurements" in text
 
 
 @pytest.mark.parametrize(("share", "is_weak"), [(0.26, True), (-0.26, True), (0.24, False)])
@@ -148,7 +148,8 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
-    assert ("Weak tests (U95 above 25 % of the published value): Yv' of tow (26 %)." in text) == is_weak
+    joined = "U95 joined with the uncertainty that the source states"
+    assert (f"Weak tests ({joined}, above 25 % of the published value): Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
     assert "Weak" not in words(failed, "verdict")
 
@@ -169,8 +170,8 @@ def test_failed_checks_reach_the_verdict():
 
 
 def test_absent_coefficients_are_named_with_advice():
-    assert "Nr' of tow" in words(small_study(FULL), "verdict")
-    assert "No table varies this motion" in words(small_study(FULL), "verdict")
+    text = words(small_study(FULL), "verdict")
+    assert "Nr' of tow (no table varies r). Add a campaign that varies what is missing." in text
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
