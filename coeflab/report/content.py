@@ -223,7 +223,7 @@ def _document(study: Study, full: bool) -> Document:
         verdict(study),
         *_comparison(study),
         *tow_sections(study),
-        *(estimates_sections(study) or (coefficients_section(study),)),
+        *(estimates_sections(study) or (_with_campaigns(study, coefficients_section(study)),)),
         *_models(study),
         *_laws(study),
         *moving,
@@ -476,10 +476,20 @@ def _comparison(study: Study) -> tuple[Section, ...]:
                 f'"{r.name}" stands twice in the table, as its source does not say which length made its values dimensionless: {r.scaling} '
                 f"(values as printed), or {r.other_scaling} (every value rescaled)."
             )
-    shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
+    shown = filled(
+        tables.campaigns(study),
+        without(tables.side_by_side(study), "random", "form"),
+        without(tables.verdicts(study), "combined"),
+    )
     apart = filled(tables.differences(study))
     more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
     return (Section("comparison", "Comparison with published values", tuple(text), shown, subsections=more),)
+
+
+def _with_campaigns(study: Study, coefficients: Section) -> Section:
+    """The section on coefficients; it begins with the campaigns where no comparison does."""
+    first = () if study.comparisons else filled(tables.campaigns(study))
+    return replace(coefficients, tables=(*first, *coefficients.tables))
 
 
 def without(table: Table, *names: str) -> Table:
