@@ -310,7 +310,8 @@ def _stability(study: Study) -> Chip:
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
-    return Chip("Stability", f"{said}, {d.name} = {value}", grave, "stability")
+    plane = "horizontal" if d.name == "G_h" else "vertical"
+    return Chip(f"Stability, {plane} plane", f"{said}, {d.name} = {value}", grave, "stability")
 
 
 def _largest(rows: Sequence[AnswerRow]) -> Chip:

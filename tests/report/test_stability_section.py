@@ -68,7 +68,7 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
         f"With controls fixed, straight motion in the horizontal plane is {said}: synthetic (G_h"
     )
     assert sentence in document(study).sections[0].paragraphs
-    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith(f"{said}, G_h = ")
 
 
@@ -168,7 +168,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     assert known.startswith(start)
     assert vertical in known
     assert "BG" not in known
-    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith("stable, G_h = ")
     assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
