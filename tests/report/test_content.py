@@ -12,6 +12,7 @@ from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
 from coeflab.report.sections.coefficients import form_not_assessed, is_zero
+from coeflab.report.tables import results
 from coeflab.report.tables.results import works
 from tests.motion.vehicles import made as vehicle_file
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
@@ -213,3 +214,13 @@ def test_a_plan_without_a_file_gets_no_command():
     last = next(s for s in document(small_study(FULL)).sections if s.anchor == "reproduce")
     assert last.code == ()
     assert "made by a program" in " ".join(last.paragraphs)
+
+
+def test_campaigns_stand_with_body_and_source_where_there_are_several():
+    study = small_study(FULL)
+    assert not results.campaigns(study).rows
+    first = study.tables[0]
+    other = replace(first, campaign="other", body="another hull", source=replace(first.source, kind="cfd"))
+    found = results.campaigns(replace(study, tables=(first, other)))
+    assert found.rows == (("tow", "body of tow", first.source.kind, "-"), ("other", "another hull", "cfd", "-"))
+    assert document(replace(study, tables=(first, other)), full=False).sections[1].tables[0].title == "Campaigns"
