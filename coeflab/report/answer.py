@@ -32,7 +32,7 @@ from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.derived import ALONE, Derived, sense, stability
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
-LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
+LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS, MOST_NAMED = 160, 240, 6, 3, 4
 NO_DATA = "no data"
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
@@ -227,16 +227,17 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
     valued = [r for r in rows if r.value is not None]
     kind = "static derivatives" if all(_is_static(r.symbol) for r in judged) else "derivatives"
     kind = kind if len(judged) != 1 else kind[:-1]
-    absent = _absent(rows)
+    several = len({f.body for f in study.fits}) > 1
+    absent = _absent(rows, f" on {beside.body.replace('_', ' ')}" if several and beside.body else "")
     if judged:
         apart = [primed(r.symbol) for r in judged if not r.agrees]
-        place = next((r.place.partition(",")[0] for r in beside.columns[:1] if r.place), "")
-        of = f" of {place}" if place else ""
+        column = beside.columns[0].name
         if apart:
-            first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind}{of} {_verb(apart)} by more than U95"
+            first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind} {_verb(apart)} from {column} by more than U95"
         else:
             every = {1: "the", 2: "both"}.get(len(judged), f"all {_counted(len(judged))}")
-            first = f"{name} re-analysed: {every} {kind}{of} {'agrees' if len(judged) == 1 else 'agree'} within U95"
+            found = listed([primed(r.symbol) for r in judged]) if len(judged) <= MOST_NAMED else f"{every} {kind}"
+            first = f"{name} re-analysed: {found} {'agrees' if len(judged) == 1 else 'agree'} with {column} within U95"
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
@@ -274,15 +275,15 @@ def _is_static(symbol: str) -> bool:
     return set(derivative(symbol).factors) <= {"v", "w"}
 
 
-def _absent(rows: tuple[AnswerRow, ...]) -> str:
-    """Which rows have no value, and why where one reason serves all."""
+def _absent(rows: tuple[AnswerRow, ...], on_body: str) -> str:
+    """Which rows have no value, and why where one reason serves all; of which body where the study has several."""
     without = [r for r in rows if r.value is None]
     if not without:
         return ""
     if all(r.status == NO_DATA for r in without) and all(
         set(derivative(r.symbol).factors) & {"p", "q", "r"} for r in without
     ):
-        return "no rotating-arm data"
+        return f"no rotating-arm data{on_body}"
     return "; ".join(
         f"{listed([primed(r.symbol) for r in without if r.status == status])}: {status}"
         for status in dict.fromkeys(r.status for r in without)
@@ -309,7 +310,8 @@ def _stability(study: Study) -> Chip:
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
-    return Chip("Stability", f"{said}, {d.name} = {value}", grave, "stability")
+    plane = "horizontal" if d.name == "G_h" else "vertical"
+    return Chip(f"Stability, {plane} plane", f"{said}, {d.name} = {value}", grave, "stability")
 
 
 def _largest(rows: Sequence[AnswerRow]) -> Chip:
@@ -318,7 +320,7 @@ def _largest(rows: Sequence[AnswerRow]) -> Chip:
         return Chip("Largest U95", "no U95", Severity.NOTE, "coefficients")
     symbol = max(shares, key=lambda s: shares[s])
     grave = Severity.WARN if shares[symbol] > WIDE else Severity.NOTE
-    return Chip("Largest U95", f"{primed(symbol)}, {share_text(shares[symbol])}", grave, "coefficients")
+    return Chip("Largest U95", f"{primed(symbol)}, {share_text(shares[symbol])} (this table)", grave, "coefficients")
 
 
 def _warnings(study: Study) -> Chip:
@@ -377,11 +379,11 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
     out = []
     if sources:
         scaling = beside.among.scaling if beside.among else None
-        by = f"; made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
-        out.append(f"Ours: {listed(sources)}{by}.")
+        by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
+        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{by}.")
         also = [f.campaign for f in study.fits if f.campaign not in (*sources, *towed_rows) and _gives(f, rows)]
         if also:
-            out.append(f"Also fitted, see Coefficients in the report: {listed(list(dict.fromkeys(also)))}.")
+            out.append(f"Also fitted (section Coefficients of the report): {listed(list(dict.fromkeys(also)))}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     own = [r for r in rows if r.source in towed_rows]
@@ -392,14 +394,12 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
             f"{beside.columns[0].name}: the same data, evaluated by their authors; the only column with a verdict."
         )
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
-    if others:
-        twice = [(r.name, r.scaling, r.other_scaling) for r in others]
-        lengths = [
-            f"; {name} made dimensionless {_readings(first, other)}"
-            for name, first, other in twice
-            if other is not None
-        ]
-        out.append(f"{listed([r.name for r in others])}: {others[0].body}, no verdict{''.join(lengths)}.")
+    for body in dict.fromkeys(r.body for r in others):
+        names = listed([r.name for r in others if r.body == body])
+        out.append(f"{names}: {f'another body, {body}' if body != beside.body else 'another method'}; no verdict.")
+    for r in others:
+        if r.other_scaling is not None:
+            out.append(f"{r.name}: its source does not state the length; here {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
@@ -411,7 +411,14 @@ def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     larger = [100.0 * (other.ratio(symbol, first) - 1.0) for symbol in ("Yv", "Nr")]
-    return f"by {first.length_name} (by {other.length_name}, Yv' would change by {larger[0]:+.1f} %, Nr' by {larger[1]:+.1f} %)"
+    return f"by {first.length_name} (by {other.length_name}: Yv' {larger[0]:+.1f} %, Nr' {larger[1]:+.1f} %)"
+
+
+def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:
+    """Campaigns, each with the coefficients that it gives where there are several."""
+    if len(sources) < 2:
+        return list(sources)
+    return [f"{s} ({', '.join(primed(r.symbol) for r in rows if r.source == s)})" for s in sources]
 
 
 def _of_models(study: Study) -> Answer:

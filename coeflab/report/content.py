@@ -25,7 +25,8 @@ from coeflab.core.table import Severity, Table
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.symbols import primed
+from coeflab.law.coefficient import Status
+from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import headline, held_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
@@ -45,6 +46,7 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
+from coeflab.study.towed import towed
 from coeflab.study.validation import validations
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
@@ -221,7 +223,7 @@ def _document(study: Study, full: bool) -> Document:
         verdict(study),
         *_comparison(study),
         *tow_sections(study),
-        *(estimates_sections(study) or (coefficients_section(study),)),
+        *(estimates_sections(study) or (_with_campaigns(study, coefficients_section(study)),)),
         *_models(study),
         *_laws(study),
         *moving,
@@ -267,7 +269,7 @@ def also(study: Study) -> str:
         (len(study.hulls), "added-mass matrix", "added-mass matrices"),
         (0 if study.shape else len(study.fits), "fit with every point and curve", "fits with every point and curve"),
         (len(study.checks), "check"),
-        (sum(made.loss is not None for made in study.exports), "loss of an export", "losses of exports"),
+        (sum(made.loss is not None for made in study.exports), "loss report of an export", "loss reports of exports"),
     ]
     each = [f"{n} {names[0] if n == 1 else (*names, f'{names[0]}s')[1]}" for n, *names in held if n]
     listing = f"{', '.join(each)}, the quality of the data" if each else "the quality of the data"
@@ -290,8 +292,9 @@ WIDE = 0.25  # of the published value: a wider U95 passes what a reader would ca
 
 
 WHAT_COUNTS = (
-    "Predicted: a coefficient from CFD, compared with the one measured on the same body. Printed and recomputed: a coefficient or stability "
-    "index that we compute from the authors' data or printed numbers, compared with the one that they print.",
+    "Predicted: a coefficient from CFD, compared with the one measured on the same body; tolerance U_V. Printed and recomputed: a "
+    "coefficient from the authors' data (tolerance U95), or a stability index from their printed derivatives (tolerance: rounding of "
+    "the printed digits), compared with the one that they print.",
 )
 
 
@@ -312,25 +315,58 @@ def _re_analysis(study: Study) -> list[str]:
         out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
     shares = [(c, c.combined / abs(c.published)) for c in judged if c.passed and c.combined and c.published]
     if wide := [f"{_named(c)} ({share_text(share)})" for c, share in shares if share > WIDE]:
-        out.append(f"Weak tests (U95 above {share_text(WIDE)} of the published value): {listed(wide)}.")
+        joined = "U95 joined with the uncertainty that the source states"
+        out.append(f"Weak tests ({joined}, above {share_text(WIDE)} of the published value): {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     held = held_of_study(study)
     out.extend(headline(held))
     out.extend(WHAT_COUNTS if any(count for _, count in held.values()) else ())
-    missed = [v for v in validations(study, study.budgets) if v.within is False]
+    predicted = validations(study, study.budgets)
+    if any(v.within is not None for v in predicted):
+        out.append(
+            'Every prediction: table "Validation of the computation" of the appendix, section Uncertainty budget.'
+        )
+    missed = [v for v in predicted if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
         out.append(
-            f"Predicted coefficients that differ from the test by more than U_V: {each}. U_V leaves out turbulence model, Reynolds "
-            "number and rig, so such a difference does not fail the study. Only a failed comparison with the authors' own evaluation, or a "
-            "failed check, does."
+            f"Predicted coefficients that differ from the test by more than U_V: {each}. U_V leaves out the turbulence model and all that "
+            'the tables of both campaigns list as "Not in U95", so such a difference does not fail the study.'
         )
+    out += _beyond_without_verdict(study)
     out.append(
-        "This is a re-analysis: both sides use the same measurements. A pass says that our evaluation reproduces theirs within "
-        "U95, not that the measurements are right."
+        "The comparisons with the authors' evaluation re-analyse their own measurements. A pass says that our evaluation reproduces "
+        "theirs within U95, not that the measurements are right."
     )
     return out
+
+
+def _beyond_without_verdict(study: Study) -> list[str]:
+    """Coefficients of own tows beyond U_V that do not count, one sentence a tow and reason."""
+    out = []
+    for tow in towed(study):
+        reasons: dict[str, list[str]] = {}
+        for r in tow.rows:
+            if r.verdict is None and r.validation is not None and r.validation.within is False:
+                reasons.setdefault(r.why_none, []).append(primed(r.symbol))
+        out += [
+            f"Not counted, though |E| is larger than U_V: {listed(symbols)} of {tow.tow.campaign}; {why}."
+            for why, symbols in reasons.items()
+        ]
+    return out
+
+
+def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
+    """Columns without a verdict by reason: another body, or another method on the same one."""
+    bodies = {r.name: r.body for r in study.references}
+    by: dict[str, list[str]] = {}
+    for c in others:
+        names = by.setdefault("body" if bodies.get(c.reference) != c.coefficient.body else "method", [])
+        if c.reference not in names:
+            names.append(c.reference)
+    each = "; ".join(f"{listed(names)} (another {what})" for what, names in by.items())
+    return f"No verdict on {each}: a difference need not be an error."
 
 
 def verdict(study: Study) -> Section:
@@ -340,10 +376,7 @@ def verdict(study: Study) -> Section:
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
-        names = listed(list(dict.fromkeys(c.reference for c in others)))
-        text.append(
-            f"No verdict on {names}: this is another body or another method, so a difference need not be an error."
-        )
+        text.append(_no_verdict_on(study, others))
     text += [*in_words(study), *_without_value(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     warned = sum(c.severity is Severity.WARN for c in study.checks)
@@ -384,10 +417,21 @@ def _without_value(study: Study) -> list[str]:
         places: dict[str, list[str]] = {}
         for c in absent:
             if c.status is status:
-                places.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
-        names = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in places.items())
-        out.append(f"Without a value: {names}. {status.advice}".strip())
+                places.setdefault(c.campaign or c.body, []).append(c.symbol)
+        is_untabled = status is Status.NO_TABLE
+        names = "; ".join(
+            f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
+            for place, symbols in places.items()
+        )
+        advice = "Add a campaign that varies what is missing." if is_untabled else status.advice
+        out.append(f"Without a value: {names}. {advice}".strip())
     return out
+
+
+def _not_varied(symbols: Sequence[str]) -> str:
+    """Motions of these derivatives, which no table of a campaign varies."""
+    motions = dict.fromkeys(v for s in symbols for v in derivative(s).factors)
+    return f" (no table varies {' or '.join(motions)})" if motions else ""
 
 
 def _models(study: Study) -> tuple[Section, ...]:
@@ -432,10 +476,20 @@ def _comparison(study: Study) -> tuple[Section, ...]:
                 f'"{r.name}" stands twice in the table, as its source does not say which length made its values dimensionless: {r.scaling} '
                 f"(values as printed), or {r.other_scaling} (every value rescaled)."
             )
-    shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
+    shown = filled(
+        tables.campaigns(study),
+        without(tables.side_by_side(study), "random", "form"),
+        without(tables.verdicts(study), "combined"),
+    )
     apart = filled(tables.differences(study))
     more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
     return (Section("comparison", "Comparison with published values", tuple(text), shown, subsections=more),)
+
+
+def _with_campaigns(study: Study, coefficients: Section) -> Section:
+    """The section on coefficients; it begins with the campaigns where no comparison does."""
+    first = () if study.comparisons else filled(tables.campaigns(study))
+    return replace(coefficients, tables=(*first, *coefficients.tables))
 
 
 def without(table: Table, *names: str) -> Table:

@@ -27,6 +27,7 @@ from coeflab.vehicle.reference import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
+AS_PRINTED = ", as printed"
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 
 
@@ -140,7 +141,7 @@ def _row(
             turned,
             u_grid,
             "",
-            f"equals {equal}, by fourfold symmetry",
+            f"set equal to {equal} by fourfold symmetry",
             published,
             why_none=f"as {primed(source)}",
         )
@@ -209,7 +210,7 @@ def _against(
             value, share, method = stated
             size = abs(value) * share
             test = replace(
-                budget, campaign=f"{r.name}, {method}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
+                budget, campaign=f"{r.name}, {method}{AS_PRINTED}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
             )  # fmt: skip
             ratio = r.scaling.ratio(own.symbol, ours.scaling)
             return validation(budget, test, ratio), "; ".join(

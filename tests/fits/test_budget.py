@@ -162,7 +162,7 @@ def test_what_was_not_declared_is_named_and_not_zero() -> None:
     assert {"angle", "speed", "moment", "reference point", "length", "density"} <= set(none["Nv"].unassessed)
     assert "speed" not in some["Nv"].unassessed
     assert "moment" in some["Nv"].unassessed
-    assert "angle error in the rate sweep" in some["Yr"].unassessed
+    assert "error of the drift angle in the rate sweep" in some["Yr"].unassessed
     assert "rig interference and blockage" in some["Yr"].unassessed
     assert not {"grid", "force"} & set(none["Nv"].unassessed)
 

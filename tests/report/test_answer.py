@@ -106,18 +106,19 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
     assert any(
-        "made dimensionless by LOA (by LWL, Yv' would change by +21.0 %, Nr' by +46.4 %)" in note for note in made.notes
+        "its source does not state the length; here by LOA (by LWL: Yv' +21.0 %, Nr' +46.4 %)" in note
+        for note in made.notes
     )
 
 
 @pytest.mark.parametrize(
     ("references", "sentence"),
     [
-        ((REPORT, QUOTED), "Study tow re-analysed: Nv' of two static derivatives of Table 4 differs by more than U95; no rotating-arm data."),
+        ((REPORT, QUOTED), "Study tow re-analysed: Nv' of two static derivatives differs from experiment 1990 by more than U95; no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298"}, "report"),),
-         "Study tow re-analysed: the static derivative of Table 4 agrees within U95; no rotating-arm data."),
+         "Study tow re-analysed: Yv' agrees with report within U95; no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298", "Nv": "-0.0138"}, "report"),),
-         "Study tow re-analysed: both static derivatives of Table 4 agree within U95; no rotating-arm data."),
+         "Study tow re-analysed: Yv' and Nv' agree with report within U95; no rotating-arm data."),
         ((), "Study tow: two of three wanted coefficients found, each with U95; no rotating-arm data."),
     ],
 )  # fmt: skip
@@ -353,22 +354,27 @@ def test_suboff(suboff: Study):
     made = answer(suboff)
     said = verdict(suboff).paragraphs
     assert said[1] == (
-        "Weak tests (U95 above 25 % of the published value): Zw' of suboff_roddy_1 (45 %), Yv' of suboff_roddy_3 (52 %) and "
-        "Kv' of suboff_roddy_3 (39 %)."
+        "Weak tests (U95 joined with the uncertainty that the source states, above 25 % of the published value): Zw' of "
+        "suboff_roddy_1 (45 %), Yv' of suboff_roddy_3 (52 %) and Kv' of suboff_roddy_3 (39 %)."
     )
     assert (
         said[2]
         == "22 of the 24 compared numbers lie within their tolerance: predicted 7 of 9; printed and recomputed 15 of 15."
     )
     assert said[3].startswith("Predicted: a coefficient from CFD, compared with the one measured")
-    assert said[4].startswith(
+    assert said[4].startswith("Every prediction: ")
+    assert said[5].startswith(
         "Predicted coefficients that differ from the test by more than U_V: Kv' of suboff_cfd_barehull"
     )
-    assert "such a difference does not fail the study" in said[4]
+    assert "such a difference does not fail the study" in said[5]
+    assert said[6] == (
+        "Not counted, though |E| is larger than U_V: Yr' and Nr' of suboff_tow_bare_hull; the test is by another method, PMM."
+    )
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
-        == "DARPA SUBOFF re-analysed: all four static derivatives of Table 4 agree within U95; no rotating-arm data."
+        == "DARPA SUBOFF re-analysed: Yv', Nv', Zw' and Mw' agree with experiment 1990 within U95; no rotating-arm data on suboff "
+        "fully appended."
     )
     assert made.columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
     assert [r.source for r in made.rows] == ["suboff_roddy_2"] * 2 + ["suboff_roddy_1"] * 2 + ["", ""]

@@ -12,6 +12,7 @@ from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
 from coeflab.report.sections.coefficients import form_not_assessed, is_zero
+from coeflab.report.tables import results
 from coeflab.report.tables.results import works
 from tests.motion.vehicles import made as vehicle_file
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
@@ -139,7 +140,7 @@ def test_without_published_values_there_is_no_verdict_and_no_comparison():
 def test_a_pass_says_what_it_means():
     text = words(small_study(FULL, published=True), "verdict")
     assert "all passed" in text
-    assert "re-analysis" in text
+    assert "re-analyse their own measurements" in text
 
 
 @pytest.mark.parametrize(("share", "is_weak"), [(0.26, True), (-0.26, True), (0.24, False)])
@@ -148,7 +149,8 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
-    assert ("Weak tests (U95 above 25 % of the published value): Yv' of tow (26 %)." in text) == is_weak
+    joined = "U95 joined with the uncertainty that the source states"
+    assert (f"Weak tests ({joined}, above 25 % of the published value): Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
     assert "Weak" not in words(failed, "verdict")
 
@@ -169,8 +171,8 @@ def test_failed_checks_reach_the_verdict():
 
 
 def test_absent_coefficients_are_named_with_advice():
-    assert "Nr' of tow" in words(small_study(FULL), "verdict")
-    assert "No table varies this motion" in words(small_study(FULL), "verdict")
+    text = words(small_study(FULL), "verdict")
+    assert "Nr' of tow (no table varies r). Add a campaign that varies what is missing." in text
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
@@ -212,3 +214,13 @@ def test_a_plan_without_a_file_gets_no_command():
     last = next(s for s in document(small_study(FULL)).sections if s.anchor == "reproduce")
     assert last.code == ()
     assert "made by a program" in " ".join(last.paragraphs)
+
+
+def test_campaigns_stand_with_body_and_source_where_there_are_several():
+    study = small_study(FULL)
+    assert not results.campaigns(study).rows
+    first = study.tables[0]
+    other = replace(first, campaign="other", body="another hull", source=replace(first.source, kind="cfd"))
+    found = results.campaigns(replace(study, tables=(first, other)))
+    assert found.rows == (("tow", "body of tow", first.source.kind, "-"), ("other", "another hull", "cfd", "-"))
+    assert document(replace(study, tables=(first, other)), full=False).sections[1].tables[0].title == "Campaigns"

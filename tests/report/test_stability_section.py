@@ -64,9 +64,11 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
     by_index = {row[1]: row for row in section.tables[0].rows}
     assert by_index["G_h"][4] == said
     (sentence,) = [text for text in in_words(study) if "G_h" in text]
-    assert sentence.startswith(f"With controls fixed, straight motion is {said}: synthetic (G_h")
+    assert sentence.startswith(
+        f"With controls fixed, straight motion in the horizontal plane is {said}: synthetic (G_h"
+    )
     assert sentence in document(study).sections[0].paragraphs
-    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith(f"{said}, G_h = ")
 
 
@@ -101,7 +103,7 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
-    assert said.endswith(" From literature, not from our fits: Yr' and Nr'.")
+    assert said.endswith(" From literature, not from our fits: Yr' and Nr' of synthetic.")
     assert "literature" not in in_words(with_files(file))[0]
 
 
@@ -156,16 +158,17 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
     study = with_files(diving)
     (said,) = in_words(study)
-    start = (
-        "With controls fixed, straight motion is unstable at high speed (without restoring moment), no U95: synthetic"
-    )
+    start = "With controls fixed, straight motion in the horizontal plane is stable, no U95: synthetic (G_h"
+    vertical = " In the vertical plane, it is unstable at high speed (without restoring moment), no U95: synthetic (G_v"
     assert said.startswith(start)
-    assert "; at 1.50 m/s it is not determined, as BG is not known. It is stable, no U95: synthetic (G_h" in said
+    assert vertical in said
+    assert said.endswith("; at 1.50 m/s it is not determined, as BG is not known.")
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)
+    assert vertical in known
     assert "BG" not in known
-    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith("stable, G_h = ")
     assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]

@@ -106,7 +106,7 @@ def test_attack_of_a_fourfold_body_is_stated_from_drift(bodies: tuple[Towed, ...
     assert by["Zw"].value == by["Yv"].value
     assert by["Mw"].value == -(by["Nv"].value or 0.0)
     assert (by["Zw"].u95, by["Zw"].u_grid) == (by["Yv"].u95, by["Yv"].u_grid)
-    assert by["Mw"].why == "equals -Nv', by fourfold symmetry"
+    assert by["Mw"].why == "set equal to -Nv' by fourfold symmetry"
     assert by["Mw"].validation is None
     assert all(r.u_grid for r in by.values())
 

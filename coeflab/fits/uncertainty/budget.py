@@ -184,7 +184,7 @@ REMAINS = {
     STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
     STUDIES["domain"]: ("domain and boundary conditions", "boundary conditions"),
 }  # what is open without a study, and with one
-COUPLED = "angle error in the rate sweep"
+COUPLED = "error of the drift angle in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
 
 

@@ -312,9 +312,10 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Coefficients from our own CFD tows. Grid: the part of U95 that the grid study gives, in % of the value.",
-        "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). Only a steady "
-        "test of the same body gives a verdict.",
+        "A tow is a CFD campaign that the plan names under [[tow]]; of several for one body the first that is there counts. Grid: the part "
+        "of U95 that the grid study gives, in % of the value.",
+        "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
+        "needs a steady test of the same body.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)

@@ -9,6 +9,7 @@ Exports in a report: what every target makes of a parameter file, and what it lo
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -107,23 +108,47 @@ TEXT = (
 
 
 def in_words(study: Study, *, with_values: bool = True) -> list[str]:
-    """Which parameter files are unstable, and which are not, in one sentence; none where no index can be given."""
-    said: dict[str, dict[str, list[str]]] = {}
+    """Which parameter files are unstable, and which are not, plane by plane; none where no index can be given."""
+    said: dict[str, dict[str, dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
     for parameters in study.parameter_files.values():
         for d in stability(parameters):
-            said.setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
-    out = []
+            said[d.name].setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
     lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
-    for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
-        each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
-        if FAST in verdict:
-            speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-            each += f"; at {speeds} m/s it is not determined, as BG is not known" if speeds else ""
-        out.append(f"{verdict.replace(FAST, f'{FAST} (without restoring moment)')}: {each}")
-    mixed = [_from_literature(p, d.name) for p in study.parameter_files.values() for d in stability(p)]
-    by_others = dict.fromkeys(s for stated in mixed if len(stated) < len(INDICES["G_h"]) - 1 for s in stated)
-    stated = f" From literature, not from our fits: {listed([primed(s) for s in by_others])}." if by_others else ""
-    return [f"With controls fixed, straight motion is {'. It is '.join(out)}.{stated}"] if out else []
+    out: list[str] = []
+    for index, senses in said.items():
+        each = [
+            _of_one_sense(v, senses[v], lacking, with_values)
+            for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
+        ]
+        if each:
+            start = (
+                f"In {IN_PLANE[index]}, it is"
+                if out
+                else f"With controls fixed, straight motion in {IN_PLANE[index]} is"
+            )
+            out.append(f"{start} {'. It is '.join(each)}.")
+    return [" ".join((*out, *_by_others(study)))] if out else []
+
+
+def _of_one_sense(
+    verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
+) -> str:
+    """The parameter files that one verdict holds for; at high speed also what is open at their own."""
+    each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
+    if FAST in verdict:
+        speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
+        each += f"; at {speeds} m/s it is not determined, as BG is not known" if speeds else ""
+    return f"{verdict.replace(FAST, f'{FAST} (without restoring moment)')}: {each}"
+
+
+def _by_others(study: Study) -> list[str]:
+    """Which derivatives of the indices are from literature, file by file; none where an index has no other."""
+    each = []
+    for p in study.parameter_files.values():
+        stated = [_from_literature(p, d.name) for d in stability(p)]
+        symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
+        each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
+    return [f"From literature, not from our fits: {'; '.join(each)}."] if each else []
 
 
 def _from_literature(parameters: ParameterFile, index: str) -> list[str]:

@@ -24,10 +24,11 @@ from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
-from coeflab.study.towed import Towed
+from coeflab.study.towed import AS_PRINTED, Towed
 from coeflab.tables.force_table import Exclusion, ForceTable
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.reference import Reference, Relation
 
+NO_DATA = "no data"
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 
 
@@ -177,7 +178,7 @@ def side_by_side(study: Study) -> Table:
                 (
                     primed(symbol),
                     c.campaign or ABSENT,
-                    *noun_tables.with_status(c),
+                    *((NO_DATA, ABSENT) if c.status is Status.NO_TABLE else noun_tables.with_status(c)),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
                     *(as_printed(published.get(k)) for k in columns),
@@ -185,12 +186,32 @@ def side_by_side(study: Study) -> Table:
             )
     names = tuple(f"{name}, read with {reading}" if name in twice else name for name, reading in columns)
     headers = ("", "campaign", "coeflab", "U95", "random", "form", *names)
-    notes = tuple(
-        f"{r.name}: {r.relation}, {r.place}. {r.body}. {r.note}".strip()
-        for r in study.references
-        if r.relation is not Relation.RE_ANALYSIS
-    )
+    notes = tuple(_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS)
     return Table("Side by side with the published table", headers, tuple(rows), notes, frozenset({0, 1}))
+
+
+def _published_in(r: Reference, ours: Collection[str]) -> str:
+    """What a published column is, where it is printed and which body it is about."""
+    another = "another method" if r.body in ours else "another body"
+    return f"{r.name}: {'quoted' if r.relation is Relation.QUOTED else another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
+
+
+def campaigns(study: Study) -> Table:
+    """Every campaign with its body, the kind of its source and the parameter files that use it; no rows for a single one."""
+    towed_ones = {t.campaign for t in study.plan.tows}
+    rows = []
+    for name in dict.fromkeys(t.campaign for t in study.tables):
+        mine = [t for t in study.tables if t.campaign == name]
+        files = [
+            p.name
+            for p in study.parameter_files.values()
+            if any(name in (c.campaign or "").split(", ") for c in p.coefficients)
+        ]
+        kinds = ", ".join(dict.fromkeys(t.source.kind for t in mine))
+        bodies = ", ".join(dict.fromkeys(t.body for t in mine))
+        rows.append((name, bodies, f"{kinds}, own tow" if name in towed_ones else kinds, ", ".join(files) or ABSENT))
+    headers = ("campaign", "body", "source", "parameter file")
+    return Table("Campaigns", headers, tuple(rows) if len(rows) > 1 else (), (), frozenset(range(4)))
 
 
 def own_tow(found: Towed) -> Table:
@@ -233,7 +254,10 @@ def tow_against(found: Towed) -> Table:
         none.setdefault(r.why_none, []).append(primed(r.symbol))
         if r.validation is not None:
             tests.setdefault(r.validation.experiment, []).append(primed(r.symbol))
-    notes = [f"D of {', '.join(symbols)}: {test}." for test, symbols in tests.items()]
+    notes = [
+        f"D of {', '.join(symbols)}: {test if test.endswith(AS_PRINTED) else f'our fit to the points of {test}, not a printed value'}."
+        for test, symbols in tests.items()
+    ]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     open_parts = dict.fromkeys(u for r in found.rows if r.validation is not None for u in r.validation.lacking)
     notes += [f"U_V of the tow leaves out: {'; '.join(open_parts)}."] if open_parts else []
@@ -244,7 +268,7 @@ def tow_against(found: Towed) -> Table:
 
 
 def by_campaign(study: Study) -> Table:
-    """The wanted coefficients, one column a campaign: value and U95, or that no table gives them; those of tows apart."""
+    """The wanted coefficients, one column a campaign: value and U95, or that there are no data; those of tows apart."""
     apart = {t.campaign for t in study.plan.tows if t.added is not None}
     campaigns = list(dict.fromkeys(f.campaign for f in study.fits if f.campaign not in apart))
     found = {(c.symbol, c.campaign): c for c in study.coefficients}
@@ -254,7 +278,7 @@ def by_campaign(study: Study) -> Table:
         for campaign in campaigns:
             c = found.get((symbol, campaign))
             if c is None or c.value is None:
-                cells.append("no table" if c is None else c.status.replace("_", " "))
+                cells.append(NO_DATA if c is None or c.status is Status.NO_TABLE else c.status.replace("_", " "))
             else:
                 without = ", form rejected" if c.status is Status.FORM_REJECTED else ""
                 cells.append(plus_minus(c.value, c.u95) + without)
