@@ -52,8 +52,8 @@ from coeflab.vehicle.reference import Comparison, Relation
 Part = TypeVar("Part")
 MOST = 4
 SETTINGS = {
-    ("at_rest", "law"): "Z0 and M0 are part of the force law",
-    ("at_rest", "apart"): "Z0 and M0 are not part of the force law",
+    ("at_rest", "law"): "a fitted Z0 or M0 is part of the force law",
+    ("at_rest", "apart"): "a fitted Z0 or M0 is not part of the force law",
 }
 _JOBS: list[Callable[[], object]] = []
 
