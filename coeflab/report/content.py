@@ -51,7 +51,7 @@ from coeflab.vehicle.reference import Comparison, Relation
 
 Part = TypeVar("Part")
 MOST = 4
-SETTINGS = {
+SETTINGS: dict[tuple[str, object], str] = {
     ("at_rest", "law"): "a fitted Z0 or M0 is part of the force law",
     ("at_rest", "apart"): "a fitted Z0 or M0 is not part of the force law",
 }
@@ -426,7 +426,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
     )
     if not each:
         return ()
-    text = (
+    text: tuple[str, ...] = (
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. A larger one fails the study, unless "
         "the point lies outside the range of the law: the motion up to which the fitted form meets the points.",
