@@ -253,11 +253,15 @@ def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequen
     flags = outside(vehicle, manoeuvre.velocity[None, :], {c: np.array([x]) for c, x in angles.items()})
     if not lacking:
         return ""
-    why = f"{lacking[:1].upper()}{lacking[1:]}."
+    why = f"The vehicle is {lacking}."
     if any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
         return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), why))
     none = all(f.value is None for f in figures) and any(f.status == NOT_DETERMINED for f in figures)
-    return f"There are no data on {rate}'. {why}" if none and f"{rate}'" not in covered_ranges(vehicle) else ""
+    return (
+        f"The file states no range of data for {rate}'. {why}"
+        if none and f"{rate}'" not in covered_ranges(vehicle)
+        else ""
+    )
 
 
 def in_current(current: Array) -> tuple[str, ...]:

@@ -537,7 +537,7 @@ def _critical(body: Vehicle, index: str, has_angle: bool, speed: Array, growth: 
 
 def _statement(index: str, has_angle: bool, critical: float | None, speed: Array) -> str:
     if index == "G_h":
-        return "Nothing restores the heading, so all roots grow in proportion to speed and there is no critical speed."
+        return "No restoring moment acts on the heading: all roots are proportional to speed, so there is no critical speed."
     if not has_angle:
         return (
             "The file states no hydrostatics. The restoring moment of weight and buoyancy (BG) is left out: the roots hold at high speed "

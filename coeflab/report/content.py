@@ -53,6 +53,10 @@ from coeflab.vehicle.reference import Comparison, Relation
 
 Part = TypeVar("Part")
 MOST = 4
+SETTINGS: dict[tuple[str, object], str] = {
+    ("at_rest", "law"): "a fitted Z0 or M0 is part of the force law",
+    ("at_rest", "apart"): "a fitted Z0 or M0 is not part of the force law",
+}
 _JOBS: list[Callable[[], object]] = []
 
 
@@ -171,6 +175,12 @@ def first_lines(text: str) -> str:
     return text if len(text) <= LINES else re.sub(r"[;,]$", ".", three_lines((text,))[0])
 
 
+def _setting(name: str, value: object) -> str:
+    """A setting of a fit, with what it means where its name does not say that."""
+    meaning = SETTINGS.get((name, value), "")
+    return f"{name} = {value}" + f" ({meaning})" * bool(meaning)
+
+
 def _found(anchor: str, known: set[str]) -> str:
     return anchor if anchor in known or not anchor else "coefficients" if "coefficients" in known else ""
 
@@ -180,10 +190,11 @@ def _short(reproduce: Section, digest: str) -> Section:
     if not reproduce.code:
         return reproduce
     text = (
-        *reproduce.paragraphs[:1],
-        f"Made by coeflab {VERSION}. Nothing is released yet: note the commit too, and install it with pip install . -c constraints.txt.",
+        f"Made by coeflab {VERSION}, not released yet: note the commit of its sources beside this report. To install that commit, run in "
+        "its sources: pip install . -c constraints.txt",
         "Equal inputs, sources and libraries give this report byte for byte."
         + (f" Digest of the inputs under Provenance: {digest}." if digest else ""),
+        *reproduce.paragraphs[-1:],
     )
     return replace(reproduce, paragraphs=three_lines(text))
 
@@ -459,10 +470,14 @@ def _laws(study: Study) -> tuple[Section, ...]:
     )
     if not each:
         return ()
-    text = (
-        "The force law of every parameter file is compared with the measured points that it was fitted to. The difference may be "
-        "three times the scatter of repeated runs plus 5 % of the largest force. A larger one inside the range of the law is a failure.",
+    text: tuple[str, ...] = (
+        "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
+        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. A larger one fails the study, unless "
+        "the point lies outside the range of the law: the motion up to which the fitted form meets the points.",
     )
+    in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
+    if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
+        text += (f"In no parameter file, so not compared: {listed(none)}.",)
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
 
@@ -514,9 +529,9 @@ def _checks(study: Study) -> Section:
 
 
 def _provenance(study: Study) -> Section:
-    text = ["The files below are identified by the sha256 of their bytes. Equal inputs give this report byte for byte."]
+    text = ["The files below are identified by the sha256 of their bytes."]
     settings = dict.fromkeys(
-        f"Settings of the fit {f.fit}: {', '.join(f'{k} = {v}' for k, v in sorted(f.settings.items()))}."
+        f"Settings of the fit {f.fit}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
         for f in study.fits
         if f.settings
     )

@@ -374,7 +374,7 @@ def reproduction(study: Study) -> Section:
         )
     name = shipped_name(study.plan)
     if name:
-        where = f"The study {name} is shipped with coeflab, its plan and its data; the command works in any folder."
+        where = f"The study {name} is shipped with coeflab, its plan and its data. Run this in any folder."
         return _section((where, SAME), (command(name),), study.inputs)
     where = (
         f"Run this in the folder of {file.name}; the files that the plan names must be at the paths it states. coeflab run {file.name} writes "
@@ -385,7 +385,7 @@ def reproduction(study: Study) -> Section:
 
 def published_reproduction(found: Acceptance, inputs: tuple[InputFile, ...]) -> Section:
     """Of a publication reproduced."""
-    where = f"The validation {found.name} is shipped with coeflab with its data; the command works in any folder."
+    where = f"The validation {found.name} is shipped with coeflab with its data. Run this in any folder."
     return _section((where, SAME), (command(found.name),), inputs)
 
 
@@ -409,7 +409,7 @@ def digest_of(inputs: tuple[InputFile, ...]) -> str:
 
 
 def _section(text: tuple[str, ...], code: tuple[str, ...], inputs: tuple[InputFile, ...]) -> Section:
-    return Section("reproduce", "How to reproduce", (*text, VERSION_TEXT, *_hashes(inputs)), code=code)
+    return Section("reproduce", "How to reproduce", (*text[1:], VERSION_TEXT, *_hashes(inputs), *text[:1]), code=code)
 
 
 def _hashes(inputs: tuple[InputFile, ...]) -> tuple[str, ...]:

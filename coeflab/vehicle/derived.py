@@ -90,7 +90,7 @@ class Derived:
             return ""
         r = self.result
         return (
-            f"U95 is first order; 95 % limits by drawing {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
+            f"U95 is linearised; 95 % limits by drawing {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
             f"seed {r.seed})"
         )
 

@@ -73,7 +73,7 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
     done = coeflab(command, path, "--manoeuvre", "zigzag", "--rudder", "20 deg", *FREE, "--out", "zigzag")
     assert (done.returncode, done.stderr) == (1, "")
     assert (
-        "rudder angle = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
+        "rudder angle = -20.00 deg is outside the data, -15.00 to 15.00 deg. The vehicle is unstable, and no nonlinear term such as Yr|r|"
         in flat(done.stdout)
     )
     assert "not determined" not in flat(done.stdout)
@@ -88,7 +88,9 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
         bare = coeflab(command, path, "--manoeuvre", manoeuvre, "--rudder", "10 deg", *FREE, "--json")
         assert bare.returncode == 1, manoeuvre
         said.add(json.loads(bare.stdout)["undetermined"])
-    assert said == {"There are no data on r'. Unstable, and no nonlinear term such as Yr|r| or Nr|r| limits the turn."}
+    assert said == {
+        "The file states no range of data for r'. The vehicle is unstable, and no nonlinear term such as Yr|r| or Nr|r| limits the turn."
+    }
 
 
 def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_what_is_zero_by_symmetry_has_one_line_and_no_section():
     made = document(study)
     table = next(s for s in made.sections if s.anchor == "coefficients").tables[0]
     assert "Kv'" not in [row[0] for row in table.rows]
-    assert table.notes[0] == "Zero by symmetry, and zero within U95: Kv'; none is beyond 3.0e-06."
+    assert table.notes[0] == "Zero by symmetry, and zero within U95: Kv'; |value| + U95 is at most 3.0e-06."
     campaign = next(s for s in flat(made.sections) if s.anchor == "campaign-tow")
     assert table.notes[0] in campaign.paragraphs
     assert [s.anchor for s in campaign.subsections] == ["campaign-tow-yv", "campaign-tow-nv"]

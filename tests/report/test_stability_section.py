@@ -90,8 +90,8 @@ def test_an_index_over_an_uncertain_denominator_has_limits_by_drawing():
     for half in (0.05, 0.3):
         (section,) = stability_sections(with_files(with_u95(STABLE, half)))
         by_half[half] = next(row for row in section.tables[0].rows if row[1] == "G_h")
-    assert "first order" not in by_half[0.05][-1]
-    said = by_half[0.3][-1].partition("U95 is first order; 95 % limits by drawing ")[2]
+    assert "linearised" not in by_half[0.05][-1]
+    said = by_half[0.3][-1].partition("U95 is linearised; 95 % limits by drawing ")[2]
     assert "20000 draws, seed 1" in said
     low, high = (float(one) for one in said.partition(" (")[0].split(" .. "))
     value = float(by_half[0.3][2])

@@ -121,7 +121,7 @@ def _steady(trajectory: Trajectory, length: float) -> list[Figure]:
     rows = (
         ("steady turning diameter", "m", "of the circle seen from above, through the water (ITTC 7.5-02-06-01)"),
         ("steady yaw rate", "rad/s", "of the heading, once it is steady"),
-        ("steady drift", "rad", "asin(v/V) once it is steady"),
+        ("steady drift", "rad", "asin(v/U), once it is steady"),
         ("speed in the turn", "1", "over that of the approach"),
     )
     return [

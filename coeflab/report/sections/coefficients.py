@@ -23,11 +23,12 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
-    "the points. Nobody chooses a form or a window, and no published value is used (docs/slope_at_origin.md).",
+    "Each slope is the weighted mean over many curves, all fitted to the whole sweep: a line with v|v|, cubic and smooth parts of different "
+    "size. The weight of a curve says how well it explains the points (docs/slope_at_origin.md).",
+    "No form and no range is chosen, except where a note below a table says so. No published value is used.",
     "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
-    "Input: declared errors of the inputs, and the grid. For a term of higher degree, input is what the uncertainty of the slope adds. A dash: not "
-    "assessed, so not in U95.",
+    "Input: declared errors of the inputs, and the grid; for a term of higher degree, the uncertainty of the slope.",
+    "n: points in the fit of this coefficient. A dash: not assessed, so not in U95.",
 )
 
 FIXED = (
@@ -80,7 +81,7 @@ def in_one_line(found: Sequence[Coefficient]) -> str:
     if not found:
         return ""
     most = max(abs(c.value or 0.0) + (c.u95 or 0.0) for c in found)
-    return f"Zero by symmetry, and zero within U95: {listed([primed(c.symbol) for c in found])}; none is beyond {most:.1e}."
+    return f"Zero by symmetry, and zero within U95: {listed([primed(c.symbol) for c in found])}; |value| + U95 is at most {most:.1e}."
 
 
 def form_not_assessed(found: Sequence[Coefficient]) -> str:
@@ -95,7 +96,7 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
     text: tuple[str, ...] = (
-        (TEXT[0], TEXT[1].format(tables.covers(study)))
+        tuple(t.format(tables.covers(study)) for t in TEXT)
         if any(f.sweeps for f in study.fits)
         else FIXED
         if study.coefficients

@@ -230,16 +230,16 @@ ANGLES = (
     "positive when it moves down."
 )
 CONTROLS = (
-    "A control angle keeps the sign of its table. In the tank of SUBOFF a positive rudder gives Y to starboard (Ydr' = 0.005929), "
-    "a positive stern plane Z up (Zds' = -0.005603): Roddy (1990), Table 4, as in the sketch."
+    "A control angle keeps the sign of its table. Example: in Roddy's tests of SUBOFF (1990, Table 4) a positive rudder gives Y to "
+    "starboard (Ydr' = 0.005929), a positive stern plane gives Z up (Zds' = -0.005603)."
 )
 POTENTIAL = (
     "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
     "simulator that adds C_A(nu) nu must not count them twice."
 )
 REST = (
-    "A real model may have a force at zero angle, so every curve has a constant. With points on both sides of zero an odd curve "
-    "also has an even term, and an even curve an odd one."
+    "A real model may have a force at zero angle, so a curve has a constant unless its table declares symmetry. With points on both "
+    "sides of zero, a fit may add an even part to a curve that symmetry makes odd, and an odd part to one that it makes even."
 )
 
 
@@ -254,7 +254,7 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
     """
     text = (
         f"{AXES_ROWS} Tables in other axes are turned into these as they are read.",
-        f"{ANGLES} A table declares its own sign; figures show this one, in degrees.",
+        f"{ANGLES} Input files may use other signs; figures use these, in degrees.",
         CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),

@@ -102,7 +102,9 @@ def _said(part: str, values: Array) -> str:
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
     "Positive: stable. Negative: unstable. Interval with zero in it: not determined.",
-    "U95 is that of the derivatives, without mass and centre of gravity. G_v holds at high speed: it has no restoring moment of weight and buoyancy.",
+    "U95 comes from the U95 of the four derivatives, fitted or from literature, without mass and centre of gravity. It is linearised and "
+    "decides the verdict; limits by drawing show how skew the interval is.",
+    "G_v holds at high speed: it has no restoring moment of weight and buoyancy.",
     "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
 )
 
@@ -183,7 +185,13 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     tables = [_shown(rows, study)]
     if roots:
         heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
-        tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
+        speeds: dict[str, list[str]] = {}
+        for name in dict.fromkeys(row[0] for row in roots):
+            speeds.setdefault(f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", []).append(name)
+        at = f"Roots at {next(iter(speeds))}" if len(speeds) == 1 else "Roots at the speed of the file"
+        each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
+        notes = (f"speed of the file: {each}.",) if len(speeds) > 1 else ()
+        tables.append(Table(at, heads, tuple(roots), notes, frozenset({0, 1, 2, 4})))
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     tables += [made_of] if made_of.rows else []
     mass = Section("mass-used", "Mass and inertia used", tables=tuple(mass_table(study)), appendix=True)
@@ -225,7 +233,10 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
         return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
-    told = ("published: computed from the derivatives and mass of the source; no verdict", *notes)
+    told = (
+        "published: printed in the source, from its own derivatives and mass. No verdict here, as our derivatives are others.",
+        *notes,
+    )
     return Table(
         "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
     )
@@ -286,9 +297,9 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 
 SIMULATED = (
-    "Each manoeuvre is computed from one parameter file of this study. A figure that uses motions beyond the data is marked "
-    "extrapolated; one that the file does not determine has no value. The figures have no U95: each manoeuvre is computed once, with "
-    "the values of its file; coeflab uncertainty gives intervals.",
+    "Each manoeuvre is computed from one parameter file of this study. A result that uses motions beyond the data is marked "
+    "extrapolated; a result that the file does not determine has no value.",
+    "The results have no U95: each manoeuvre is computed once, with the values of its file. For intervals run coeflab uncertainty FILE.",
 )
 SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 
@@ -297,17 +308,29 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
     """One section, or none where the plan asks for no manoeuvre."""
     if not study.manoeuvres:
         return ()
-    each = tuple(_manoeuvre(made, f"manoeuvre-{i}") for i, made in enumerate(study.manoeuvres))
+    files = {p.name: p for p in study.parameter_files.values()}
+    each = tuple(_manoeuvre(m, f"manoeuvre-{i}", files.get(m.vehicle.name)) for i, m in enumerate(study.manoeuvres))
     return (Section("manoeuvres", "Simulated manoeuvres", SIMULATED, subsections=each),)
 
 
-def _manoeuvre(made: Simulation, anchor: str) -> Section:
+def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
+    """Which rotary derivatives of a motion that no data cover are from literature, a sentence; empty where none is."""
+    covered = {c.variable.removesuffix("'") for c in made.vehicle.covered}
+    wanted = [f"{c}{r}" for r, components in (("r", "YN"), ("q", "ZM")) if r in made.vehicle.free for c in components]
+    found = [parameters.coefficient(s) for s in wanted if s[-1] not in covered] if parameters else []
+    stated = [primed(c.symbol) for c in found if c is not None and c.origin == "literature" and c.value is not None]
+    return f" From literature: {listed(stated)}." if stated else ""
+
+
+def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
     """Its figures and two drawings; what was assumed and the other drawings in the appendix."""
     name = made.manoeuvre.name.replace("_", " ")
     title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
     text = []
     if made.undetermined:
-        text.append(f"Nothing is drawn: the file does not determine this motion. {made.undetermined}")
+        text.append(
+            f"Nothing is drawn: the file does not determine this motion. {made.undetermined}{_stated_rates(made, parameters)}"
+        )
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
     length = made.vehicle.length
@@ -324,9 +347,9 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
 
 
 EXPORTED = (
-    "Every written file is read back. Forces and accelerations by the target's own force law are compared with those of the "
-    "parameter file. The difference is the error of a simulation with that target.",
-    "A target that adds -C_A(nu) nu itself gets first-order derivatives without their potential part, so that nothing counts twice.",
+    "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
+    "those of the parameter file. The difference is the error of a simulation with that target.",
+    "A simulator that adds -C_A(nu) nu itself gets linear derivatives without their potential part, so that nothing counts twice.",
 )
 
 
@@ -363,6 +386,12 @@ KINDS = {
 }
 
 
+ACCELERATIONS = {
+    "measured": "acceleration derivatives of the file first, the computed added mass for the others",
+    "computed": "computed added mass only",
+}
+
+
 def summary(study: Study) -> Table:
     """One row an export, those that were refused last."""
     rows = tuple(
@@ -374,7 +403,17 @@ def summary(study: Study) -> Table:
     lossy = [made.loss for made in study.exports if made.loss is not None]
     kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
+        *(
+            ("accepted: the plan accepts the loss, so the file is written.",)
+            if any("accepted" in row[2] for row in rows)
+            else ()
+        ),
         *(f"{kind}: {KINDS[kind]}." for kind in Kind if kind in kinds),
+        *(
+            f"accelerations {used}: {ACCELERATIONS[used]}."
+            for used in ACCELERATIONS
+            if any(row[4] == used for row in rows)
+        ),
         "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
     )

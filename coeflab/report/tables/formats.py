@@ -75,12 +75,12 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
     """
     rows = tuple(
         (f.component, f.table, str(f.n_points - len(f.beyond)), *(ABSENT if f.small else percent(x) for x in (f.share, f.rms_share)), f.worst_at,
-         percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
+         ABSENT if f.small else percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
         for f in found
     )  # fmt: skip
     notes = [
-        "In % of the largest measured force of the component in that table. Where the law has no constant, the measured force at "
-        "zero angle and rate, an offset of the set-up, is subtracted from the points."
+        "In % of the largest force of the component in that table. Offsets of the set-up are subtracted from the points: the force at "
+        "zero angle and rate where the law has no constant, and the part of X odd in drift where the fit found one."
     ]
     if not controls:
         notes.append("Points with a deflected control are left out: no force of controls is compared.")
@@ -102,7 +102,8 @@ def at_points_verdict(f: LawAtPoints) -> str:
         return "too small to judge"
     if f.missed:
         return f"misses {len(f.missed)}"
-    return f"{len(f.beyond)} outside the range of the law" if f.beyond else "holds"
+    n = len(f.beyond)
+    return f"holds; {n} point{'s' * (n > 1)} outside its range" if n else "holds"
 
 
 def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:

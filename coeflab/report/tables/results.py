@@ -20,6 +20,7 @@ from coeflab.core.table import (
 )
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
@@ -101,16 +102,25 @@ def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
     slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
     wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
-    entered: dict[str, list[str]] = {}
+    entered: dict[str, list[Budget]] = {}
     for b in budgets:
         names = ["declared inputs"] * bool(b.inputs) + ["grid"] * (b.part("grid") is not None)
         for name in (*names, *(s.name for s in b.studies)):
-            entered.setdefault(name, []).append(primed(b.symbol))
+            entered.setdefault(name, []).append(b)
+    several = len({campaign for campaign, _ in wanted}) > 1
     said = [
-        name if len(symbols) == len(wanted) else f"{name} (only {', '.join(dict.fromkeys(symbols))})"
-        for name, symbols in entered.items()
+        name if len(those) == len(wanted) else f"{name} (only {_by_campaign(those, several=several)})"
+        for name, those in entered.items()
     ]
     return ", ".join((COVERS, *said))
+
+
+def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> str:
+    """Symbols of budgets, followed by their campaign where a study has several."""
+    by: dict[str, dict[str, None]] = {}
+    for b in budgets:
+        by.setdefault(b.campaign if several else "", {})[primed(b.symbol)] = None
+    return "; ".join(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
 
 
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
@@ -488,11 +498,12 @@ def unused(tables: Sequence[ForceTable]) -> str:
             components = list(dict.fromkeys(e.component for e in found))
             of = "row" if set(components) >= set(t.forces) else _of(components, t)
             first = found[0]
-            kind = first.status or ("marked in the file" if first.uncertain else first.reason)
+            kind = first.status or ("marked uncertain in the file" if first.uncertain else first.reason)
             name = t.labels[row] + f" of {t.name.rpartition('/')[2]}" * (len(tables) > 1)
             by.setdefault(kind, []).append(name if of == "row" else f"{name} ({of})")
     said = [
-        f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)} {why}"
+        f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)}"
+        + (f": {why.replace(': ', ', ')}" if ": " in why else f" {why}")
         for why, rows in by.items()
     ]
     return f"Points left out: {'; '.join(said)}." if said else ""
