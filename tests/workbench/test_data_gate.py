@@ -170,6 +170,11 @@ def test_pasted_rows_and_a_mirrored_half_are_said() -> None:
     pasted = [c for c in findings((repeated(drift, 5), arm), 1.6) if "repeat an earlier row" in c.statistic]
     assert [c.severity for c in pasted] == [Severity.WARN]
     assert pasted[0].statistic.startswith("48 rows")
+    blank = repeated(drift, 2)
+    later = np.arange(len(blank)) >= len(drift)
+    waiting = replace(blank, forces={n: np.where(later, np.nan, f) for n, f in blank.forces.items()},
+                      usable={n: u & ~later for n, u in blank.usable.items()})  # fmt: skip
+    assert not any("repeat an earlier row" in c.statistic for c in findings((waiting, arm), 1.6))
     v, half = np.array([-0.2, -0.15, -0.1, -0.05, 0.0, 0.05, 0.1, 0.15, 0.2]), np.array([1.01, 2.0, 2.97, 4.05])
     mirrored = table_of(v, {"Y": 1e-3 * np.concatenate([half[::-1], [0.0], -half])})
     assert any("exact mirror image" in c.statistic for c in findings((mirrored,), 1.6))

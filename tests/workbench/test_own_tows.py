@@ -71,7 +71,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copy(shipped("cfd_data") / "suboff" / "published.toml", place)
     shipped_plan = (shipped("cfd_data") / "suboff" / "plan.toml").read_text()
     tows = shipped_plan[shipped_plan.index("[[tow]]") : shipped_plan.index("[[parameter_file]]")]
-    (place / "plan.toml").write_text(HEAD + tows.replace('"../', '"'))
+    (place / "plan.toml").write_text(
+        HEAD + tows.replace('"../', '"').replace('"suboff_tow_hull_planes"', '"absent_planes"')
+    )
     return place
 
 
@@ -96,7 +98,7 @@ def test_every_body_has_every_wanted_coefficient(bodies: tuple[Towed, ...]) -> N
 
 def test_a_body_that_was_not_towed_says_so_in_every_row(bodies: tuple[Towed, ...]) -> None:
     planes = bodies[1]
-    assert {(r.missing, r.why) for r in planes.rows} == {(NOT_TOWED, "there is no campaign suboff_tow_hull_planes yet")}
+    assert {(r.missing, r.why) for r in planes.rows} == {(NOT_TOWED, "there is no campaign absent_planes yet")}
     assert not planes.columns
     assert all(r.verdict is None and r.validation is None for r in planes.rows)
 
@@ -194,7 +196,7 @@ def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
     assert "Own tow: AFF-8" in shown
-    assert "All: there is no campaign suboff_tow_hull_planes yet." in shown
+    assert "All: there is no campaign absent_planes yet." in shown
     assert "no verdict" in shown
 
 

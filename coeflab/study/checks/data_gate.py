@@ -115,12 +115,13 @@ def _sweeps(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[_Sweep]:
 
 
 def _copies(table: ForceTable) -> NDArray[np.bool_]:
-    """Rows that repeat an earlier one to the last digit."""
+    """Rows with forces that repeat an earlier one to the last digit; blank ones, such as runs that wait, repeat nothing."""
     columns = [*table.motion.values(), *table.controls.values(), table.speed, *table.forces.values()]
     matrix = np.nan_to_num(np.column_stack(columns), nan=1e300)
     again = np.ones(len(table), bool)
     again[np.unique(matrix, axis=0, return_index=True)[1]] = False
-    return again
+    measured: NDArray[np.bool_] = np.any([np.isfinite(force) for force in table.forces.values()], axis=0)
+    return again & measured
 
 
 def _about_own(table: ForceTable) -> ForceTable:
