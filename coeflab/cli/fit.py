@@ -264,12 +264,6 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
             made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
             show.sentence(f"{points}; {made}." if made else f"{points}.")
-            if (
-                c.parts.model_form
-                and c.parts.model_form > (c.parts.random or 0.0)
-                and (why := tables.line_reaches(sweep))
-            ):
-                show.sentence(why)
         show.text()
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
             show.table(content)
@@ -284,9 +278,7 @@ def _forms(sweep: Sweep) -> Table:
         return every
     best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
     without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
-    notes = [
-        f"Each form in the widest of its windows that fits (p of the lack of fit >= {SUITS:g}); none is recommended."
-    ]
+    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}; none is recommended."]
     notes += [f"In no window: {', '.join(without)}."] if without else []
     rows = tuple(every.rows[i] for i in sorted(best.values()))
     headers = tuple("p" if h == "lack of fit" else h for h in every.headers)

@@ -326,30 +326,9 @@ def _window(sweep: Sweep, value: float) -> str:
     return number(value, 3)
 
 
-def _over(sweep: Sweep, what: str) -> tuple[str, ...]:
-    """Of which angle a window is; nothing where the variable is the angle of a control or a rate."""
-    return (f"{what}: of the angle asin({sweep.variable}/U).",) if sweep.is_angle else ()
-
-
-def line_reaches(sweep: Sweep, least: float = 0.05) -> str:
-    """Why the form dominates U95 of a slope: how far a straight line fits; empty where it fits to the largest setting.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    least : float
-        Probability of the lack of fit from which a line counts as fitting.
-    """
-    lines = [e for e in sweep.forms if e.family.name == "line"]
-    if not lines:
-        return ""
-    whole = max(e.window for e in sweep.forms)
-    fits = max((e.window for e in lines if e.lack_of_fit >= least), default=0.0)
-    if fits >= whole * (1.0 - 1e-9):
-        return ""
-    if not fits:
-        return "A line fits in no window, so the form of the curve widens U95."
-    return f"A line fits to {_window(sweep, fits)} of {_window(sweep, whole)} only: the form of the curve widens U95."
+def _angle(sweep: Sweep) -> str:
+    """The angle that a window is of; empty where the variable is that of a control or a rate."""
+    return f"asin({sweep.variable}/U)" if sweep.is_angle else ""
 
 
 def estimators(sweep: Sweep) -> Table:
@@ -365,7 +344,7 @@ def estimators(sweep: Sweep) -> Table:
     notes = (
         "Each trusts its form; none is the recommended value. HC2 with Bell-McCaffrey degrees of freedom (dof), HC3 with "
         "n - p; lack of fit: probability by chance.",
-        *_over(sweep, "Window"),
+        *([f"Window: largest {_angle(sweep)}."] if _angle(sweep) else []),
     )
     headers = ("form", "window", "n", "value", "95 % HC2", "95 % HC3", "dof", "lack of fit", "AICc")
     return Table(f"Other forms for {primed(sweep.symbol)}", headers, rows, notes, frozenset({0}))
@@ -375,8 +354,8 @@ def sensitivity(sweep: Sweep) -> Table:
     """The recommended value had the sweep ended sooner."""
     rows = tuple((_window(sweep, s.cap), *with_u95(s.value, s.u95), percent(s.u95, s.value)) for s in sweep.sensitivity)
     headers = ("largest setting", "value", "U95", "U95 %")
-    notes = _over(sweep, "Largest setting")
-    return Table(f"{primed(sweep.symbol)} by largest setting", headers, rows, notes, frozenset({0}))
+    title = f"{primed(sweep.symbol)} by largest setting" + (f", {_angle(sweep)}" if _angle(sweep) else "")
+    return Table(title, headers, rows, (), frozenset({0}))
 
 
 def next_runs(study: Study, sweep: Sweep, count: int) -> tuple[tuple[float, float], ...]:
