@@ -53,6 +53,7 @@ from coeflab.vehicle.reference import Comparison, Relation
 
 Part = TypeVar("Part")
 MOST = 4
+NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
     ("at_rest", "law"): "a fitted Z0 or M0 is part of the force law",
     ("at_rest", "apart"): "a fitted Z0 or M0 is not part of the force law",
@@ -248,7 +249,8 @@ def _document(study: Study, full: bool) -> Document:
     )
     if not full and (study.shape is None or study.plan.file is not None):
         sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
-    names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
+    bodies = list(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
+    names = ", ".join(bodies) if len(bodies) <= NAMED_BODIES else f"{len(bodies)} bodies"
     return Document(
         study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, digest_of(study.inputs),
         tables.works(study), answer=answered,

@@ -40,7 +40,7 @@ def plan(tmp_path: Path) -> Path:
 def test_tables_and_files(coeflab: Run, plan: Path, tmp_path: Path) -> None:
     done = coeflab("tune", plan)
     assert (done.returncode, done.stderr) == (0, "")
-    for words in ("mine: parameters", "intercept", "U95", "rms before", "ok: the data determine it."):
+    for words in ("mine: parameters", "intercept", "U95", "rms before", "determined: the data determine it."):
         assert words in flat(done.stdout)
     folder = tmp_path / "reports" / "mine"
     names = ["mine.agreement.svg", "mine.motions.csv", "mine.parameters.json"]

@@ -52,7 +52,7 @@ def test_published_speeds_are_called_in_sample_and_left_out_ones_stand_beside(th
 
 
 def test_the_cycle_settles(thauv: Acceptance) -> None:
-    assert any("within 1e-06 m/s of the steady glide" in s for s in _table(thauv, "cycle").statements)
+    assert any("within 1e-06 m/s of our own steady glide" in s for s in _table(thauv, "cycle").statements)
 
 
 def test_what_is_calibrated_is_called_so(thauv: Acceptance) -> None:

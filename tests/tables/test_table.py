@@ -341,7 +341,7 @@ def test_rows_at_once_and_one_by_one_are_equal_and_memory_is_bounded(tmp_path: P
         np.testing.assert_array_equal(ours.values, theirs.values)
     np.testing.assert_array_equal(quick.lines, slow.lines)
     program = (
-        "import resource,sys;from pathlib import Path;from coeflab.tables.importers.table import raw,sniff,Options;"
+        "import resource,sys;from pathlib import Path;from coeflab.tables.importers.table import raw;from coeflab.tables.text_dialect import sniff,Options;"
         "sniff(Path(sys.argv[1]),Options());before=" + PEAK_KILOBYTES + ";"
         "raw(Path(sys.argv[1]),{});print(" + PEAK_KILOBYTES + "-before)"
     )

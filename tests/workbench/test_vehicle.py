@@ -212,7 +212,7 @@ def test_shares_above_the_whole_are_explained_below_their_table(steered: Study) 
             replace(c, importances=tuple(replace(i, known=known) for i in c.importances)) for c in steered.shape.carried
         ]
         notes = estimates_table(made, each, few=True).notes
-        assert any("numbers of one method go together" in n for n in notes) == told
+        assert any("Numbers of one method are correlated" in n for n in notes) == told
 
 
 def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:

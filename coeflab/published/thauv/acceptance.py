@@ -156,7 +156,7 @@ ERRATA = (
 )
 CALIBRATED = (
     "m3 - m1, the moment below and a moment ahead for each stage are calibrated on the six published speeds: agreement "
-    "with them proves nothing. Four constants from six numbers of two digits leave little to test."
+    "with them is in-sample and proves nothing. Four constants from six numbers of two digits leave little to test."
 )
 
 
