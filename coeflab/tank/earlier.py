@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,7 +22,7 @@ from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Stated
 from coeflab.tables.runs import RunSummary
 from coeflab.tank.campaign import HISTORIES, RUNS, TowedRun
-from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, progress, write_progress
+from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, or_nan, progress, write_progress
 from coeflab.tank.test_matrix import TowCondition
 
 _FORCE = re.compile(r"(?P<error>se_)?(?P<name>[XYZKMN])(?P<patch>\(.+\))? \[(?P<unit>N|N\*m)\]")
@@ -70,7 +69,7 @@ def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
         write_progress(
             job.folder,
             Progressed(
-                JobState(said["state"]), job.key, iteration=_number(row["iterations"]), means=row["means"],
+                JobState(said["state"]), job.key, iteration=or_nan(row["iterations"]), means=row["means"],
                 errors=row["errors"], why=row["why"], remarks=tuple(row["remarks"]),
             ),
         )  # fmt: skip
@@ -106,7 +105,7 @@ def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun 
             cells = {"cells": Stated(row["cells"], FILE)} if row["cells"] else {}
             summary = RunSummary(
                 condition.name, Convergence(row["status"]), row["summary_why"], row["means"], row["errors"],
-                iterations=_number(row["iterations"]), stated_conditions=cells,
+                iterations=or_nan(row["iterations"]), stated_conditions=cells,
                 patches={name: (mean, unit) for name, (mean, unit) in row["patches"].items()},
             )  # fmt: skip
         return TowedRun(
@@ -124,10 +123,6 @@ def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun 
         raise InputError(
             f"no row of an earlier tow ({shown(why)[1:-1]})", "what coeflab wrote", file=path, advice=advice
         ) from None
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
 
 
 def _ended(campaign: Path) -> dict[str, dict[str, str]]:

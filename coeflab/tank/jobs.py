@@ -215,7 +215,7 @@ def read_job(folder: Path) -> Job:
         kind = content.pop("kind")
         steps = tuple(Step(s["name"], tuple(s["command"]), s["watched"]) for s in content.pop("steps"))
         content["needs"] = tuple(content["needs"])
-        content["iterations"] = _number(content["iterations"])
+        content["iterations"] = or_nan(content["iterations"])
         job = Job(folder=path.parent, steps=steps, **content)
     except FileNotFoundError:
         raise InputError(f"no {JOB}", "the folder of a job", file=folder) from None
@@ -269,9 +269,9 @@ def read_progress(folder: Path) -> Progressed:
         content: dict[str, Any] = json.loads(path.read_bytes())
         for f in fields(Progressed):
             if f.type == "float":
-                content[f.name] = _number(content[f.name])
+                content[f.name] = or_nan(content[f.name])
         for name in ("means", "errors"):
-            content[name] = {k: _number(v) for k, v in content[name].items()}
+            content[name] = {k: or_nan(v) for k, v in content[name].items()}
         return Progressed(**content | {"state": JobState(content["state"]), "remarks": tuple(content["remarks"])})
     except FileNotFoundError:
         return Progressed(JobState.WAITING)
@@ -388,7 +388,8 @@ def _locked(handle: int) -> bool:
     return True
 
 
-def _number(value: float | None) -> float:
+def or_nan(value: float | None) -> float:
+    """A number of a file of ours; NaN for one that it does not have."""
     return nan if value is None else float(value)
 
 

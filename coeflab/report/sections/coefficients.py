@@ -23,7 +23,7 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope is the weighted mean over many curves, all fitted to the whole sweep: a line with v|v|, cubic and smooth parts of different "
+    "Each slope is the weighted median over many curves, all fitted to the whole sweep: a line with v|v|, cubic and smooth parts of different "
     "size. The weight of a curve says how well it explains the points (docs/slope_at_origin.md).",
     "No form and no range is chosen, except where a note below a table says so. No published value is used.",
     "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
