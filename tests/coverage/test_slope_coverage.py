@@ -26,9 +26,11 @@ SMOKE = ("v|v| + v3", "opposed signs", "tanh", "onset", "even part")
 # of the true form (polynomials) or more than that of the earlier study (tanh, onset), by family and design.
 BELOW_90 = {
     ("even part", "one-sided", "1"),
-    ("even part", "uneven", "3"),
+    ("onset", "uneven", "0.001"),
+    ("opposed signs", "even", "3"),
     ("opposed signs", "one-sided", "3"),
     ("opposed signs", "uneven", "3"),
+    ("tanh", "replicated", "0.01"),
 }
 WIDE = {
     ("linear", "even"): "3",
@@ -38,21 +40,22 @@ WIDE = {
     ("cubic", "even"): "3 1",
     ("cubic", "uneven"): "3 1 0.1",
     ("cubic", "one-sided"): "3 1 0.1",
-    ("cubic", "replicated"): "3 1",
+    ("cubic", "replicated"): "3 1 0.1",
     ("v|v|", "even"): "1",
     ("v|v|", "uneven"): "1",
     ("v|v|", "one-sided"): "1 0.1",
     ("v|v|", "replicated"): "1",
-    ("small slope", "uneven"): "0.01",
     ("small slope", "replicated"): "0.01",
     ("opposed signs", "even"): "1",
     ("opposed signs", "uneven"): "1",
     ("opposed signs", "one-sided"): "1",
-    ("opposed signs", "replicated"): "1 0.1",
+    ("opposed signs", "replicated"): "1",
     ("tanh", "even"): "3 1 0.1",
+    ("tanh", "uneven"): "0.01",
     ("tanh", "one-sided"): "0.1",
-    ("tanh", "replicated"): "3 1",
-    ("onset", "even"): "3",
+    ("tanh", "replicated"): "1",
+    ("onset", "even"): "1 0.1",
+    ("onset", "uneven"): "0.1",
     ("onset", "one-sided"): "0.1",
 }
 

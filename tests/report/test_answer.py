@@ -355,7 +355,7 @@ def test_suboff(suboff: Study):
     said = verdict(suboff).paragraphs
     assert said[1] == (
         "Weak tests (U95 joined with the uncertainty that the source states, above 25 % of the published value): Zw' of "
-        "suboff_roddy_1 (45 %), Yv' of suboff_roddy_3 (52 %) and Kv' of suboff_roddy_3 (39 %)."
+        "suboff_roddy_1 (44 %), Yv' of suboff_roddy_3 (53 %) and Kv' of suboff_roddy_3 (45 %)."
     )
     assert (
         said[2]
