@@ -24,6 +24,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from coeflab.core.types import Array, remembered
@@ -444,7 +445,7 @@ def mixture_quantiles(
             share = np.where(first, share, np.interp(u, TABLE, tables[1]))
         return np.asarray((w[:, None] * share).sum(2))
 
-    def bisected(short: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    def bisected(short: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
         for _ in range(HALVINGS):
             z = 0.5 * (low + high)
             right = short(z)
@@ -455,7 +456,7 @@ def mixture_quantiles(
     ends = bisected(lambda z: below(z) < goal, *start)
     value, sides = ends[:, 1:2], np.sort(np.abs(ends[:, ::2] - ends[:, 1:2]), 1)
 
-    def short_half(z: Array) -> Array:
+    def short_half(z: Array) -> NDArray[np.bool_]:
         both = below(np.concatenate([value - z, value + z], 1))
         return both[:, 1:] - both[:, :1] < 1.0 - 2.0 * tail[:, None]
 
