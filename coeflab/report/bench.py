@@ -76,7 +76,7 @@ class BenchData:
         constants |= {"ODD": list(slope_mixture.ODD.items()), "SIDES": list(slope_mixture.SIDES.items())}
         constants |= {"NODES": slope_mixture.NODES.tolist(), "WEIGHTS": slope_mixture.WEIGHTS.tolist()}
         return {
-            "constants": constants | {"KEPT": slope_mixture.KEPT},
+            "constants": constants | {"KEPT": slope_mixture.KEPT, "HALVINGS": slope_mixture.HALVINGS},
             "nodes": NODES,
             "sameLevel": slopes.SAME_LEVEL,
             "sweeps": list(self.sweeps),

@@ -3,6 +3,8 @@
 ``python tests/coverage/slope_campaigns.py WORK [ROUNDS]`` runs 50 rounds of 20 campaigns per cell (family, noise,
 design), each round with settings of its own; a round that is already in WORK is not run again. After each round it
 writes ``slope_table.csv`` beside this file, with the campaigns so far. Seeds are (2026, design, round).
+
+``cover %`` counts what is printed, value +- U95; ``lower to upper %`` the ends with the same tail beyond each.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import numpy as np
 from scipy import stats
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.slope_mixture import estimate_many, prepare
+from coeflab.fits.statistics.slope_mixture import Slopes, estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.001, 0.0001, 0.00001)
 DESIGNS = ("even", "uneven", "one-sided", "replicated")
@@ -160,12 +162,17 @@ def study_u95(x: Array, y: Array) -> float:
     return float((high[1] - high[0]) / 2.0 / reach)
 
 
+def held(found: Slopes, slope: float) -> tuple[Array, Array]:
+    """Whether value +- U95, which is printed, and [lower, upper] hold the true slope, (b,) each."""
+    return np.abs(found.value - slope) <= found.u95, (found.lower <= slope) & (slope <= found.upper)
+
+
 def run_round(design: str, number: int, campaigns: int, studied: int, families: tuple[str, ...]) -> Array:
-    """(family, noise, campaign, 4): inside the interval, U95, U95 of the true form, U95 of the study."""
+    """(family, noise, campaign, 5): inside value +- U95, U95, U95 of the true form, U95 of the study, inside [lower, upper]."""
     rng = np.random.default_rng((2026, DESIGNS.index(design), number))
     x = settings(design, rng)
     prepared = prepare(x)
-    out = np.full((len(families), len(NOISE), campaigns, 4), np.nan)
+    out = np.full((len(families), len(NOISE), campaigns, 5), np.nan)
     for i, name in enumerate(families):
         truth = FAMILIES[name]
         force = truth.curve(x)
@@ -173,7 +180,7 @@ def run_round(design: str, number: int, campaigns: int, studied: int, families: 
         for j, noise in enumerate(NOISE):
             y = force + noise * shocks[j]
             s = estimate_many(prepared, y)
-            out[i, j, :, 0] = (s.lower <= truth.slope) & (truth.slope <= s.upper)
+            out[i, j, :, 0], out[i, j, :, 4] = held(s, truth.slope)
             out[i, j, :, 1], out[i, j, :, 2] = s.u95, true_form_u95(truth, x, y)
             if name in STUDY:
                 out[i, j, :studied, 3] = [study_u95(x, row) for row in y[:studied]]
@@ -185,8 +192,9 @@ DECLARED = ("six", "even", "uneven")
 
 
 def declared_round(design: str, number: int, campaigns: int, families: Sequence[str]) -> Array:
-    """(family, noise, campaign, 2) of one side of a force that is odd by declaration: inside the interval, U95 over the slope.
+    """(family, noise, campaign, 3) of one side of a force that is odd by declaration.
 
+    Inside value +- U95, U95 over the slope, inside [lower, upper].
     ``six`` has the angles of the tow tank's default, 2 to 12 degrees; none has a row at rest, which says nothing of an odd force.
     """
     rng = np.random.default_rng((2026, 18, DECLARED.index(design), number))
@@ -195,14 +203,14 @@ def declared_round(design: str, number: int, campaigns: int, families: Sequence[
     if design != "six":
         x = np.linspace(0.0, reach, n)[1:] if design == "even" else np.sort(rng.uniform(0.02 * reach, reach, n))
     prepared = prepare(x, odd=True)
-    out = np.full((len(families), len(NOISE), campaigns, 2), np.nan)
+    out = np.full((len(families), len(NOISE), campaigns, 3), np.nan)
     for i, name in enumerate(families):
         truth = FAMILIES[name]
         force = truth.curve(x)
         for j, noise in enumerate(NOISE):
             shocks = rng.standard_normal((campaigns, len(x))) * np.abs(force).max()
             s = estimate_many(prepared, force + noise * shocks)
-            out[i, j, :, 0] = (s.lower <= truth.slope) & (truth.slope <= s.upper)
+            out[i, j, :, 0], out[i, j, :, 2] = held(s, truth.slope)
             out[i, j, :, 1] = s.u95 / abs(truth.slope)
     return out
 
@@ -218,6 +226,7 @@ def table(rounds: dict[str, list[Array]]) -> list[dict[str, object]]:
         out.append({
             "family": name, "design": design, "noise %": f"{100.0 * noise:g}", "campaigns": len(cell),
             "no value": int(np.isnan(cell[:, 1]).sum()), "cover %": f"{cover:.1f}",
+            "lower to upper %": f"{100.0 * float(cell[:, 4].mean()):.1f}",
             "median U95 %": f"{100.0 * np.median(cell[:, 1]) / slope:.4g}",
             "median U95 / true form": f"{np.median(cell[known, 1] / cell[known, 2]):.2f}" if known.any() else "",
             "median U95 / study p = 0": f"{np.median(studied[:, 1]) / np.median(studied[:, 3]):.2f}" if len(studied) else "",

@@ -12,7 +12,16 @@ from scipy import special, stats
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
-from coeflab.fits.statistics.slope_mixture import ODD, PARTS, POWER, SIDES, SIZES, estimate_many, prepare
+from coeflab.fits.statistics.slope_mixture import (
+    ODD,
+    PARTS,
+    POWER,
+    SIDES,
+    SIZES,
+    estimate_many,
+    mixture_quantiles,
+    prepare,
+)
 from coeflab.fits.statistics.slopes import by_largest
 
 SLOPE = -0.028
@@ -38,7 +47,7 @@ def clean() -> OriginSlope:
 
 
 def contains(s: OriginSlope, slope: float = SLOPE) -> bool:
-    return s.lower <= slope <= s.upper
+    return abs(s.value - slope) <= s.u95
 
 
 def test_a_clean_sweep_has_a_value_that_contains_the_truth_and_no_remark(clean: OriginSlope) -> None:
@@ -200,7 +209,33 @@ def test_ragged_or_infinite_input_is_refused(y: Array) -> None:
 def test_a_slope_lost_in_the_noise_is_open() -> None:
     s = estimate(X, 1e-5 * X + 1e-3 * SHOCKS)
     assert s.status is Status.OPEN
-    assert s.lower < 0.0 < s.upper
+    assert abs(s.value) < s.u95
+
+
+@pytest.mark.parametrize("second", [0.0, 3.0], ids=["symmetric", "skewed"])
+def test_value_and_u95_have_the_probability_of_the_interval(second: float) -> None:
+    share, mean, scale, freedom = np.array([0.8, 0.2]), np.array([0.0, second]), np.array([1.0, 2.0]), 12.0
+    ends, half, _ = mixture_quantiles(
+        np.log(share)[None], mean[None], scale[None], np.full((1, 2), freedom), np.array([0.02])
+    )
+
+    def probability(low: float, high: float) -> float:
+        below = [stats.t.cdf((z - mean) / scale, freedom) for z in (low, high)]
+        return float(share @ (below[1] - below[0]))
+
+    lower, value, upper = ends[0]
+    assert probability(lower, upper) == pytest.approx(0.96, abs=1e-5)
+    assert probability(value - half[0], value + half[0]) == pytest.approx(0.96, abs=1e-5)
+    if second:
+        assert half[0] > 1.02 * 0.5 * (upper - lower)
+    else:
+        assert half[0] == pytest.approx(0.5 * (upper - lower), rel=1e-5)
+
+
+def test_a_sign_is_open_where_what_is_printed_contains_zero() -> None:
+    slopes = [estimate(X, k * 1e-4 * X + 4e-5 * SHOCKS) for k in range(0, 10, 2)]
+    assert [s.status is Status.OPEN for s in slopes] == [abs(s.value) <= s.u95 for s in slopes]
+    assert len({s.status for s in slopes}) == 2
 
 
 def test_the_curve_and_its_band_hold_the_truth(clean: OriginSlope) -> None:
@@ -313,7 +348,7 @@ def test_a_power_that_is_no_member_is_covered_when_the_noise_is_small(power: flo
     f = SLOPE * X - 0.1 * np.sign(X) * np.abs(X) ** power
     y = f + 1e-4 * np.abs(f).max() * np.random.default_rng(5).standard_normal((6, 19))
     s = estimate_many(prepare(X), y, deletions=False)
-    assert np.all((s.lower <= SLOPE) & (s.upper >= SLOPE))
+    assert np.all(np.abs(s.value - SLOPE) <= s.u95)
 
 
 def test_more_noise_leaves_a_smaller_tail_out() -> None:

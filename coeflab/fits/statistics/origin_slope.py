@@ -38,7 +38,7 @@ class OriginSlope:
     Attributes
     ----------
     value, lower, upper, u95, sd : float
-        NaN where the status is `Status.TOO_FEW`.
+        As in `Slopes`, value +- u95 is printed. NaN where the status is `Status.TOO_FEW`.
     status : Status
     reason : str
     notes : tuple of str
@@ -170,7 +170,8 @@ def _estimate(
     value, widen = float(many.value[0]), np.sqrt(2.0) if mirrored else 1.0
     without[left_out] = value
     lower, upper = (float(value + widen * (end[0] - value)) for end in (many.lower, many.upper))
-    status = Status.WRONG_POINT if left_out else Status.OPEN if lower < 0.0 < upper else Status.OK
+    u95 = widen * float(many.u95[0])
+    status = Status.WRONG_POINT if left_out else Status.OPEN if abs(value) <= u95 else Status.OK
     if left_out:
         what = "rows" if strips is None else "strips"
         reason = f"{what} {', '.join(map(str, left_out))} (from 0) do not fit the others; with them the value is {with_all:.4g}"
@@ -181,7 +182,7 @@ def _estimate(
     freedom = len(kept) - len(replicate)
     pure = float(np.sqrt(np.sum((y[kept] - means[design.settings]) ** 2) / freedom)) if freedom else float("nan")
     return OriginSlope(
-        value, lower, upper, 0.5 * (upper - lower), widen * float(many.sd[0]), status, reason, notes,
+        value, lower, upper, u95, widen * float(many.sd[0]), status, reason, notes,
         float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
         _shares(design, y[kept], many.weights[0]), design, y[kept], many.weights[0],
     )  # fmt: skip

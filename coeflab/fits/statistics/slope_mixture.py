@@ -18,11 +18,13 @@ processes, kinks, onsets, saturation, even parts) and the families of ``tests/co
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from coeflab.core.types import Array, remembered
@@ -53,8 +55,9 @@ ROUNDING, WEIGHTLESS = 3e-8, 1e-10
 PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, MOST_LIKELY = 0.8, 16, 2.0, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
-# Members kept for the quantiles of a mixture, and where its distribution is tabulated.
+# Members kept for the quantiles of a mixture, steps of bisection, and where its distribution is tabulated.
 KEPT = 256
+HALVINGS = 22
 TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
@@ -111,7 +114,9 @@ class Slopes:
     Attributes
     ----------
     value, lower, upper, sd, noise : (b,) array
-        Median, ends of the 95 % interval, standard deviation, standard deviation of one reading.
+        Median, ends with the same tail beyond each, standard deviation, standard deviation of one reading.
+    u95 : (b,) array
+        What is printed: value +- u95 has the probability of [lower, upper], 1 - 2 tail, also where the mixture is skewed.
     mean : (b,) array
         Mean if no row is wrong, the like of ``without``.
     wrong : (b, n) array
@@ -123,17 +128,13 @@ class Slopes:
     value: Array
     lower: Array
     upper: Array
+    u95: Array
     sd: Array
     noise: Array
     mean: Array
     wrong: Array
     without: Array
     weights: Array
-
-    @property
-    def u95(self) -> Array:
-        """Half the 95 % interval."""
-        return 0.5 * (self.upper - self.lower)
 
 
 def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
@@ -374,10 +375,10 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         weight = np.concatenate([weight - evidence[:, None] + odds[:, :1], flat[0]], 1)
         mean, scale = np.concatenate([mean, flat[1]], 1), np.concatenate([scale, np.sqrt(flat[2])], 1)
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
-    ends, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
+    ends, half, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
     low, value, high = ends.T * unit
-    return Slopes(value, low, high, sd * unit, noise * size, middle * unit, wrong, without, weights)
+    return Slopes(value, low, high, half * unit, sd * unit, noise * size, middle * unit, wrong, without, weights)
 
 
 def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array, Array]:
@@ -412,8 +413,19 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
     return mean, second - np.outer(mean, mean), terms
 
 
-def mixture_quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array, tail: Array) -> tuple[Array, Array]:
-    """Lower, median, upper (b, 3) and standard deviation (b,) of Student mixtures (b, c); tail (b,)."""
+def mixture_quantiles(
+    log_weight: Array, mean: Array, scale: Array, freedom: Array, tail: Array
+) -> tuple[Array, Array, Array]:
+    """Of Student mixtures (b, c), by the tail beyond each end (b,).
+
+    Returns
+    -------
+    ends : (b, 3) array
+        Lower, median, upper.
+    half : (b,) array
+        median +- half has the probability 1 - 2 tail.
+    sd : (b,) array
+    """
     keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
     log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
     w = special.softmax(log_weight, axis=1)
@@ -421,7 +433,6 @@ def mixture_quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Arr
     sd = np.sqrt((w * (scale**2 + (mean - middle[:, None]) ** 2)).sum(1))
     goal = np.stack([tail, np.full(len(tail), 0.5), 1.0 - tail], 1)
     reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - tail) / 4.0) * sd
-    low, high = np.repeat((middle - reach)[:, None], 3, 1), np.repeat((middle + reach)[:, None], 3, 1)
     most = freedom.max()
     tables = [special.stdtr(nu, TABLE * np.sqrt(nu / (1.0 - TABLE**2))) for nu in (most, most - 1.0)]
     first = (freedom == most)[:, None]
@@ -434,8 +445,19 @@ def mixture_quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Arr
             share = np.where(first, share, np.interp(u, TABLE, tables[1]))
         return np.asarray((w[:, None] * share).sum(2))
 
-    for _ in range(22):
-        z = 0.5 * (low + high)
-        right = below(z) < goal
-        low, high = np.where(right, z, low), np.where(right, high, z)
-    return 0.5 * (low + high), sd
+    def bisected(short: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
+        for _ in range(HALVINGS):
+            z = 0.5 * (low + high)
+            right = short(z)
+            low, high = np.where(right, z, low), np.where(right, high, z)
+        return 0.5 * (low + high)
+
+    start = (np.repeat((middle + side * reach)[:, None], 3, 1) for side in (-1.0, 1.0))
+    ends = bisected(lambda z: below(z) < goal, *start)
+    value, sides = ends[:, 1:2], np.sort(np.abs(ends[:, ::2] - ends[:, 1:2]), 1)
+
+    def short_half(z: Array) -> NDArray[np.bool_]:
+        both = below(np.concatenate([value - z, value + z], 1))
+        return both[:, 1:] - both[:, :1] < 1.0 - 2.0 * tail[:, None]
+
+    return ends, bisected(short_half, sides[:, :1], sides[:, 1:])[:, 0], sd

@@ -362,15 +362,17 @@ const slopeAtOrigin = (k) => {
       }
       return s;
     };
-    const ends = [tail, 0.5, 1 - tail].map((goal) => {
-      let low = middle - reach, high = middle + reach;
-      for (let i = 0; i < 22; i++) {
+    const bisected = (short, low, high) => {
+      for (let i = 0; i < k.HALVINGS; i++) {
         const z = 0.5 * (low + high);
-        if (below(z) < goal) low = z; else high = z;
+        if (short(z)) low = z; else high = z;
       }
       return 0.5 * (low + high);
-    });
-    return { ends, sd };
+    };
+    const ends = [tail, 0.5, 1 - tail].map((goal) => bisected((z) => below(z) < goal, middle - reach, middle + reach));
+    const [lower, value, upper] = ends, sides = [value - lower, upper - value];
+    const half = bisected((z) => below(value + z) - below(value - z) < 1 - 2 * tail, Math.min(...sides), Math.max(...sides));
+    return { ends, half, sd };
   };
 
   const median = (values) => {
@@ -409,8 +411,8 @@ const slopeAtOrigin = (k) => {
     } else {
       parts = main.weight.map((w, i) => ({ weight: w, mean: main.mean[i], scale: Math.sqrt(main.variance[i]), freedom: nu }));
     }
-    const { ends, sd } = mixtureQuantiles(parts, nu, tail);
-    return { lower: ends[0] * unit, value: ends[1] * unit, upper: ends[2] * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
+    const { ends, half, sd } = mixtureQuantiles(parts, nu, tail);
+    return { lower: ends[0] * unit, value: ends[1] * unit, upper: ends[2] * unit, u95: half * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
   };
 
   // Rows that count, their relative variance and what is to be said of them.
@@ -462,10 +464,10 @@ const slopeAtOrigin = (k) => {
       removed.push(worst);
     }
     const value = many.value, widen = rows.mirrored ? Math.SQRT2 : 1;
-    const lower = value + widen * (many.lower - value), upper = value + widen * (many.upper - value);
-    const status = removed.length ? "a wrong point was left out" : lower < 0 && upper > 0 ? "the sign is open" : "ok";
+    const lower = value + widen * (many.lower - value), upper = value + widen * (many.upper - value), u95 = widen * many.u95;
+    const status = removed.length ? "a wrong point was left out" : Math.abs(value) <= u95 ? "the sign is open" : "ok";
     return {
-      value, lower, upper, u95: 0.5 * (upper - lower), sd: widen * many.sd, status, reason: "", noise: many.noise, wrong, without: apart,
+      value, lower, upper, u95, sd: widen * many.sd, status, reason: "", noise: many.noise, wrong, without: apart,
       used, removed, withAll: removed.length ? withAll : value, design, y: kept.map((i) => y[i]), weights: many.weights,
     };
   };
