@@ -100,7 +100,7 @@ def from_shape(
         walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     progress(f"estimates of {body.name}")
     water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
-    made = methods.estimated(heavy.body, water)
+    made = methods.estimated(heavy.body, water, added_mass=found.recommended)
     fit = as_fit(made, body.name)
     files: dict[str, ParameterFile] = {}
     hulls: dict[str, Triangulation] = {}

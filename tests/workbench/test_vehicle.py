@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
+from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.report.answer import answer
 from coeflab.report.content import document
@@ -49,7 +50,7 @@ DISPLACED = 998.2 * np.pi / 6.0 * 3.0 * 0.5**2
 PLAN = Plan("toy", "Toy", (), method="ellipsoid")
 
 
-def toy(body: Body, water: Water) -> Estimates:
+def toy(body: Body, water: Water, towed: bool = False, added_mass: AddedMass | None = None) -> Estimates:
     """Stated numbers, of the rudder where there is one."""
     values = VALUES | (RUDDER if any(c.name == "dr" for c in body.controls) else {})
     each = tuple(
