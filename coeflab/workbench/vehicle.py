@@ -279,7 +279,9 @@ def replaced(
     return made, moves, carried
 
 
-def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
+def subject(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
+) -> Body:
     """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
 
     Parameters
@@ -288,15 +290,15 @@ def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> 
         A mesh file, a body.toml, its folder or a shipped body.
     unit, axes : str
         Of a mesh file.
-    repair : bool
-        Mend a mesh file that is not sound.
+    repair, fill, sheets : bool
+        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
 
     Raises
     ------
     InputError
         As of `coeflab.bodies.simplify.source.mesh_body`.
     """
-    body = mesh_body(name, unit, axes, repair)
+    body = mesh_body(name, unit, axes, repair, fill, sheets)
     middle = body.configurations[0].centre_of_buoyancy
     bare = body.datum.id.startswith("origin of ") and not body.lengths
     if not bare or middle is None:
