@@ -23,7 +23,7 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.rigid_body import ideal_force
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.transforms import force_transfer, velocity_transfer
 
 Forces = Callable[[NDArray[np.float64], dict[str, NDArray[np.float64]]], NDArray[np.float64]]
@@ -146,7 +146,9 @@ METHODS = Registry("coeflab.estimates", "method of estimates", EstimateMethod, _
 
 KINDS_OF_ESTIMATE = "semi-empirical, from the shape"
 STEP, GRID = 2e-3, (0.1, 0.2, 0.3)
-NOTHING = 1e-9  # of the largest value
+NOTHING = 1e-9
+# Of the largest alike: fins of a mesh file in single precision stand 1e-6 rad off their planes.
+OF_MESH = 1e-5
 LEVERS = {4: (2, -1.0), 5: (1, 1.0)}  # M = -x Z, N = x Y
 PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
 IDEAL = "ideal fluid"
@@ -284,7 +286,7 @@ def combined(
     for error in errors:
         covariance += np.outer(error, error) / 4.0
         scatter += error**2
-    keep = [i for i, s in enumerate(symbols) if _counts(s, value[i], scatter[i] + spread[i], value, symbols)]
+    keep = _counting(symbols, value, scatter + spread)
     works = {s: _works(contributions, rows, i) for i, s in enumerate(symbols)}
     coefficients = tuple(
         Coefficient(
@@ -487,11 +489,26 @@ def _derived(
     return out / units, gained / units
 
 
-def _counts(symbol: str, value: float, variance: float, values: NDArray[np.float64], symbols: tuple[str, ...]) -> bool:
-    """Whether a coefficient is more than rounding beside the others of its component."""
-    alike = [abs(v) for s, v in zip(symbols, values, strict=True) if s[0] == symbol[0]]
-    floor = 1e-6 * max(alike, default=0.0)
-    return max(abs(value), float(np.sqrt(variance))) > max(floor, NOTHING)
+def _counting(symbols: tuple[str, ...], values: NDArray[np.float64], scatter: NDArray[np.float64]) -> list[int]:
+    """Which coefficients are more than rounding beside the others of their component, and beside those alike in all planes.
+
+    Alike are forces, or moments, in as many velocities, rates and angles: Mv' is nothing beside Nv', Mw' and their scatter.
+    """
+    size = np.maximum(np.abs(values), np.sqrt(scatter))
+    components, kinds = [s[0] for s in symbols], [_kind(s) for s in symbols]
+    out = []
+    for i in range(len(symbols)):
+        own = max(abs(v) for v, c in zip(values, components, strict=True) if c == components[i])
+        alike = max(s for s, k in zip(size, kinds, strict=True) if k == kinds[i])
+        if size[i] > max(1e-6 * own, OF_MESH * alike, NOTHING):
+            out.append(i)
+    return out
+
+
+def _kind(symbol: str) -> tuple[str, ...]:
+    group = "X" if symbol[0] == "X" else "YZ" if symbol[0] in "YZ" else "KMN"
+    factors = derivative(symbol).factors
+    return (group, *sorted("slide" if f in LINEAR else "turn" if f in MOTIONS else f[:1] for f in factors))
 
 
 def _works(contributions: tuple[Contribution, ...], rows: list[NDArray[np.float64]], i: int) -> tuple[str, ...]:

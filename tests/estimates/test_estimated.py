@@ -313,3 +313,10 @@ def test_a_box_has_no_term_that_its_symmetry_forbids(given: bool) -> None:
     made = estimated(body, WATER, added_mass=own if given else None)
     for symbol in ("Nv|v|", "Mw|w|", "Nv", "Mw", "Y|v|r", "Z|w|q", "Yr|r|", "Zq|q|", "Yr", "Zq", "Nv|r|", "Mw|q|"):
         assert symbol not in made.coefficients, symbol
+
+
+def test_fins_that_stand_off_their_planes_by_rounding_give_no_terms_across(cross: Estimates) -> None:
+    tilt = 4e-6
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(tilt), -np.sin(tilt)], [0.0, np.sin(tilt), np.cos(tilt)]])
+    fins = tuple(replace(f, root=turn @ f.root, tip=turn @ f.tip) if f.control == "dr" else f for f in tail())
+    assert estimates_of(outline(*fins)).coefficients.symbols == cross.coefficients.symbols
