@@ -197,6 +197,7 @@ def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, miss
 
 def _body(body: Body, density: float, json: bool) -> None:
     from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.outlining import fins_along
     from coeflab.cli.as_json import body_json
     from coeflab.report.tables import added_mass as added_mass_tables
 
@@ -209,6 +210,9 @@ def _body(body: Body, density: float, json: bool) -> None:
     show.table(added_mass_tables.displaced(body, density))
     if isinstance(body.shape, TriangleMesh) and body.shape.remade is None:
         show.text(f"  {added_mass_tables.sound(body.shape)}")
+    standing = fins_along(body.outline) if body.outline is not None else None
+    if standing is not None:
+        show.text(f"  {standing.words}")
     show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
 
 

@@ -332,9 +332,12 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
+            held = f"; expected {rule}" if rule else ""
+            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}{held}. {meant}".rstrip())
             continue
-        printed += marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
+        printed += marked(
+            str(severity), f"{about}, {len(same)} times{f': expected {rule}' if rule else ''}. {meant}".rstrip()
+        )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
             text(f"        {c.subject}: {c.statistic}")
