@@ -36,7 +36,7 @@ def command(
         False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
     ),
     density: float = typer.Option(
-        1000.0, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
+        show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
     ),
     name: list[str] = typer.Option(
         [],

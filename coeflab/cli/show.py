@@ -122,6 +122,7 @@ def width() -> int:
     return ENDLESS if whole() else _terminal() if sys.stdout.isatty() else PROSE
 
 
+FRESH_WATER = 998.2  # kg/m^3 at 20 deg C, ITTC 7.5-02-01-03 (2011): the tank's and the vehicle's default, too
 _asked = {"wide": False}
 PROSE, NARROWEST, ENDLESS = 80, 40, 1_000_000
 
