@@ -203,10 +203,11 @@ def _ideal_fluid(part: str, added_mass: AddedMass) -> Contribution:
     def of(matrix: NDArray[np.float64]) -> Forces:
         return shifted(partial(_ideal, matrix), -added_mass.reference_point)
 
-    matrix, scatter = np.array(added_mass.matrix), []
-    for i, j in np.argwhere(np.triu(matrix)) if added_mass.error is not None else ():
+    matrix, half = np.array(added_mass.matrix), added_mass.error
+    half, scatter = np.zeros((6, 6)) if half is None else half, []
+    for i, j in np.argwhere(np.triu(np.where(half > 0.0, matrix, 0.0))):
         error = np.zeros((6, 6))
-        error[i, j] = error[j, i] = added_mass.error[i, j]
+        error[i, j] = error[j, i] = half[i, j]
         scatter.append(of(error))
     place = f"-C_A(nu) nu of the added mass by {added_mass.method}"
     return Contribution(part, IDEAL, "added mass", of(matrix), SEPARATED, "lamb1932", place, scatter=tuple(scatter))
