@@ -24,6 +24,7 @@ SLENDER = 1.5  # length over breadth and depth: from here a part along x is a hu
 ALONG = np.cos(np.radians(15.0))  # a part's axis along x within
 REACH = 1.25  # of the hull's radius: an appendage that begins within stands on it
 LIKE = {"bar": "box", "tube": "cylinder", "revolution": "ellipsoid", "finned": "mesh"}  # kinds of bluff parts
+NEAR = 0.03  # of the length: fins at one station
 WING = 1.5  # span over chord of a plate that stands on nothing and is a foil all the same
 
 Radius = Callable[[Array], Array]
@@ -395,3 +396,44 @@ def outline_table(outline: Outline) -> Table:
     ]
     headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
     return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
+
+
+@dataclass(frozen=True, slots=True)
+class FinsAlong:
+    """Where fins stand along the hull.
+
+    Attributes
+    ----------
+    words : str
+        Such as ``4 fins at x = -1.22 m, 87 % of the length from the bow``.
+    ahead : bool
+        All ahead of the hull's middle.
+    """
+
+    words: str
+    ahead: bool
+
+
+def fins_along(outline: Outline) -> FinsAlong | None:
+    """Where the fins of a hull stand, by their middle quarter-chord points; None without hull or fins.
+
+    Parameters
+    ----------
+    outline : Outline
+    """
+    if not outline.hulls or not outline.foils:
+        return None
+    bow, stern = max(h.x[0] for h in outline.hulls), min(h.x[-1] for h in outline.hulls)
+    at = sorted((float(f.root[0] + f.tip[0]) / 2.0 for f in outline.foils), reverse=True)
+    groups: list[list[float]] = []
+    for x in at:
+        if groups and groups[-1][-1] - x < NEAR * (bow - stern):
+            groups[-1].append(x)
+        else:
+            groups.append([x])
+    said = []
+    for g in groups:
+        x = sum(g) / len(g)
+        many = f"{len(g)} fins" if len(g) > 1 else "1 fin"
+        said.append(f"{many} at x = {x:.3g} m, {100.0 * (bow - x) / (bow - stern):.0f} % of the length from the bow")
+    return FinsAlong("; ".join(said), min(at) > (bow + stern) / 2.0)

@@ -49,7 +49,7 @@ def command(
     error: str = typer.Option(
         "", "--error", metavar="SHARE", help="Raise the panels until their error estimate is below it: 2%, 0.02."
     ),
-    density: float = typer.Option(1000.0, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
+    density: float = typer.Option(show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
 ) -> None:
     """Show a body's added mass by several methods.

@@ -12,6 +12,7 @@ from coeflab.cli import complete, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
     from coeflab.tables.force_table import ForceTable
 
 
@@ -30,8 +31,12 @@ def command(
         "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
     ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
+    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    sheets: bool = typer.Option(
+        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
+    ),
     density: float = typer.Option(
-        1000.0, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
+        show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
     ),
     name: list[str] = typer.Option(
         [],
@@ -57,15 +62,19 @@ def command(
     Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
-    from coeflab.bodies.simplify.source import names_body
+    from coeflab.bodies.simplify.source import mesh_body, names_body
     from coeflab.cli.draft import of_runs
 
     if names_body(table):
-        _body(table, unit, axes, repair, density, json)
+        with show.narrated():
+            body = mesh_body(table, unit, axes, repair, fill, sheets)
+        _body(body, density, json)
         return
-    if unit or axes or repair:
+    if unit or axes or repair or fill or sheets:
         raise InputError(
-            "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
+            "--unit, --axes, --repair, --fill or --sheets",
+            "a mesh file with them",
+            advice="A campaign.toml says these itself.",
         )
     every = [*option, *of_runs(name, runs)]
     if as_ or every or _is_raw(table):
@@ -186,16 +195,14 @@ def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, miss
         show.sentence(line)
 
 
-def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
+def _body(body: Body, density: float, json: bool) -> None:
     from coeflab.bodies.mesh.mesh import TriangleMesh
-    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.bodies.outlining import fins_along
     from coeflab.cli.as_json import body_json
     from coeflab.report.tables import added_mass as added_mass_tables
 
     if not 0.0 < density < float("inf"):
         raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
-    with show.narrated():
-        body = mesh_body(name, unit, axes, repair)
     if json:
         show.json_object(body_json(body, density))
         return
@@ -203,6 +210,9 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
     show.table(added_mass_tables.displaced(body, density))
     if isinstance(body.shape, TriangleMesh) and body.shape.remade is None:
         show.text(f"  {added_mass_tables.sound(body.shape)}")
+    standing = fins_along(body.outline) if body.outline is not None else None
+    if standing is not None:
+        show.text(f"  {standing.words}")
     show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
 
 

@@ -122,6 +122,7 @@ def width() -> int:
     return ENDLESS if whole() else _terminal() if sys.stdout.isatty() else PROSE
 
 
+FRESH_WATER = 998.2  # kg/m^3 at 20 deg C, ITTC 7.5-02-01-03 (2011): the tank's and the vehicle's default, too
 _asked = {"wide": False}
 PROSE, NARROWEST, ENDLESS = 80, 40, 1_000_000
 
@@ -332,9 +333,12 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
+            held = f"; expected {rule}" if rule else ""
+            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}{held}. {meant}".rstrip())
             continue
-        printed += marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
+        printed += marked(
+            str(severity), f"{about}, {len(same)} times{f': expected {rule}' if rule else ''}. {meant}".rstrip()
+        )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
             text(f"        {c.subject}: {c.statistic}")

@@ -38,6 +38,10 @@ def command(
         "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
     ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
+    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    sheets: bool = typer.Option(
+        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
+    ),
     speed: str = typer.Option("", metavar="SPEED", help='Of reference, "1.5 m/s"; default 2 m/s.', show_default=False),
     density: str = typer.Option(
         "", metavar="DENSITY", help="Of the water; default fresh, 998.2 kg/m^3.", show_default=False
@@ -82,7 +86,7 @@ def command(
     distances = distances_of(wall, distance, "panel") if wall or distance else []
     with show.progress(json) as say:
         say("reading the body")
-        found = subject(body, unit, axes, repair)
+        found = subject(body, unit, axes, repair, fill, sheets)
         plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, to, accept_loss)
         refuse_unknown(plan.exports)
         study = checked(from_shape(plan, found, stated, say, wall, distances), say)
@@ -138,13 +142,32 @@ def summarise(study: Study) -> None:
     show.table(tables.particulars_table(shape, parameters.added_mass))
     if parameters.added_mass is not None and parameters.added_mass.walls:
         show.table(near_walls_kept(parameters.added_mass))
+    _exported(study)
     for line in shape.missing:
         show.marked("lacks", line)
+
+
+def _exported(study: Study) -> None:
+    """What each export does not hold, in short; its loss report has all of it."""
+    from coeflab.core.wording import file_stem
+    from coeflab.report.tables.formats import in_short
+
+    for made in study.exports:
+        if made.loss is None:
+            continue
+        if made.lossless:
+            show.text(f"{made.target} holds all of {made.parameters}.")
+            continue
+        report = f"{made.folder}/{file_stem(made.parameters)}.{made.target}.loss.txt"
+        show.text(f"{made.target} does not hold all of {made.parameters}: {in_short(made.loss)}. All of it: {report}")
+    if study.exports:
+        show.text()
 
 
 def as_json(study: Study) -> dict[str, Any]:
     """Particulars, estimates with what they are made of, manoeuvres, what is assumed and what is missing; SI and radians."""
     from coeflab.cli.uncertainty import as_json as carried_json
+    from coeflab.report.tables.formats import in_short
 
     shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
     if shape is None:
@@ -196,5 +219,13 @@ def as_json(study: Study) -> dict[str, Any]:
             for m in study.manoeuvres
         ],
         "uncertainty": [carried_json(k) for k in shape.carried],
+        "exports": [
+            {
+                "target": e.target, "parameters": e.parameters, "lossless": e.lossless,
+                "loss": None if e.loss is None or e.lossless else in_short(e.loss),
+                "worse_than_nothing": [] if e.loss is None else list(e.loss.worse_than_nothing),
+            }
+            for e in study.exports
+        ],
         "refused": [str(r.why) for r in study.refused],
     }  # fmt: skip

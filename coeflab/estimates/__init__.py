@@ -7,7 +7,8 @@ scatter that its source states and from the spread between methods.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -18,9 +19,11 @@ from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.types import brief
+from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.rigid_body import ideal_force
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.transforms import force_transfer, velocity_transfer
 
 Forces = Callable[[NDArray[np.float64], dict[str, NDArray[np.float64]]], NDArray[np.float64]]
@@ -80,6 +83,8 @@ class Contribution:
         95 % half-width of where the force acts along x, m; one error for all of a kind in one group.
     group : str
         Parts that err together; the part itself where empty.
+    scatter : tuple of callable
+        95 % half-widths that are no share of the value, each the forces of one independent error; as ``forces``.
     """
 
     part: str
@@ -93,6 +98,7 @@ class Contribution:
     each: float = 0.0
     lever: float = 0.0
     group: str = ""
+    scatter: tuple[Forces, ...] = ()
 
 
 @brief
@@ -140,12 +146,16 @@ METHODS = Registry("coeflab.estimates", "method of estimates", EstimateMethod, _
 
 KINDS_OF_ESTIMATE = "semi-empirical, from the shape"
 STEP, GRID = 2e-3, (0.1, 0.2, 0.3)
-NOTHING = 1e-9  # of the largest value
+NOTHING = 1e-9
+# Of the largest alike: fins of a mesh file in single precision stand 1e-6 rad off their planes.
+OF_MESH = 1e-5
 LEVERS = {4: (2, -1.0), 5: (1, 1.0)}  # M = -x Z, N = x Y
 PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
+IDEAL = "ideal fluid"
+SEPARATED = 0.50  # of a bluff body's ideal fluid, judged: what separated flow takes from it or adds
 
 
-def estimated(body: Body, water: Water, towed: bool = False) -> Estimates:
+def estimated(body: Body, water: Water, towed: bool = False, added_mass: AddedMass | None = None) -> Estimates:
     """Estimate all that the methods can of a body.
 
     Parameters
@@ -155,6 +165,8 @@ def estimated(body: Body, water: Water, towed: bool = False) -> Estimates:
     water : Water
     towed : bool
         As fits of a campaign on a course ahead state them, bluff bodies too.
+    added_mass : AddedMass, optional
+        The body's own, at the water's density: it gives the ideal fluid of a body of bluff parts alone.
 
     Raises
     ------
@@ -173,8 +185,39 @@ def estimated(body: Body, water: Water, towed: bool = False) -> Estimates:
             found += METHODS.load(name).contributions(outline, water)
     if not found:
         raise InputError(f"{body.name}: no hull, fin or bluff part", "an outline with at least one")
+    if added_mass is not None and every_way(outline):
+        found = [c for c in found if c.kind != IDEAL]
+        found.append(_ideal_fluid(outline.bluff[0].name if len(outline.bluff) == 1 else body.name, added_mass))
     contributions = tuple(found)
     return combined(body, outline, contributions, water, towed)
+
+
+def every_way(outline: Outline) -> bool:
+    """Whether a body is of bluff parts alone, which has no course ahead."""
+    return bool(outline.bluff) and not (outline.hulls or outline.foils or outline.rings)
+
+
+def _ideal_fluid(part: str, added_mass: AddedMass) -> Contribution:
+    """-C_A(nu) nu of a whole body, about the datum; each entry of the matrix has its own error."""
+
+    def of(matrix: NDArray[np.float64]) -> Forces:
+        return shifted(partial(_ideal, matrix), -added_mass.reference_point)
+
+    matrix, half = np.array(added_mass.matrix), added_mass.error
+    half, scatter = np.zeros((6, 6)) if half is None else half, []
+    for i, j in np.argwhere(np.triu(np.where(half > 0.0, matrix, 0.0))):
+        error = np.zeros((6, 6))
+        error[i, j] = error[j, i] = half[i, j]
+        scatter.append(of(error))
+    place = f"-C_A(nu) nu of the added mass by {added_mass.method}"
+    return Contribution(part, IDEAL, "added mass", of(matrix), SEPARATED, "lamb1932", place, scatter=tuple(scatter))
+
+
+def _ideal(
+    matrix: NDArray[np.float64], nu: NDArray[np.float64], angles: dict[str, NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    del angles
+    return ideal_force(matrix, nu)
 
 
 def combined(
@@ -203,10 +246,9 @@ def combined(
     )
     symbols = tuple(f.symbol for f in functionals)
     units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])
-    both = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
-    if not towed and outline.bluff and not (outline.hulls or outline.foils or outline.rings):
-        symbols, both = _of_bluff(symbols, contributions, both)
-    rows, levered = [b[0] for b in both], [b[1] for b in both]
+    free = not towed and every_way(outline)
+    rows, levered, errors = _rows(contributions, functionals, units, point, water.speed if free else None)
+    symbols = _symbols_of_bluff(symbols) if free else symbols
     kinds: dict[str, dict[str, list[int]]] = {}
     for i, c in enumerate(contributions):
         kinds.setdefault(c.kind, {}).setdefault(c.part, []).append(i)
@@ -242,7 +284,10 @@ def combined(
             along = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
             covariance += np.outer(width, width) / 4.0 * (along.T @ along)
             spread += width**2
-    keep = [i for i, s in enumerate(symbols) if _counts(s, value[i], scatter[i] + spread[i], value, symbols)]
+    for error in errors:
+        covariance += np.outer(error, error) / 4.0
+        scatter += error**2
+    keep = _counting(symbols, value, scatter + spread)
     works = {s: _works(contributions, rows, i) for i, s in enumerate(symbols)}
     coefficients = tuple(
         Coefficient(
@@ -261,28 +306,64 @@ def combined(
     )  # fmt: skip
 
 
-Derived = tuple[NDArray[np.float64], NDArray[np.float64]]
+def _rows(
+    contributions: tuple[Contribution, ...], functionals: tuple[Functional, ...], units: NDArray[np.float64],
+    point: NDArray[np.float64], ahead: float | None,
+) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]], list[NDArray[np.float64]]]:  # fmt: skip
+    """Primed coefficients of each contribution, what they gain by a lever of 1 m, and of each error of their scatter.
+
+    ``ahead``: the speed, m/s, of a body of bluff parts, whose symbols are `_symbols_of_bluff`; None of others.
+    """
+    symbols = tuple(f.symbol for f in functionals)
+    full = functionals if ahead is None else _at_full_surge(functionals, ahead)
+    rows, levered, errors = [], [], []
+    for c in contributions:
+        ideal = c.kind == IDEAL
+        for k, forces in enumerate((c.forces, *c.scatter)):
+            found = _derived(full if ideal else functionals, shifted(forces, point), units)
+            value, gained = found if ahead is None else (_of_bluff(symbols, f, ideal) for f in found)
+            if k:
+                errors.append(value)
+            else:
+                rows.append(value)
+                levered.append(gained)
+    return rows, levered, errors
 
 
-def _of_bluff(
-    symbols: tuple[str, ...], contributions: tuple[Contribution, ...], both: list[Derived]
-) -> tuple[tuple[str, ...], list[Derived]]:
-    """The same of a body that goes every way, with no course ahead: its law must hold in sway and astern.
+TURNED = ("Yr", "Zq", "Nv", "Mw")  # products of the ideal fluid that a bluff body's law has with u
+
+
+def _symbols_of_bluff(symbols: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of a body that goes every way, with no course ahead: its law must hold in sway and astern.
 
     Drag along x is u|u|, without what X0 V^2 needs beside it in drift; the products of the ideal fluid are of u, not of V.
     """
-    named = {s: f"{s[0]}u{s[1:]}" for s in ("Yr", "Zq", "Nv", "Mw")}
+    kept = (symbols[i] for i in _kept_of_bluff(symbols))
+    return (*("Xu|u|" if s == "X0" else s for s in kept), *(f"{s[0]}u{s[1:]}" for s in TURNED))
+
+
+def _kept_of_bluff(symbols: tuple[str, ...]) -> list[int]:
     gone = {f"X{m}{m}" for m in ("v", "w", "p", "q", "r")}
-    keep = [i for i, s in enumerate(symbols) if s not in gone]
-    places = [symbols.index(s) for s in named]
-    out = []
-    for c, pair in zip(contributions, both, strict=True):
-        ideal = c.kind == "ideal fluid"
-        moved = [np.where(np.isin(np.arange(len(symbols)), places) & ideal, 0.0, one)[keep] for one in pair]
-        own = [one[places] * ideal for one in pair]
-        out.append((np.concatenate([moved[0], own[0]]), np.concatenate([moved[1], own[1]])))
-    renamed = tuple("Xu|u|" if symbols[i] == "X0" else symbols[i] for i in keep)
-    return (*renamed, *named.values()), out
+    return [i for i, s in enumerate(symbols) if s not in gone]
+
+
+def _of_bluff(symbols: tuple[str, ...], values: NDArray[np.float64], ideal: bool) -> NDArray[np.float64]:
+    """The values that belong to `_symbols_of_bluff`."""
+    turned = [symbols.index(s) for s in TURNED]
+    own = values[turned] * ideal
+    rest = np.where(np.isin(np.arange(len(symbols)), turned) & ideal, 0.0, values)
+    return np.concatenate([rest[_kept_of_bluff(symbols)], own])
+
+
+def _at_full_surge(functionals: tuple[Functional, ...], speed: float) -> tuple[Functional, ...]:
+    """The same at u = U in place of u = sqrt(U^2 - v^2 - w^2): for laws in u, which have no tail in |v| of a slope in U."""
+    known: dict[int, NDArray[np.float64]] = {}
+    for f in functionals:
+        if id(f.nu) not in known:
+            nu = np.array(f.nu)
+            nu[:, 0] = speed
+            known[id(f.nu)] = nu
+    return tuple(replace(f, nu=known[id(f.nu)]) for f in functionals)
 
 
 def recommended(contributions: tuple[Contribution, ...]) -> Forces:
@@ -409,11 +490,26 @@ def _derived(
     return out / units, gained / units
 
 
-def _counts(symbol: str, value: float, variance: float, values: NDArray[np.float64], symbols: tuple[str, ...]) -> bool:
-    """Whether a coefficient is more than rounding beside the others of its component."""
-    alike = [abs(v) for s, v in zip(symbols, values, strict=True) if s[0] == symbol[0]]
-    floor = 1e-6 * max(alike, default=0.0)
-    return max(abs(value), float(np.sqrt(variance))) > max(floor, NOTHING)
+def _counting(symbols: tuple[str, ...], values: NDArray[np.float64], scatter: NDArray[np.float64]) -> list[int]:
+    """Which coefficients are more than rounding beside the others of their component, and beside those alike in all planes.
+
+    Alike are forces, or moments, in as many velocities, rates and angles: Mv' is nothing beside Nv', Mw' and their scatter.
+    """
+    size = np.maximum(np.abs(values), np.sqrt(scatter))
+    components, kinds = [s[0] for s in symbols], [_kind(s) for s in symbols]
+    out = []
+    for i in range(len(symbols)):
+        own = max(abs(v) for v, c in zip(values, components, strict=True) if c == components[i])
+        alike = max(s for s, k in zip(size, kinds, strict=True) if k == kinds[i])
+        if size[i] > max(1e-6 * own, OF_MESH * alike, NOTHING):
+            out.append(i)
+    return out
+
+
+def _kind(symbol: str) -> tuple[str, ...]:
+    group = "X" if symbol[0] == "X" else "YZ" if symbol[0] in "YZ" else "KMN"
+    factors = derivative(symbol).factors
+    return (group, *sorted("slide" if f in LINEAR else "turn" if f in MOTIONS else f[:1] for f in factors))
 
 
 def _works(contributions: tuple[Contribution, ...], rows: list[NDArray[np.float64]], i: int) -> tuple[str, ...]:

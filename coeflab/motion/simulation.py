@@ -11,19 +11,25 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import at_once, decisive, linear_growth, undetermined_at_once, unlimited
-from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
+from coeflab.motion.manoeuvre import Manoeuvre, PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.trajectory import UNCOVERED, Trajectory
 from coeflab.motion.vehicle import Vehicle, vehicle
+from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SWING, SWINGS = (
     float(np.radians(5.0)),
     6,
 )  # rad/s from one extreme of the roll rate to the next; that many are an oscillation
+
+STALL_UNSEEN = (
+    15.0 + 1e-9
+)  # deg of a control, those of the first turn: beyond it is said that estimated foils do not stall
 
 
 def manoeuvres_of(
@@ -144,12 +150,45 @@ def simulate(
     until, why = determined_until(trajectory, body)
     rolling = rolls(trajectory) if "p" in body.free else ""
     course = unstable_course(body, float(trajectory.velocity[0, 0]))
+    beyond = beyond_estimates(parameters, plan, trajectory)
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
     nothing = undetermined_at_once(body, plan, figures)
     return Simulation(
-        body, plan, trajectory, figures, (*statements, *filter(None, (course, rolling, why))), until, works, nothing
+        body,
+        plan,
+        trajectory,
+        figures,
+        (*statements, *filter(None, (course, rolling, why)), *beyond),
+        until,
+        works,
+        nothing,
     )
+
+
+def beyond_estimates(parameters: ParameterFile, plan: Manoeuvre, trajectory: Trajectory) -> tuple[str, ...]:
+    """Where a manoeuvre goes beyond what estimates from a shape hold, in words; nothing of other files.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    plan : Manoeuvre
+    trajectory : Trajectory
+    """
+    found = {c.symbol.removesuffix("'") for c in parameters.coefficients if c.status is Status.ESTIMATE}
+    out = []
+    u, v = trajectory.velocity[:, 0], trajectory.velocity[:, 1]
+    drift = float(np.degrees(np.max(np.arctan2(np.abs(v), u), initial=0.0, where=u > 0.0)))
+    angle = ahead_from(parameters) if any(s.startswith("X") for s in found) else None
+    if angle is not None and drift >= angle:
+        out.append(
+            f"limit: drift reaches {drift:.0f} deg; from {angle:d} deg on the law of the estimates gives an X that points ahead"
+        )
+    for control, called in (("dr", "rudder"), ("ds", "stern planes")):
+        largest = float(np.degrees(max((abs(p.orders.get(control, 0.0)) for p in plan.phases), default=0.0)))
+        if largest > STALL_UNSEEN and any(s[1:] == control for s in found):
+            out.append(f"limit: {largest:.3g} deg of {called}; foils of the estimates do not stall")
+    return tuple(out)
 
 
 def rolls(trajectory: Trajectory) -> str:

@@ -316,3 +316,21 @@ def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:
     if not tabled:
         return None
     return ForceLaw(tabled, law.ideal - force_law(parameters).ideal).force(nu)
+
+
+def ahead_from(parameters: ParameterFile) -> int | None:
+    """Drift from which the law of a file gives an X that points ahead, whole deg; None where it never does up to 90 deg.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    """
+    drift = np.radians(np.arange(91.0))
+    motions = np.zeros((len(drift), 6))
+    motions[:, 0], motions[:, 1] = np.cos(drift), np.sin(drift)
+    try:
+        law = full_force(parameters)
+    except InputError:  # a manoeuvre says why nothing moves by it
+        return None
+    ahead = law(parameters.conditions.speed * motions, np.zeros((len(drift), 3)))[:, 0] > 0.0
+    return int(np.argmax(ahead)) if ahead.any() else None

@@ -29,6 +29,7 @@ from coeflab.vehicle.parameter_parts import (
 )
 
 ESTIMATES = "estimates"  # what fit and campaign are called
+ABSURD = 3.0  # of the displacement, either way: no unit and no water in the hull makes that a vehicle
 TRIMMED = 0.005  # of the displacement: less is what a scale reads
 
 
@@ -95,7 +96,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     Raises
     ------
     InputError
-        No volume, or an inertia that no body has.
+        No volume, an inertia that no body has, or a mass beyond a factor of 3 of the displacement without flooded room or ballast.
     """
     base = _floating(body)
     if not base.volume or base.centre_of_buoyancy is None:
@@ -108,6 +109,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         assumed.append("mass")
         said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
     else:
+        _refuse_absurd(body, mass, displaced)
         said.append(_buoyed(mass, displaced, density))
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
@@ -133,6 +135,40 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     vehicle = replace(base, name=body.name, title=body.title, mass=made)
     others = tuple(c for c in body.configurations if c.name != body.name)
     return Weighed(replace(body, configurations=(*others, vehicle)), tuple(said), tuple(assumed))
+
+
+def displaced_mass(body: Body, density: float) -> float:
+    """Of the water that a body displaces, kg.
+
+    Parameters
+    ----------
+    body : Body
+    density : float
+        kg/m^3.
+
+    Raises
+    ------
+    InputError
+        No volume.
+    """
+    return density * float(_floating(body).volume or 0.0)
+
+
+def floods(body: Body) -> bool:
+    """Whether its file declares flooded rooms or ballast, so that mass and displacement may differ."""
+    parts = body.mass_model.parts if body.mass_model is not None else ()
+    return any(p.flooded or "ballast" in p.made_of for p in parts)
+
+
+def _refuse_absurd(body: Body, mass: float, displaced: float) -> None:
+    if displaced / ABSURD <= mass <= ABSURD * displaced or floods(body):
+        return
+    raise InputError(
+        f"a mass of {mass:.4g} kg in {displaced:.4g} kg of displacement",
+        f"{displaced / ABSURD:.3g} to {ABSURD * displaced:.3g} kg",
+        column="--mass",
+        advice="Look at the unit of the mass and of the mesh. A hull that floods: [[mass]] with flooded = true in its body.toml.",
+    )
 
 
 def _floating(body: Body) -> Configuration:

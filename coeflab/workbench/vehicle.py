@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
+from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import mesh_body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, shown
@@ -32,7 +33,7 @@ from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
-from coeflab.vehicle.force_law import full_force
+from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
@@ -100,7 +101,7 @@ def from_shape(
         walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     progress(f"estimates of {body.name}")
     water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
-    made = methods.estimated(heavy.body, water)
+    made = methods.estimated(heavy.body, water, added_mass=found.recommended)
     fit = as_fit(made, body.name)
     files: dict[str, ParameterFile] = {}
     hulls: dict[str, Triangulation] = {}
@@ -118,6 +119,8 @@ def from_shape(
     exports, refused = exports_of(plan.exports, files.values(), progress)
     vehicle = next(iter(files.values()))
     said.extend(_drift_limit(vehicle))
+    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
+    said.extend([standing.words] if standing is not None else [])
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     carried, why = _carried(vehicle, moves, progress)
@@ -137,18 +140,11 @@ def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
 
 def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
     """From which drift on the law pushes the body ahead, in words; empty where it never does."""
-    drift = np.radians(np.arange(91.0))
-    motions = np.zeros((len(drift), 6))
-    motions[:, 0], motions[:, 1] = np.cos(drift), np.sin(drift)
-    try:
-        law = full_force(parameters)
-    except InputError:  # the first manoeuvre says why nothing moves by it
-        return ()
-    ahead = law(parameters.conditions.speed * motions, np.zeros((len(drift), 3)))[:, 0] > 0.0
-    if not ahead.any():
+    angle = ahead_from(parameters)
+    if angle is None:
         return ()
     return (
-        f"limit: from {np.argmax(ahead):d} deg of drift the law gives an X that points ahead; it is a law of small drift: use it below",
+        f"limit: from {angle:d} deg of drift the law gives an X that points ahead; it is a law of small drift: use it below",
     )
 
 
@@ -279,7 +275,9 @@ def replaced(
     return made, moves, carried
 
 
-def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
+def subject(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
+) -> Body:
     """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
 
     Parameters
@@ -288,15 +286,15 @@ def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> 
         A mesh file, a body.toml, its folder or a shipped body.
     unit, axes : str
         Of a mesh file.
-    repair : bool
-        Mend a mesh file that is not sound.
+    repair, fill, sheets : bool
+        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
 
     Raises
     ------
     InputError
         As of `coeflab.bodies.simplify.source.mesh_body`.
     """
-    body = mesh_body(name, unit, axes, repair)
+    body = mesh_body(name, unit, axes, repair, fill, sheets)
     middle = body.configurations[0].centre_of_buoyancy
     bare = body.datum.id.startswith("origin of ") and not body.lengths
     if not bare or middle is None:

@@ -109,7 +109,7 @@ def test_a_mesh_file_shows_its_particulars(coeflab: Run, tmp_path: Path) -> None
     assert row.split()[1:6] == ["0.0400000", "0.1000", "-0.0200", "-0.0300", "1.2400"]
     row = next(line for line in done.stdout.splitlines() if line.split()[:1] == ["by_mesh"] and "integrals" not in line)
     assert [float(x) for x in row.split()[1:5]] == pytest.approx(
-        [0.02, 0.2, 0.4, 40.0 * (0.04 + 0.01) / 12.0], rel=1e-3
+        [0.02, 0.2, 0.4, 998.2 * 0.04 * (0.04 + 0.01) / 12.0], rel=1e-3
     )
 
 

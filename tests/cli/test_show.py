@@ -6,11 +6,13 @@ import json
 import os
 import subprocess
 import sys
+from inspect import signature
 
 import pytest
 
-from coeflab.cli import show
+from coeflab.cli import show, vehicle
 from coeflab.core.table import Table
+from coeflab.tank.declaration import FRESH_WATER
 from tests.cli.conftest import COEFLAB, flat
 from tests.cli.test_compare import VALUES, made
 
@@ -103,3 +105,8 @@ def test_a_bar_is_drawn_on_a_terminal_and_stays_letters_in_a_pipe(capsys, monkey
     monkeypatch.setenv("COLUMNS", "80")
     show.table(table)
     assert "\u2588" * 8 + "!" in capsys.readouterr().out
+
+
+def test_one_default_density_of_water() -> None:
+    assert FRESH_WATER.density == show.FRESH_WATER
+    assert f"{show.FRESH_WATER:g} kg/m^3" in (signature(vehicle.command).parameters["density"].default.help or "")

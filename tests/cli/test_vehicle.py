@@ -37,6 +37,8 @@ def test_the_answer_comes_first_and_says_estimate(made: tuple[Path, str]) -> Non
     assert "too heavy" in flat(printed)
     assert "no thruster: write [[thruster]]" in flat(printed)
     assert "not stated: --cg, --inertia" in flat(printed)
+    assert "xdyn holds all of finned_spheroid" in flat(printed)
+    assert "% of the length from the bow" in flat(printed)
     assert (folder / "report.html").is_file()
     assert list(folder.glob("*.xdyn/*.yml"))
 

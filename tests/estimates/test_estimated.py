@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.estimates import METHODS, Contribution, Estimates, Forces, Water, combined, estimated, shifted
+from coeflab.estimates import (
+    METHODS,
+    SEPARATED,
+    STEP,
+    Contribution,
+    Estimates,
+    Forces,
+    Water,
+    combined,
+    estimated,
+    shifted,
+)
+from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from tests.estimates.bodies import (
     DOWN,
@@ -171,15 +183,20 @@ def test_the_law_of_a_bluff_body_holds_in_sway_and_astern() -> None:
     long = replace(box("a", (1.0, 0.0, 0.0)), half_extents=np.array([0.5, 0.25, 0.2]))
     seen = outline(hulls=(), bluff=(long, box("b", (-0.5, 0.0, 0.0))))
     made, towed = estimates_of(seen, (0.0, 0.0, 0.0)), estimated(body_of(seen, (0.0, 0.0, 0.0)), WATER, towed=True)
+    tail = 3.0 * STEP**2  # towed slopes are of u = sqrt(U^2 - v^2) in steps of STEP v/U
     now, ahead = set(made.coefficients.symbols), set(towed.coefficients.symbols)
     assert {"Xu|u|", "Nv", "Nuv", "Mw", "Muw", "Yr", "Yur", "Zq", "Zuq"} <= now
     assert not now & {"X0", "Xvv", "Xww", "Xrr", "Xqq"}
     assert {"X0", "Xvv", "Nv"} <= ahead
     assert not ahead & {"Nuv", "Xu|u|"}
     for whole, parts in (("Nv", ("Nv", "Nuv")), ("Yr", ("Yr", "Yur")), ("X0", ("Xu|u|",))):
-        assert value(towed, whole) == pytest.approx(sum(value(made, s) for s in parts), rel=1e-9)
+        assert value(towed, whole) == pytest.approx(sum(value(made, s) for s in parts), rel=tail), whole
     ideal = sum(v for k, v in towed.shares["Nv"].items() if "ideal" in k)
-    assert value(made, "Nuv") == pytest.approx(ideal, rel=1e-9)
+    assert value(made, "Nuv") == pytest.approx(ideal, rel=tail)
+    nu = np.array([[WATER.speed, 1e-3, 0, 0, 0, 0]])
+    unit = made.coefficients.scaling.unit("Nuv", WATER.density) * WATER.speed * 1e-3
+    exact = sum(c.forces(nu, {})[0, 5] for c in made.contributions if c.kind == "ideal fluid")
+    assert value(made, "Nuv") == pytest.approx(exact / unit, rel=1e-9)
 
 
 def test_alternatives_count_by_their_mean_and_widen_u95(cross: Estimates) -> None:
@@ -267,3 +284,39 @@ def test_methods_are_listed() -> None:
     assert {"friction", "form_drag", "crossflow", "hull_lift", "fins", "ring_wing", "bluff", "propeller"} <= set(
         METHODS.names()
     )
+
+
+def test_the_added_mass_of_a_bluff_body_is_its_ideal_fluid() -> None:
+    seen = outline(hulls=(), bluff=(box(centre=(0.1, 0.0, 0.0)),))
+    body = body_of(seen, (0.1, 0.0, 0.0))
+    own = np.diag([40.0, 60.0, 85.0, 1.0, 2.0, 3.0])
+    own[1, 5] = own[5, 1] = 4.0
+    given = AddedMass(own, body.reference_point, body.datum, error=0.01 * own)
+    made = estimated(body, WATER, added_mass=given)
+    scaling, rho = made.coefficients.scaling, WATER.density
+    # Kirchhoff: Y = -m11 u r, N = -(m22 - m11) u v, M = (m33 - m11) u w, X = m22 v r
+    for symbol, expected in (("Yur", -40.0), ("Zuq", 40.0), ("Nuv", -20.0), ("Muw", 45.0), ("Xvr", 60.0), ("Xwq", -85.0)):  # fmt: skip
+        assert value(made, symbol) == pytest.approx(expected / scaling.unit(symbol, rho), rel=1e-9), symbol
+
+    half = np.hypot(SEPARATED * 20.0, 0.01 * np.hypot(60.0, 40.0)) / scaling.unit("Nuv", rho)
+    assert made.coefficients["Nuv"].u95 == pytest.approx(half, rel=1e-9)
+    assert [c.kind for c in made.contributions].count("ideal fluid") == 1
+    hulled = outline(bluff=(box(),))
+    kept = estimated(body_of(hulled), WATER, added_mass=given)
+    assert value(kept, "Nv") == value(estimates_of(hulled), "Nv")
+
+
+@pytest.mark.parametrize("given", [True, False])
+def test_a_box_has_no_term_that_its_symmetry_forbids(given: bool) -> None:
+    body = body_of(outline(hulls=(), bluff=(replace(box(), half_extents=np.array([0.3, 0.2, 0.15])),)), (0.0, 0.0, 0.0))
+    own = AddedMass(np.diag([40.0, 60.0, 85.0, 1.0, 2.0, 3.0]), body.reference_point, body.datum)
+    made = estimated(body, WATER, added_mass=own if given else None)
+    for symbol in ("Nv|v|", "Mw|w|", "Nv", "Mw", "Y|v|r", "Z|w|q", "Yr|r|", "Zq|q|", "Yr", "Zq", "Nv|r|", "Mw|q|"):
+        assert symbol not in made.coefficients, symbol
+
+
+def test_fins_that_stand_off_their_planes_by_rounding_give_no_terms_across(cross: Estimates) -> None:
+    tilt = 4e-6
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(tilt), -np.sin(tilt)], [0.0, np.sin(tilt), np.cos(tilt)]])
+    fins = tuple(replace(f, root=turn @ f.root, tip=turn @ f.tip) if f.control == "dr" else f for f in tail())
+    assert estimates_of(outline(*fins)).coefficients.symbols == cross.coefficients.symbols

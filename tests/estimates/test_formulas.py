@@ -12,7 +12,7 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_sl
 from coeflab.bodies.fin_groups import fin_groups, foil_on_body
 from coeflab.bodies.hull_flow import FLAT, STERN, friction_line, hull_flow
 from coeflab.core.errors import InputError
-from coeflab.estimates import bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
+from coeflab.estimates import SEPARATED, bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
 from tests.estimates.bodies import (
     DOWN,
     LENGTH,
@@ -303,7 +303,7 @@ def test_shares_are_those_that_the_page_prints() -> None:
         "ideal fluid": hull_lift.IDEAL_SHARE, "hull lift, 2": hull_lift.SHED_SHARE, "fin lift": fins.LIFT_SHARE,
         "control": fins.CONTROL_SHARE, "sidewash": fins.WASH_SHARE, "fin cross-flow, 1 and 2": fins.DRAG_SHARE,
         "ring lift": ring_wing.SHARE, "ring cross-flow": ring_wing.DRAG_SHARE, "bluff drag, 1 to 4": bluff.SHARE,
-        "ideal fluid, bluff": bluff.IDEAL_SHARE, "cross-flow friction": crossflow.FRICTION_SHARE,
+        "ideal fluid, bluff": SEPARATED, "ideal fluid, bluff parts without added mass": bluff.IDEAL_SHARE, "cross-flow friction": crossflow.FRICTION_SHARE,
         "cross-flow drag, 1": crossflow.DRAG_SHARE, "friction": friction.HULL_SHARE, "form drag, 1 and 2": form_drag.SHARE,
     }  # fmt: skip
     for kind, share in shares.items():

@@ -13,14 +13,19 @@ import trimesh
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
+from coeflab.bodies.mass_model import MassModel, MassPart
 from coeflab.bodies.pieces import Control
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.thrusters import Thruster
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
+from coeflab.core.table import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
+from coeflab.formats.export import Loss
+from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.motion.simulation import simulate
 from coeflab.report.answer import answer
 from coeflab.report.content import document
 from coeflab.report.sections.estimates import (
@@ -30,15 +35,16 @@ from coeflab.report.sections.estimates import (
     manoeuvre_table,
     shares_figure,
 )
+from coeflab.study.checks import buoyancy, export_loss
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
-from coeflab.vehicle.force_law import full_force
+from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench import run
 from coeflab.workbench import vehicle as workbench_vehicle
-from coeflab.workbench.exports import parameter_files_rendered
+from coeflab.workbench.exports import export, parameter_files_rendered
 from coeflab.workbench.vehicle import asked, from_shape, subject
 
 VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
@@ -49,7 +55,7 @@ DISPLACED = 998.2 * np.pi / 6.0 * 3.0 * 0.5**2
 PLAN = Plan("toy", "Toy", (), method="ellipsoid")
 
 
-def toy(body: Body, water: Water) -> Estimates:
+def toy(body: Body, water: Water, towed: bool = False, added_mass: AddedMass | None = None) -> Estimates:
     """Stated numbers, of the rudder where there is one."""
     values = VALUES | (RUDDER if any(c.name == "dr" for c in body.controls) else {})
     each = tuple(
@@ -122,6 +128,32 @@ def test_the_mass_is_compared_with_the_displacement(bare: Body, mass: float | No
     assert said in found.said[0]
     assert ("mass" in found.assumed) == (mass is None)
     assert {"centre", "inertia"} <= set(found.assumed)
+
+
+@pytest.mark.parametrize("mass", [DISPLACED / 3.1, 3.1 * DISPLACED, 0.028])
+def test_a_mass_that_no_unit_makes_a_vehicle_is_refused(bare: Body, mass: float) -> None:
+    with pytest.raises(InputError, match="of displacement"):
+        weighed(bare, Stated(mass), 998.2)
+    water = MassPart("hold", "water", 1.0, np.zeros(3), np.zeros((3, 3)), flooded=True)
+    flooded = replace(bare, mass_model=MassModel((water,), 998.2, DISPLACED / 998.2, np.zeros(3)))
+    assert weighed(flooded, Stated(mass), 998.2).configuration.mass is not None
+
+
+@pytest.mark.parametrize(("share", "severity"), [(1.15, Severity.PASS), (1.3, Severity.WARN), (0.7, Severity.WARN)])
+def test_a_mass_far_from_the_displacement_is_warned_of(steered: Study, share: float, severity: Severity) -> None:
+    assert steered.shape is not None
+    heavy = weighed(steered.shape.weighed.body, Stated(share * DISPLACED), 998.2)
+    (found,) = buoyancy.check(replace(steered, shape=replace(steered.shape, weighed=heavy)))
+    assert found.severity is severity
+
+
+def test_an_export_that_is_worse_than_no_force_is_warned_of(steered: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = export(next(iter(steered.parameter_files.values())), "xdyn")
+    assert export_loss.check(replace(steered, exports=(made,))) == []
+    monkeypatch.setattr(Loss, "worse_than_nothing", property(lambda _: ("X", "K")))
+    (found,) = export_loss.check(replace(steered, exports=(made,)))
+    assert found.severity is Severity.WARN
+    assert found.statistic == "worse than no force at all: X and K"
 
 
 def test_the_inertia_of_displaced_water_is_that_of_the_spheroid(bare: Body) -> None:
@@ -371,6 +403,25 @@ def test_the_drift_from_which_the_law_pushes_ahead_is_said(bare: Body, monkeypat
     shape = from_shape(PLAN, bare).shape
     assert shape is not None
     assert any(s.startswith("limit: from 25 deg of drift") for s in shape.said)
+
+
+def test_a_manoeuvre_beyond_what_estimates_hold_says_so(steered: Study) -> None:
+    p = next(iter(steered.parameter_files.values())).model_copy(update={"surfaces": ()})
+    small, large = (simulate(p, "zigzag", {"rudder": np.radians(a)}) for a in (10.0, 20.0))
+    assert not [s for s in small.statements if "do not stall" in s]
+    assert [s for s in large.statements if s.startswith("limit: 20 deg of rudder") and "do not stall" in s]
+    bent = tuple(c for c in p.coefficients if c.symbol != "Xu|u|'")
+    pushed = [
+        replace(bent[0], symbol="X0'", value=-0.004, value_si=None, potential=None),
+        replace(bent[0], symbol="Xvv'", value=4.0, value_si=None, potential=None),
+    ]
+    off = p.model_copy(update={"coefficients": (*bent, *pushed)})
+    assert ahead_from(off) == 2
+    (said,) = [s for s in simulate(off, "zigzag", {"rudder": np.radians(10.0)}).statements if "points ahead" in s]
+    assert said.startswith("limit: drift reaches")
+    stated = tuple(replace(c, status=Status.STATED) for c in off.coefficients)
+    kept = simulate(off.model_copy(update={"coefficients": stated}), "zigzag", {"rudder": np.radians(20.0)})
+    assert not [s for s in kept.statements if s.startswith("limit: ")]
 
 
 def test_a_body_that_is_not_alike_to_both_sides_turns_as_it_coasts(bare: Body) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, number, percent, plus_minus, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
@@ -23,7 +23,7 @@ from coeflab.report.sections.body import hull_figure
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
 from coeflab.study.study import FromShape, Study
-from coeflab.vehicle.derived import sense, stability
+from coeflab.vehicle.derived import Derived, sense, stability
 from coeflab.vehicle.merge import Merged, estimates_of
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -235,6 +235,7 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
             notes.append(
                 f"{called}: no 95 %, as only the first manoeuvre is repeated with random coefficients; coeflab uncertainty FILE --manoeuvre {name} has it."
             )
+        notes += [f"{called}: {s.removeprefix('limit: ')}." for s in made.statements if s.startswith("limit: ")]
         for f in made.figures:
             factor, unit = shown_unit(f.unit)
             s = bounds.get((name, f.name))
@@ -280,11 +281,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         status = "" if value is not None else "no estimate"
         rows.append(AnswerRow(symbol, value, u95, status, "estimates", anchor="coefficients"))
     indices = stability(parameters)
-    held = (
-        f"{sense(indices[0]).partition(' at ')[0]}, {indices[0].name} = {indices[0].value:.2f}"
-        if indices
-        else "not determined"
-    )
+    held = _stability(indices[0]) if indices else "not determined"
     turn = interval_in_words(shape.carried, parameters.conditions.speed)
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
@@ -311,10 +308,17 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
 
+def _stability(index: Derived) -> str:
+    """The verdict with what it rests on: an interval that holds zero says why nothing is determined."""
+    found = f"{index.value:.2f}" if index.result is None else plus_minus(index.value, index.result.linear)
+    return f"{sense(index).partition(' at ')[0]}, {index.name} = {found}"
+
+
 def _exports(study: Study) -> Chip:
     """How many exports were made, and how many refused."""
     made, refused = len(study.exports), len(study.refused)
-    said = f"{made} made" if made else "" if refused else "none asked for"
+    loss = sum(not e.lossless for e in study.exports)
+    said = f"{made} made{f', {loss} with loss' if loss else ''}" if made else "" if refused else "none asked for"
     said = ", ".join(filter(None, (said, f"{refused} refused" if refused else "")))
     return Chip("Exports", said, Severity.WARN if refused else Severity.NOTE, "exports" if made else "")
 

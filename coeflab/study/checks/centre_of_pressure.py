@@ -19,16 +19,17 @@ def check(study: Study) -> Sequence[Check]:
         for d in centre_of_pressure(fit.coefficients, fit.campaign):
             found = f"{d.value:.3f}" if d.result is None else plus_minus(d.value, d.result.linear)
             metres = d.value * fit.coefficients.scaling.length
+            way, motion = "ahead of" if metres >= 0.0 else "behind", "sway" if d.name.startswith("Nv") else "heave"
             out.append(
                 Check(
                     "centre_of_pressure",
-                    f"{fit.campaign} {d.name}",
+                    f"{fit.campaign} {motion}",
                     Severity.NOTE,
-                    f"x/L = {found}, {metres:.3f} m forward of the reference point",
-                    "none",
+                    f"{abs(metres):.2g} m {way} the reference point ({d.name} = {found} L)",
+                    "",
                     "Beyond the hull's ends: the Munk moment outweighs the lever of the force."
                     if abs(d.value) > 0.5
-                    else "The force acts within the hull.",
+                    else "The force at an angle acts inside the hull.",
                 )
             )
     return out

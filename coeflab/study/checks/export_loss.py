@@ -1,0 +1,26 @@
+"""Exports whose force is further from the parameter file's than no force at all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Check, Severity
+from coeflab.core.wording import listed
+from coeflab.study.study import Study
+
+summary = "components of an export that are further from the parameter file than no force at all"
+citations = ("fossen2011",)
+
+
+def check(study: Study) -> Sequence[Check]:
+    """A warning for each export with such a component; an export that loses less is told of beside its files."""
+    return [
+        Check(
+            "export_loss", f"{made.parameters} for {made.target}", Severity.WARN,
+            f"worse than no force at all: {listed(made.loss.worse_than_nothing)}",
+            "a difference smaller than the force itself",
+            f"Do not use these components of {made.target}; its loss report has them by size.",
+        )
+        for made in study.exports
+        if made.loss is not None and made.loss.worse_than_nothing
+    ]  # fmt: skip

@@ -1,0 +1,25 @@
+"""Whether the fins of a vehicle from its shape stand astern."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.bodies.outlining import fins_along
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+
+summary = "where the fins of a vehicle from its shape stand along its hull"
+citations = ("sname1950",)
+
+REVERSED = "Is the mesh x aft? Of a mesh with x aft and z up write --axes CFD. Fins ahead of the middle turn the vehicle round."
+
+
+def check(study: Study) -> Sequence[Check]:
+    """A warning where all fins stand ahead of the middle of the hull."""
+    seen = study.shape.weighed.body.outline if study.shape is not None else None
+    found = fins_along(seen) if seen is not None else None
+    if study.shape is None or found is None:
+        return []
+    severity = Severity.WARN if found.ahead else Severity.PASS
+    comment = REVERSED if found.ahead else ""
+    return [Check("fins", study.shape.weighed.body.name, severity, found.words, "fins behind the middle", comment)]

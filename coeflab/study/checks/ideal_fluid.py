@@ -1,0 +1,56 @@
+"""Whether estimates of the ideal fluid and the added mass of their parameter file are one body's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Check, Severity
+from coeflab.core.wording import listed
+from coeflab.estimates import IDEAL, every_way
+from coeflab.law.symbols import derivative
+from coeflab.study.study import Study
+from coeflab.vehicle.parameter_file import ParameterFile
+
+summary = "estimates of the ideal fluid against the potential part that the added mass gives"
+citations = ("lamb1932", "fossen2011")
+
+ROUNDING, WHOLE = 1e-6, 1e-6
+
+
+def check(study: Study) -> Sequence[Check]:
+    """Value and potential part of every estimate that is ideal fluid alone.
+
+    A body of bluff parts takes both from one matrix. Of a hull with fins they are two estimates, by sections and by the added
+    mass of the whole, and agree within U95.
+    """
+    if study.shape is None:
+        return []
+    seen = study.shape.weighed.body.outline
+    one = seen is not None and every_way(seen)
+    shares = study.shape.estimates.shares
+    return [c for p in study.parameter_files.values() for c in _of_file(p, shares, one)]
+
+
+def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one: bool) -> list[Check]:
+    found, apart = [], []
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if c.value is None or c.potential is None or c.status != "estimate" or "|" in d.text or d.text not in shares:
+            continue
+        ideal = sum(v for part, v in shares[d.text].items() if part.endswith(f", {IDEAL}"))
+        if abs(ideal - c.value) > WHOLE * abs(c.value):
+            continue
+        found.append(c.symbol)
+        if abs(c.value - c.potential) > (ROUNDING * abs(c.potential) if one else c.u95 or 0.0):
+            apart.append(f"{c.symbol} = {c.value:.4g}, potential {c.potential:.4g}")
+    if not found:
+        return []
+    bad = Severity.FAIL if one else Severity.WARN
+    comment = "Two added masses in one file: what an export calls viscous is their difference."
+    return [
+        Check(
+            "ideal_fluid", parameters.name, bad if apart else Severity.PASS,
+            listed(apart) if apart else f"{listed(found)} as the added mass gives them",
+            "value = potential" if one else "value = potential within U95", comment if apart else "",
+        )
+    ]  # fmt: skip
