@@ -147,13 +147,13 @@ def _by_others(study: Study) -> list[str]:
     """Which derivatives of the indices are from literature, file by file; none where an index has no other."""
     each = []
     for p in study.parameter_files.values():
-        stated = [_from_literature(p, d.name) for d in stability(p)]
+        stated = [from_literature(p, d.name) for d in stability(p)]
         symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
         each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
     return [f"From literature, not from our fits: {'; '.join(each)}."] if each else []
 
 
-def _from_literature(parameters: ParameterFile, index: str) -> list[str]:
+def from_literature(parameters: ParameterFile, index: str) -> list[str]:
     """Derivatives of a stability index that no campaign of the study gave."""
     found = [parameters.coefficient(str(s)) for s in INDICES[index][:-1]]
     return [c.symbol for c in found if c is not None and c.origin == "literature"]
@@ -214,7 +214,7 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
             continue
         d = given[index]
         half = None if d.result is None else d.result.linear
-        stated = _from_literature(parameters, index)
+        stated = from_literature(parameters, index)
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
         remarks += [d.limits] if d.limits else []
