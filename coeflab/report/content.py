@@ -21,7 +21,7 @@ from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
 from coeflab.core.machine import cores, end_with_parent
-from coeflab.core.table import Severity, Table
+from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
@@ -495,8 +495,8 @@ def _comparison(study: Study) -> tuple[Section, ...]:
             )
     shown = filled(
         tables.campaigns(study),
-        without(tables.side_by_side(study), "random", "form"),
-        without(tables.verdicts(study), "combined"),
+        tables.without(tables.side_by_side(study), "random", "form"),
+        tables.without(tables.verdicts(study), "combined"),
     )
     apart = filled(tables.differences(study))
     more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
@@ -509,15 +509,6 @@ def _with_campaigns(study: Study, coefficients: Section) -> Section:
     return replace(coefficients, tables=(*first, *coefficients.tables))
 
 
-def without(table: Table, *names: str) -> Table:
-    """The table without some columns, and without the notes on them."""
-    kept = [i for i, header in enumerate(table.headers) if header not in names]
-    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
-    notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
-    left = frozenset(kept.index(i) for i in table.left if i in kept)
-    return Table(table.title, tuple(table.headers[i] for i in kept), rows, notes, left)
-
-
 def _checks(study: Study) -> Section:
     """Failures and warnings, a row each; the others counted, and in the appendix."""
     if not study.checks:
@@ -526,7 +517,7 @@ def _checks(study: Study) -> Section:
     counts = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
     text = (f"{counts}. Only a failure makes the study fail.",)
     whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
-    shown = filled(replace(without(tables.checks(grave), "rule"), title="Failures and warnings"))
+    shown = filled(replace(tables.without(tables.checks(grave), "rule"), title="Failures and warnings"))
     return Section("checks", "Checks", text, shown, subsections=(whole,))
 
 

@@ -5,13 +5,14 @@ Uncertainty budgets, grid studies, validations and derived quantities, as tables
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
+from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.uncertainty.budget import Budget
+from coeflab.fits.uncertainty.budget import COUPLED, Budget
 from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
@@ -155,6 +156,39 @@ def members_csv(carried: Carried) -> bytes:
 
 
 UNITS = {"angle": "rad", "reference point": "m"}
+READ = ("angle", "rate", "speed", "force", "moment", "length", "density", "reference point", COUPLED)
+SET = (
+    "angle",
+    "speed",
+    "length",
+    "density",
+    "reference point",
+    "rate",
+    COUPLED,
+)  # in a computation: no errors of readings
+
+
+def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str = "Not in U95") -> list[str]:
+    """What an uncertainty leaves out, as sentences; none where nothing is open.
+
+    Parameters
+    ----------
+    names : iterable of str
+        As in `Budget.unassessed`.
+    computed : bool
+        Of a computation, whose conditions are set and have no errors of readings.
+    what : str
+        How the sentence begins.
+    """
+    left = list(dict.fromkeys(names))
+    fixed = [n for n in left if computed and n in SET]
+    rest = [n for n in left if n not in fixed]
+    read = [n.removeprefix("error of ") for n in rest if n in READ]
+    others = [n for n in rest if n not in READ]
+    said = [f"errors of {listed(read)}"] * bool(read) + others
+    out = [f"{what}: {'; '.join(said)}."] if said else []
+    known = [n for n in fixed if n != COUPLED]
+    return [*out, f"Set in CFD, so without errors of readings: {listed(known)}."] if known else out
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
