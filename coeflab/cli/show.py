@@ -332,12 +332,15 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
+            stop = "" if c.statistic.endswith(".") else "."
+            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}{stop} {meant} Expected: {rule}.".replace("  ", " "))
             continue
-        printed += marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
+        alike = {c.statistic for c in same}
+        found = f"{same[0].statistic}. " if len(alike) == 1 else ""
+        printed += marked(str(severity), f"{about}, {len(same)} times: {found}{meant} Expected: {rule}.".replace("  ", " "))
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
-            text(f"        {c.subject}: {c.statistic}")
+            text(f"        {c.subject}" if found else f"        {c.subject}: {c.statistic}")
         printed, left = printed + len(shown), left + len(same) - len(shown)
     if left:
         text(f"        and {left} more, which `coeflab fit` shows")

@@ -79,8 +79,8 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
     )  # fmt: skip
     notes = [
-        "In % of the largest force of the component in that table. Offsets of the set-up are subtracted from the points: the force at "
-        "zero angle and rate where the law has no constant, and the part of X odd in drift where the fit found one."
+        "In % of the largest force of the component in that table. Two offsets of the set-up are subtracted from the points first: a force "
+        "at zero angle and rate that the law does not have, and the part of X that changes its sign with the drift."
     ]
     if not controls:
         notes.append("Points with a deflected control are left out: no force of controls is compared.")

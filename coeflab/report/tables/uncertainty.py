@@ -352,6 +352,23 @@ def validation(found: Sequence[Validation]) -> Table:
     return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11}))
 
 
+def predictions(found: Sequence[Validation]) -> Table:
+    """Comparison error of every computed coefficient that has a verdict, in digits that go with U_V."""
+    rows = tuple(
+        (
+            primed(v.symbol), v.simulation, v.experiment, with_u95(v.computed, v.u_validation)[0], with_u95(v.measured, v.u_validation)[0],
+            *with_u95(v.error, v.u_validation), "no modelling error shown" if v.within else "beyond U_V",
+        )
+        for v in found
+        if v.within is not None
+    )  # fmt: skip
+    headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
+    notes = (
+        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test.",
+    )
+    return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
+
+
 def derived(found: Sequence[Derived]) -> Table:
     """Centres of pressure and stability indices, linear and Monte Carlo half-widths side by side."""
     rows = tuple(
