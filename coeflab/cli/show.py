@@ -333,11 +333,15 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         if len(same) == 1:
             (c,) = same
             stop = "" if c.statistic.endswith(".") else "."
-            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}{stop} {meant} Expected: {rule}.".replace("  ", " "))
+            printed += marked(
+                str(severity), f"{about}, {c.subject}: {c.statistic}{stop} {meant} Expected: {rule}.".replace("  ", " ")
+            )
             continue
         alike = {c.statistic for c in same}
         found = f"{same[0].statistic}. " if len(alike) == 1 else ""
-        printed += marked(str(severity), f"{about}, {len(same)} times: {found}{meant} Expected: {rule}.".replace("  ", " "))
+        printed += marked(
+            str(severity), f"{about}, {len(same)} times: {found}{meant} Expected: {rule}.".replace("  ", " ")
+        )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
             text(f"        {c.subject}" if found else f"        {c.subject}: {c.statistic}")

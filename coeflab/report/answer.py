@@ -434,6 +434,7 @@ def answer_table(found: Answer) -> Table:
     if found.table is not None:
         return _on_a_terminal(found.table, found.notes)
     short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
+    short = [n.replace("published ", "publ. ") for n in short]
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)

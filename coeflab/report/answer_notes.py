@@ -61,7 +61,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     own = [r for r in rows if r.source in towed_rows]
     if own:
-        out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
+        out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
     out += filter(None, (_not_in_u95(study, rows), _independent(study)))

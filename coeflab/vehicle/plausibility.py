@@ -24,7 +24,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 
-X_APART = "X does not steer: the other components set the valid range of exports and motions."
+X_APART = "Valid ranges of exports and motions come from the other components, not X."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place

@@ -130,7 +130,25 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
                 else f"With controls fixed, straight motion in {IN_PLANE[index]} is"
             )
             out.append(f"{start} {'. It is '.join(each)}.")
-    return [" ".join((*out, *_by_others(study)))] if out else []
+    return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
+
+
+KINDS = {"experiment": "test", "cfd": "CFD"}
+
+
+def _one_body(study: Study) -> list[str]:
+    """Which parameter files with an index are of one body, and what each comes from."""
+    by: dict[str, dict[str, str]] = {}
+    for p in study.parameter_files.values():
+        if stability(p):
+            of = {name for c in p.coefficients for name in (c.campaign or "").split(", ")}
+            kinds = dict.fromkeys(KINDS.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
+            by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
+    return [
+        f"{listed(list(files))} are one body, by {listed(list(files.values()))}."
+        for files in by.values()
+        if len(files) > 1
+    ]
 
 
 def _of_one_sense(

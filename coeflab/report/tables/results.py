@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
+import numpy as np
+
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -18,6 +20,7 @@ from coeflab.core.table import (
     probability,
     with_u95,
 )
+from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.budget import Budget
@@ -229,7 +232,7 @@ def _published_in(r: Reference, ours: Collection[str]) -> str:
 
 
 def campaigns(study: Study) -> Table:
-    """Every campaign with its body, the kind of its source and the parameter files that use it; no rows for a single one."""
+    """What was tested or computed, a row a campaign, and the parameter files that use it; no rows for a single one."""
     towed_ones = {t.campaign for t in study.plan.tows}
     rows = []
     for name in dict.fromkeys(t.campaign for t in study.tables):
@@ -241,9 +244,28 @@ def campaigns(study: Study) -> Table:
         ]
         kinds = ", ".join(dict.fromkeys(t.source.kind for t in mine))
         bodies = ", ".join(dict.fromkeys(t.body for t in mine))
-        rows.append((name, bodies, f"{kinds}, own tow" if name in towed_ones else kinds, ", ".join(files) or ABSENT))
-    headers = ("campaign", "body", "source", "parameter file")
-    return Table("Campaigns", headers, tuple(rows) if len(rows) > 1 else (), (), frozenset(range(4)))
+        varied = ", ".join(dict.fromkeys(m if m in t.controls else f"{m}'" for t in mine for m in t.varies))
+        speed = np.concatenate([np.atleast_1d(t.speed) for t in mine])
+        known = [r for t in mine if (r := t.reynolds(t.scaling.length)) is not None]
+        reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
+        source = f"{kinds}, own tow" if name in towed_ones else kinds
+        rows.append((name, mine[0].title, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
+    headers = ("campaign", "what", "body", "source", "varied", "speed m/s", "Re 1e6", "parameter file")
+    notes = []
+    for body in dict.fromkeys(t.body for t in study.tables):
+        configuration = study.body.configuration(body) if study.body else None
+        if configuration is not None and configuration.title:
+            notes.append(f"{body}: {configuration.title}.")
+    at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
+    notes += [f"Parameter files hold their values at {listed(list(at))}."] if at else []
+    title = "What was tested and computed"
+    return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 4, 7}))
+
+
+def _span(values: Array) -> str:
+    """A number of three digits, or the smallest and the largest."""
+    low, high = (f"{float(x):.3g}" for x in (np.nanmin(values), np.nanmax(values)))
+    return low if low == high else f"{low} .. {high}"
 
 
 def own_tow(found: Towed) -> Table:
@@ -268,7 +290,7 @@ def own_tow(found: Towed) -> Table:
     grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
     notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
-    headers = ("", "tow", "U95" if not grid else "U95 without grid", "grid", *columns)
+    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
     return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
 
 

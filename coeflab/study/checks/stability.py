@@ -32,7 +32,11 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             statistic = f"{name} = {d.value:.3f}" if half is None else f"{name} = {plus_minus(d.value, half)}"
             statistic += f": {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
-            comment = f"Directionally {verdict} with controls fixed." if d.decided else f"Stability with controls fixed: {verdict}."
+            comment = (
+                f"Directionally {verdict} with controls fixed."
+                if d.decided
+                else f"Stability with controls fixed: {verdict}."
+            )
             if d.driven:
                 comment += f" {d.driven} is not negative: it drives the motion instead of damping it, and the index does not apply."
             else:
