@@ -340,7 +340,8 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         alike = {c.statistic for c in same}
         found = f"{same[0].statistic}. " if len(alike) == 1 else ""
         printed += marked(
-            str(severity), f"{about}, {len(same)} times: {found}{meant} Expected: {rule}.".replace("  ", " ")
+            str(severity),
+            f"{about}, {len(same)} times{': ' if found else '. '}{found}{meant} Expected: {rule}.".replace("  ", " "),
         )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.glide_polar import munk_in_words
-from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
@@ -56,7 +55,9 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     if sources:
         scaling = beside.among.scaling if beside.among else None
         by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
-        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{by}.")
+        count = len({f.campaign for f in study.fits})
+        of = f" of {count} campaigns" if count > len(sources) else ""
+        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     own = [r for r in rows if r.source in towed_rows]
@@ -71,13 +72,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{names}: {f'another body, {body}' if body != beside.body else 'another method'}; no verdict.")
     for r in others:
         if r.other_scaling is not None:
-            out.append(f"{r.name}: reference length not stated, {_readings(r.scaling, r.other_scaling)}.")
-    also = [f.campaign for f in study.fits if f.campaign not in sources and _gives(f, rows)] if sources else []
-    if also:
-        several = (
-            f"{len(set(also))} more campaigns" if len(set(also)) > MOST_NAMED - 2 else listed(list(dict.fromkeys(also)))
-        )
-        out.append(f"Also fitted, see Coefficients: {several}.")
+            out.append(f"{r.name}: length not stated, {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
@@ -129,11 +124,6 @@ def _independent(study: Study) -> str:
     beyond = f"; beyond U_V: {', '.join(outside)}" if outside else ""
     inside = sum(bool(v.within) for v in found)
     return f"Independent: {inside} of {len(found)} coefficients from CFD agree within U_V with the test of the same body ({bodies}){beyond}."
-
-
-def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
-    """Whether a fit of another body has a value of a wanted coefficient."""
-    return any(c.value is not None and c.symbol == r.symbol for c in fit.coefficients.coefficients for r in rows)
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

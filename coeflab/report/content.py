@@ -450,15 +450,14 @@ def _next(study: Study) -> list[str]:
                 dict.fromkeys(f for f in derivative(c.symbol).factors if f not in varied.get(c.body, set()))
             )
     runs = [f"runs that vary {' and '.join(motions)} of {body}" for body, motions in lacking.items() if motions]
-    wide = [
-        f"{primed(c.symbol)} of {c.campaign}"
-        for c in study.coefficients
-        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > tables.WIDE * abs(c.value)
-    ]
+    wide: dict[str, list[str]] = {}
+    for c in study.coefficients:
+        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > tables.WIDE * abs(c.value):
+            wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
     out = [f"To measure next: {listed(runs)}."] if runs else []
     if wide:
         out.append(
-            f"U95 above {100.0 * tables.WIDE:.0f} % of the value: {listed(wide)}. `coeflab fit TABLE --next 3` names the runs that "
+            f"U95 above {100.0 * tables.WIDE:.0f} % of the value: {'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
             "narrow it most."
         )
     return out

@@ -266,7 +266,7 @@ def _left_out(study: Study, campaign: str, symbol: str) -> str:
         return ""
     said = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
     kind, used = RUNS.get(variable, variable), runs - states.total()
-    return f"{used} of {runs} {kind} runs used: {said}" if used else f"no {kind} run used of {runs}: {said}"
+    return f"{used} of {runs} {kind} runs used: {said}" if used else f"no {kind} run used (of {runs}, {said})"
 
 
 def _variable(symbol: str) -> str:

@@ -31,7 +31,7 @@ TEXT = (
     "U95 covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
     "Form: unknown shape of the curve.",
     "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
-    "to all runs of its component that the law combines. A dash: not assessed, so not in U95.",
+    "to all runs that its law covers, also some in which two motions vary. A dash: not assessed, so not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."

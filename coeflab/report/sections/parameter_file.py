@@ -133,7 +133,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
 
 
-KINDS = {"experiment": "test", "cfd": "CFD"}
+SOURCES = {"experiment": "test", "cfd": "CFD"}
 
 
 def _one_body(study: Study) -> list[str]:
@@ -142,10 +142,10 @@ def _one_body(study: Study) -> list[str]:
     for p in study.parameter_files.values():
         if stability(p):
             of = {name for c in p.coefficients for name in (c.campaign or "").split(", ")}
-            kinds = dict.fromkeys(KINDS.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
+            kinds = dict.fromkeys(SOURCES.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
             by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
     return [
-        f"{listed(list(files))} are one body, by {listed(list(files.values()))}."
+        f"{listed(list(files))} are one body, by {listed(list(files.values()))}, in this order."
         for files in by.values()
         if len(files) > 1
     ]
@@ -364,7 +364,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
     text = []
     if made.undetermined:
         text.append(
-            f"Nothing is drawn, as this motion has no solution that the data support. {made.undetermined}{_stated_rates(made, parameters)}"
+            f"Nothing is drawn: the data do not support this motion. {made.undetermined}{_stated_rates(made, parameters)}"
         )
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")

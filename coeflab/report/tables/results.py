@@ -250,14 +250,14 @@ def campaigns(study: Study) -> Table:
         reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
         source = f"{kinds}, own tow" if name in towed_ones else kinds
         rows.append((name, mine[0].title, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
-    headers = ("campaign", "what", "body", "source", "varied", "speed m/s", "Re 1e6", "parameter file")
+    headers = ("campaign", "what", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
     notes = []
     for body in dict.fromkeys(t.body for t in study.tables):
         configuration = study.body.configuration(body) if study.body else None
         if configuration is not None and configuration.title:
             notes.append(f"{body}: {configuration.title}.")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
-    notes += [f"Parameter files hold their values at {listed(list(at))}."] if at else []
+    notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 4, 7}))
 
@@ -282,7 +282,7 @@ def own_tow(found: Towed) -> Table:
     every = len(found.rows) > 1 and len(said) == 1
     lacking = {r.why for r in found.rows if r.missing}
     reasons = [
-        f"{'All' if every else ', '.join(symbols)}: {'no value: ' * (why in lacking)}{why}."
+        f"{'All' if every else ', '.join(symbols)}: {'no value, ' * (why in lacking)}{why}."
         for why, symbols in said.items()
         if why
     ]

@@ -185,10 +185,10 @@ def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str
     rest = [n for n in left if n not in fixed]
     read = [n.removeprefix("error of ") for n in rest if n in READ]
     others = [n for n in rest if n not in READ]
-    said = [f"errors of {listed(read)}"] * bool(read) + others
+    said = [*([f"errors of {listed(read)}"] if read else []), *others]
     out = [f"{what}: {'; '.join(said)}."] if said else []
     known = [n for n in fixed if n != COUPLED]
-    return [*out, f"Set in CFD, so without errors of readings: {listed(known)}."] if known else out
+    return [*out, f"Set in CFD, not measured: {listed(known)}."] if known else out
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -352,11 +352,16 @@ def validation(found: Sequence[Validation]) -> Table:
     return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11}))
 
 
+def _beside(value: float, half: float | None) -> str:
+    """In the digits that go with a half-width; of a value that they do not show, two of its own."""
+    return number(value, 2) if half and abs(value) < 0.01 * half else with_u95(value, half)[0]
+
+
 def predictions(found: Sequence[Validation]) -> Table:
     """Comparison error of every computed coefficient that has a verdict, in digits that go with U_V."""
     rows = tuple(
         (
-            primed(v.symbol), v.simulation, v.experiment, with_u95(v.computed, v.u_validation)[0], with_u95(v.measured, v.u_validation)[0],
+            primed(v.symbol), v.simulation, v.experiment, _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
             *with_u95(v.error, v.u_validation), "no modelling error shown" if v.within else "beyond U_V",
         )
         for v in found
