@@ -105,20 +105,17 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     twice = replace(OTHER, other_scaling=replace(LENGTH, length=2.2, length_name="LWL"))
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
-    assert any(
-        "its source does not state the length; here by LOA (by LWL: Yv' +21.0 %, Nr' +46.4 %)" in note
-        for note in made.notes
-    )
+    assert any("length not stated, LOA assumed (if LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes)
 
 
 @pytest.mark.parametrize(
     ("references", "sentence"),
     [
-        ((REPORT, QUOTED), "Study tow re-analysed: Nv' of two static derivatives differs from experiment 1990 by more than U95; no rotating-arm data."),
+        ((REPORT, QUOTED), "Study tow: our fits to the data of experiment 1990 differ from its Nv' by more than U95 (one of two static derivatives); no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298"}, "report"),),
-         "Study tow re-analysed: Yv' agrees with report within U95; no rotating-arm data."),
+         "Study tow: our fits to the data of report reproduce its Yv' within U95; no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298", "Nv": "-0.0138"}, "report"),),
-         "Study tow re-analysed: Yv' and Nv' agree with report within U95; no rotating-arm data."),
+         "Study tow: our fits to the data of report reproduce its Yv' and Nv' within U95; no rotating-arm data."),
         ((), "Study tow: two of three wanted coefficients found, each with U95; no rotating-arm data."),
     ],
 )  # fmt: skip
@@ -133,7 +130,7 @@ def test_any_name_and_any_sweep(angles: list[float], named: str):
     assert len(made.sentence) <= 160
     assert all(len(note) <= 244 for note in made.notes)
     assert len(made.notes) <= 4
-    assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Exports"]
+    assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Simulator files"]
     assert all(len(c.text.split()) <= 6 for c in made.chips)
     folded = replace(answer_table(made), notes=())
     assert max(map(len, plain_lines(folded))) <= 80
@@ -183,7 +180,7 @@ def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyP
     assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
     assert row.difference == pytest.approx(0.0003)
     assert made.rows[:2] == beside.rows[:2]
-    assert "Nr': own tow own_tow; no verdict." in made.notes
+    assert "Nr': our CFD own_tow; no verdict." in made.notes
     assert "no rotating-arm data" not in made.sentence
 
 
@@ -373,10 +370,10 @@ def test_suboff(suboff: Study):
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
-        == "DARPA SUBOFF re-analysed: Yv', Nv', Zw' and Mw' agree with experiment 1990 within U95; no rotating-arm data on suboff "
+        == "DARPA SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95; no rotating-arm data for suboff "
         "fully appended."
     )
-    assert made.columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
+    assert made.columns == ("experiment 1990", "published CFD", "PMM CFD 2012")
     assert [r.source for r in made.rows] == ["suboff_roddy_2"] * 2 + ["suboff_roddy_1"] * 2 + ["", ""]
     assert [r.agrees for r in made.rows] == [True] * 4 + [None] * 2
     assert [r.published[0] for r in made.rows] == [-0.027834, -0.013648, -0.01391, 0.010324, 0.0052, -0.0044]

@@ -132,7 +132,7 @@ def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies:
 
 
 def test_published_columns_stand_beside_by_our_length(bodies: tuple[Towed, ...]) -> None:
-    assert bodies[2].columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
+    assert bodies[2].columns == ("experiment 1990", "published CFD", "PMM CFD 2012")
     by = {r.symbol: r.published for r in bodies[2].rows}
     assert by["Yr"] == pytest.approx((0.0052, 0.0044, 0.0046), rel=1e-4)
     assert by["Mw"] == pytest.approx((0.0103, 0.0110, 0.0103), rel=1e-4)
@@ -195,14 +195,14 @@ def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest
         show.table(tow_against(one))
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
-    assert "Own tow: AFF-8" in shown
+    assert "Own CFD: AFF-8" in shown
     assert "All: there is no campaign absent_planes yet." in shown
     assert "no verdict" in shown
 
 
 def test_report_and_json_hold_the_tows(study: Study) -> None:
     section = next(s for s in tow_sections(study))
-    assert [t.title for t in section.tables][-2:] == ["Own tow: AFF-8", "Comparison error of the tow: AFF-8"]
+    assert [t.title for t in section.tables][-2:] == ["Own CFD: AFF-8", "Own CFD against the test: AFF-8"]
     found = as_json.study(study, [])["tows"]
     assert [len(t["rows"]) for t in found] == [6, 6, 6]
     assert found[1]["rows"][0]["missing"] == NOT_TOWED

@@ -283,7 +283,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     held = (
         f"{sense(indices[0]).partition(' at ')[0]}, {indices[0].name} = {indices[0].value:.2f}"
         if indices
-        else "not determined"
+        else "no value: no index"
     )
     turn = interval_in_words(shape.carried, parameters.conditions.speed)
     chips = (

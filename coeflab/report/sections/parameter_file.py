@@ -33,7 +33,7 @@ from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import FAST, INDICES, SIGN_OPEN, Derived, by_mass, sense, stability
+from coeflab.vehicle.derived import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 from coeflab.vehicle.law_at_points import SMALL
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
@@ -159,7 +159,8 @@ def _of_one_sense(
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
         each += f". At {speeds} m/s, the speed of the file, there is no verdict: BG is not known" if speeds else ""
-    said = f"of open sign of {index}" if verdict == SIGN_OPEN else verdict.replace(FAST, f"{FAST} (BG left out)")
+    undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
+    said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (BG left out)"))
     return f"{said}: {each}"
 
 

@@ -361,7 +361,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
       return;
     }
     track.innerHTML = trackFigure();
-    const cell = (x) => { if (x.value === null) return x.status; const [v, unit] = angleOf(x); return `${v.toFixed(Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(v) || 1)), 0), 4))}${unit}`; };
+    const cell = (x) => { if (x.value === null) return x.status === "not determined" ? "no value" : x.status; const [v, unit] = angleOf(x); return `${v.toFixed(Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(v) || 1)), 0), 4))}${unit}`; };
     const rows = motion.figures.map((x, i) => [x.name, cell(x), cell(still.figures[i])]), notes = [];
     if (shown.unknown.length) notes.push(make("p", { class: "warn" }, `${notKnown()}.`));
     if (motion.why) notes.push(make("p", { class: "warn" }, stopped(motion)));
