@@ -30,7 +30,7 @@ TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr"
 AS_PRINTED = ", as printed"
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 RUNS = {"": "straight", "v": "drift", "w": "attack", "p": "rolling", "q": "pitching", "r": "turning"}
-STATES = {"unconverged": "did not converge", "not run": "not started"}
+STATES = {"unconverged": "did not converge", "not run": "not started", "drifting": "still drifting"}
 
 
 @brief

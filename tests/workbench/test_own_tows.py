@@ -146,14 +146,14 @@ def test_what_did_not_converge_is_open_with_its_reason(bodies: tuple[Towed, ...]
     assert by["Yv"].value is not None
     assert by["Yr"].value is None
     assert by["Yr"].missing == OPEN
-    assert by["Yr"].why == "4 of 6 runs with r left out: 1 diverged, 3 drifting"
+    assert by["Yr"].why == "2 of 6 turning runs used: 1 diverged, 3 still drifting"
     assert by["Zw"].missing == NOT_RUN
     assert by["Zw"].why == "no run with w"
 
 
 def test_runs_left_out_are_counted_beside_a_value_too(bodies: tuple[Towed, ...]) -> None:
     by = {r.symbol: r for r in bodies[2].rows}
-    assert by["Yv"].why == "1 of 6 runs with v left out: 1 drifting"
+    assert by["Yv"].why == "5 of 6 drift runs used: 1 still drifting"
 
 
 def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path: Path) -> None:
@@ -167,8 +167,8 @@ def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path:
     (tmp_path / "plan.toml").write_text(head + table + aff8)
     (found,) = towed(run(read_plan(tmp_path / "plan.toml")))
     by = {r.symbol: (r.missing, r.why) for r in found.rows}
-    assert by["Nv"] == (OPEN, "6 of 6 runs with v left out: 6 drifting")
-    assert by["Nr"] == (OPEN, "6 of 6 runs with r left out: 6 drifting")
+    assert by["Nv"] == (OPEN, "no drift run used (of 6, 6 still drifting)")
+    assert by["Nr"] == (OPEN, "no turning run used (of 6, 6 still drifting)")
     assert by["Zw"][0] == NOT_RUN
 
 
