@@ -119,11 +119,14 @@ def _independent(study: Study) -> str:
     found = [v for v in validations(study, study.budgets) if v.within is not None]
     if not found:
         return ""
-    bodies = listed([b.replace("_", " ") for b in dict.fromkeys(v.body for v in found)])
+    bodies = listed(
+        [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
+    )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    beyond = f"; beyond U_V: {', '.join(outside)}" if outside else ""
-    inside = sum(bool(v.within) for v in found)
-    return f"Independent: {inside} of {len(found)} coefficients from CFD agree within U_V with the test of the same body ({bodies}){beyond}."
+    inside, weak = (sum(map(bool, kind)) for kind in ([v.within for v in found], [v.is_weak for v in found]))
+    weakly = f", {weak} of them weakly" if weak else ""
+    beyond = f"; beyond it {', '.join(outside)}" if outside else ""
+    return f"Independent: {inside} of {len(found)} coefficients from CFD lie within U_V of the test of the same body ({bodies}){weakly}{beyond}."
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

@@ -48,7 +48,7 @@ from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
-from coeflab.study.validation import validations
+from coeflab.study.validation import WIDE, validations
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
 
@@ -338,6 +338,8 @@ def _re_analysis(study: Study) -> list[str]:
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     predicted = [v for v in validations(study, study.budgets) if v.within is not None]
     out += [*headline_of_study(study), *WHAT_COUNTS, TWO_KINDS[not predicted]]
+    if weak := [f"{primed(v.symbol)} of {v.simulation}" for v in predicted if v.is_weak]:
+        out.append(f"Weak predictions, U_V above {share_text(WIDE)} of the measured value: {listed(weak)}.")
     missed = [v for v in predicted if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
@@ -452,12 +454,12 @@ def _next(study: Study) -> list[str]:
     runs = [f"runs that vary {' and '.join(motions)} of {body}" for body, motions in lacking.items() if motions]
     wide: dict[str, list[str]] = {}
     for c in study.coefficients:
-        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > tables.WIDE * abs(c.value):
+        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
             wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
     out = [f"To measure next: {listed(runs)}."] if runs else []
     if wide:
         out.append(
-            f"U95 above {100.0 * tables.WIDE:.0f} % of the value: {'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
+            f"U95 above {100.0 * WIDE:.0f} % of the value: {'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
             "narrow it most."
         )
     return out

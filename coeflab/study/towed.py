@@ -7,6 +7,7 @@ Against another body, or derivatives from an oscillation, E and U_V are given an
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -262,10 +263,22 @@ def _left_out(study: Study, campaign: str, symbol: str) -> str:
         own = {e.row: e.status for e in t.exclusions if e.status and e.component in ("", component)}
         states.update(own[i] for i in moving if i in own and i not in apart)
         runs += sum(i not in apart for i in moving)
-    if not states:
-        return ""
+    return runs_used(runs, variable, states) if states else ""
+
+
+def runs_used(runs: int, variable: str, states: Mapping[str, int]) -> str:
+    """How many of the runs of a motion count, and what became of the others.
+
+    Parameters
+    ----------
+    runs : int
+    variable : str
+        What moves: ``v``, ``r``; empty for straight runs.
+    states : mapping of str to int
+        Of those that do not count.
+    """
     said = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
-    kind, used = RUNS.get(variable, variable), runs - states.total()
+    kind, used = RUNS.get(variable, variable), runs - sum(states.values())
     return f"{used} of {runs} {kind} runs used: {said}" if used else f"no {kind} run used (of {runs}, {said})"
 
 

@@ -361,9 +361,10 @@ def test_suboff(suboff: Study):
     )
     assert said[3].startswith("Prediction: a coefficient from CFD against the one measured")
     assert said[4].startswith("Only the predictions are independent evidence.")
-    assert said[5].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
-    assert "This does not fail the study" in said[5]
-    assert said[6] == (
+    assert said[5].startswith("Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull")
+    assert said[6].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
+    assert "This does not fail the study" in said[6]
+    assert said[7] == (
         "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method, PMM."
     )
     assert said[-1].startswith("The study does not fail: ")

@@ -30,13 +30,13 @@ from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.study import Study
 from coeflab.study.towed import AS_PRINTED, STATES, Towed
+from coeflab.study.validation import WIDE
 from coeflab.tables.force_table import Exclusion, ForceTable
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
 AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-WIDE = 0.25  # of the published value: a wider U95 passes what a reader would call a difference
 WEAK = f"U95 and the source's uncertainty, root sum of squares, exceed {100.0 * WIDE:.0f} % of the published value"
 
 

@@ -17,7 +17,7 @@ from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import Validation
+from coeflab.study.validation import WIDE, Validation
 from coeflab.vehicle.derived import Derived
 
 SMALL = 0.01
@@ -362,16 +362,20 @@ def predictions(found: Sequence[Validation]) -> Table:
     rows = tuple(
         (
             primed(v.symbol), v.simulation, v.experiment, _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
-            *with_u95(v.error, v.u_validation), "no modelling error shown" if v.within else "beyond U_V",
+            *with_u95(v.error, v.u_validation), f"no modelling error shown{', weak' * v.is_weak}" if v.within else "beyond U_V",
         )
         for v in found
         if v.within is not None
     )  # fmt: skip
     headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
-    notes = (
-        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test.",
-    )
-    return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
+    notes = [
+        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test."
+    ]
+    if any(v.is_weak for v in found):
+        notes.append(
+            f"weak: U_V exceeds {100.0 * WIDE:.0f} % of D, so that a value far from D would lie within it, too."
+        )
+    return Table("Predictions by CFD against tests", headers, rows, tuple(notes), frozenset({0, 1, 2, 7}))
 
 
 def derived(found: Sequence[Derived]) -> Table:
