@@ -338,14 +338,14 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
             )
             continue
         alike = {c.statistic for c in same}
-        found = f"{same[0].statistic}. " if len(alike) == 1 else ""
+        shared = f"{same[0].statistic}. " if len(alike) == 1 else ""
         printed += marked(
             str(severity),
-            f"{about}, {len(same)} times{': ' if found else '. '}{found}{meant} Expected: {rule}.".replace("  ", " "),
+            f"{about}, {len(same)} times{': ' if shared else '. '}{shared}{meant} Expected: {rule}.".replace("  ", " "),
         )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
-            text(f"        {c.subject}" if found else f"        {c.subject}: {c.statistic}")
+            text(f"        {c.subject}" if shared else f"        {c.subject}: {c.statistic}")
         printed, left = printed + len(shown), left + len(same) - len(shown)
     if left:
         text(f"        and {left} more, which `coeflab fit` shows")

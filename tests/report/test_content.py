@@ -172,7 +172,8 @@ def test_failed_checks_reach_the_verdict():
 
 def test_absent_coefficients_are_named_with_advice():
     text = words(small_study(FULL), "verdict")
-    assert "Nr' of tow (no table varies r). Add a campaign that varies what is missing." in text
+    assert "Nr' of tow (no table varies r)." in text
+    assert "To measure next: runs that vary r of body of tow." in text
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])

@@ -196,7 +196,7 @@ def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
     assert "Own CFD: AFF-8" in shown
-    assert "All: there is no campaign absent_planes yet." in shown
+    assert "All: no value, there is no campaign absent_planes yet." in shown
     assert "no verdict" in shown
 
 

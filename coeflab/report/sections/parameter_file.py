@@ -160,7 +160,7 @@ def _of_one_sense(
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
         each += f". At {speeds} m/s, the speed of the file, there is no verdict: BG is not known" if speeds else ""
     undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
-    said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (BG left out)"))
+    said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
     return f"{said}: {each}"
 
 
