@@ -12,6 +12,7 @@ from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
+from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import validations
 from coeflab.vehicle.reference import Reference, Relation
@@ -104,8 +105,11 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     """What no U95 of the rows holds, the first of it by name; empty where every one holds all."""
     mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol.removesuffix("'")) in mine]
+    fixed = SET if all(b.kind == "cfd" for b in budgets) else ()
     names = [
-        n for n in dict.fromkeys(n for b in budgets for n in b.unassessed) if all(n in b.unassessed for b in budgets)
+        n.removeprefix("error of ")
+        for n in dict.fromkeys(n for b in budgets for n in b.unassessed)
+        if n not in fixed and all(n in b.unassessed for b in budgets)
     ]
     if not names:
         return ""
