@@ -176,7 +176,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
-    assert "since BG is unknown" in found.comment
+    assert "BG is not known" in found.comment
 
 
 def test_no_parameter_file_no_stability():
