@@ -331,9 +331,7 @@ def _re_analysis(study: Study) -> list[str]:
         verb = "passed" if len(judged) == 1 else "all passed"
         out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
     if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
-        out.append(
-            f"Weak passes: {tables.WEAK}: {listed(wide)}. A value that far from the published one would pass, too."
-        )
+        out.append(f"Weak passes: {tables.WEAK}: {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     predicted = [v for v in validations(study, study.budgets) if v.within is not None]
@@ -501,11 +499,13 @@ def _laws(study: Study) -> tuple[Section, ...]:
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. The range of a law ends before the "
         "first point that it misses by more, if at least half of the tested range remains: that is a warning. If less remains, the study "
         "fails; X, and a law of slopes alone, may keep less.",
+        format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (f"In no parameter file, so not compared: {listed(none)}.",)
-    return (Section("law-at-points", "The law at the measured points", text, each),)
+    shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
+    return (Section("law-at-points", "The law at the measured points", text, shown),)
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:

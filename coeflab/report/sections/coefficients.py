@@ -13,7 +13,7 @@ from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.results import without
-from coeflab.report.tables.uncertainty import sentences_on_open
+from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.study.study import Study
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
 
@@ -42,6 +42,7 @@ FIXED = (
     "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
+CONDITIONS = "In CFD angle, rate, speed, length, density and reference point are set, not measured, and have no errors of readings."
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 
@@ -118,6 +119,8 @@ def coefficients_section(study: Study) -> Section:
         text += (" ".join(parts),) if parts else ()
     if any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row):
         text += (OPEN,)
+    if any(b.kind == "cfd" for b in study.budgets):
+        text += (CONDITIONS,)
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
@@ -156,7 +159,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
         in_one_line(zero), form_not_assessed(shown),
-        *sentences_on_open((_of_some(name, budgets) for name in open_parts), computed=computed),
+        *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "slope", "n")

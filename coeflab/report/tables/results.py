@@ -249,8 +249,8 @@ def campaigns(study: Study) -> Table:
         known = [r for t in mine if (r := t.reynolds(t.scaling.length)) is not None]
         reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
         source = f"{kinds}, own tow" if name in towed_ones else kinds
-        rows.append((name, mine[0].title, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
-    headers = ("campaign", "what", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
+        rows.append((name, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
+    headers = ("campaign", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
     notes = []
     for body in dict.fromkeys(t.body for t in study.tables):
         configuration = study.body.configuration(body) if study.body else None
@@ -259,7 +259,7 @@ def campaigns(study: Study) -> Table:
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
     notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
-    return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 4, 7}))
+    return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
 
 
 def _span(values: Array) -> str:

@@ -368,14 +368,11 @@ def predictions(found: Sequence[Validation]) -> Table:
         if v.within is not None
     )  # fmt: skip
     headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
-    notes = [
-        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test."
-    ]
-    if any(v.is_weak for v in found):
-        notes.append(
-            f"weak: U_V exceeds {100.0 * WIDE:.0f} % of D, so that a value far from D would lie within it, too."
-        )
-    return Table("Predictions by CFD against tests", headers, rows, tuple(notes), frozenset({0, 1, 2, 7}))
+    weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.is_weak for v in found) else ""
+    notes = (
+        f"Computed and measured on the same body, independently of each other; D is our fit to the points of the test.{weak}",
+    )
+    return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
 
 def derived(found: Sequence[Derived]) -> Table:
