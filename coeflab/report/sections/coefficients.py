@@ -119,7 +119,7 @@ def coefficients_section(study: Study) -> Section:
         text += (" ".join(parts),) if parts else ()
     if any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row):
         text += (OPEN,)
-    if any(b.kind == "cfd" for b in study.budgets):
+    if any(name in SET for b in study.budgets if b.kind == "cfd" for name in b.unassessed):
         text += (CONDITIONS,)
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
