@@ -255,8 +255,9 @@ def campaigns(study: Study) -> Table:
     for body in dict.fromkeys(t.body for t in study.tables):
         configuration = study.body.configuration(body) if study.body else None
         if configuration is not None and configuration.title:
-            notes.append(f"{body}: {configuration.title}.")
+            notes.append(f"{body}: {configuration.title}")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
+    notes = [f"{'; '.join(notes)}."] if notes else []
     notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
