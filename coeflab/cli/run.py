@@ -13,6 +13,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from coeflab.motion.manoeuvre import Simulation
     from coeflab.report.document import Answer
     from coeflab.study.study import Plan, Study
 
@@ -48,9 +49,6 @@ def command(
 
 REPORTS = "reports"
 FIRST_FIGURES = 3
-WITHOUT_U95 = (
-    "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
-)
 
 
 def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False) -> None:
@@ -114,7 +112,9 @@ def summarise(study: Study) -> None:
 def _moved(study: Study) -> None:
     """What the planned manoeuvres come to: their first figures with a value; with ``--wide`` all, with their definitions."""
     from coeflab.core.table import Table
+    from coeflab.report.sections.parameter_file import without_u95
     from coeflab.report.tables.motion import figure_table
+    from coeflab.report.tables.nouns import NO_VALUE
 
     rows = []
     for made in study.manoeuvres:
@@ -126,23 +126,17 @@ def _moved(study: Study) -> None:
         rows += [
             (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
-        ] or [
-            (
-                made.vehicle.name,
-                name,
-                "none",
-                "",
-                "",
-                made.figures[0].status if made.figures else made.trajectory.ended.value,
-            )
-        ]
+        ] or [(made.vehicle.name, name, "none", NO_VALUE, "", _why(made))]
     if not show.whole():
-        headers = ("file", "manoeuvre", "figure", "value", "unit", "status")
-        show.table(
-            Table(
-                "Simulated manoeuvres", headers, tuple(rows), (WITHOUT_U95,) if rows else (), frozenset({0, 1, 2, 4, 5})
-            )
-        )
+        headers = ("file", "manoeuvre", "quantity", "value", "unit", "status")
+        notes = (without_u95(study),) if rows else ()
+        show.table(Table("Simulated manoeuvres", headers, tuple(rows), notes, frozenset({0, 1, 2, 4, 5})))
+
+
+def _why(made: Simulation) -> str:
+    """Why a manoeuvre has no quantity with a value."""
+    found = next(iter(made.figures), None)
+    return made.trajectory.ended.value if found is None else found.why or found.status
 
 
 def answered(found: Answer) -> None:
@@ -175,7 +169,7 @@ def _tows(study: Study) -> None:
 
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
-    from coeflab.report.acceptance import headline, held_of_study
+    from coeflab.report.acceptance import headline_of_study
     from coeflab.report.tables import formats as format_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
@@ -202,5 +196,5 @@ def _every_table(study: Study) -> None:
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:
             show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
-    for line in headline(held_of_study(study)) if any(c.passed is not None for c in study.comparisons) else ():
+    for line in headline_of_study(study) if any(c.passed is not None for c in study.comparisons) else ():
         show.text(line)

@@ -333,15 +333,22 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            held = f"; expected {rule}" if rule else ""
-            printed += marked(str(severity), f"{about}, {c.subject}: {c.statistic}{held}. {meant}".rstrip())
+            stop = "" if c.statistic.endswith(".") else "."
+            held = f" Expected: {rule}." if rule else ""
+            printed += marked(
+                str(severity), f"{about}, {c.subject}: {c.statistic}{stop} {meant}{held}".replace("  ", " ").rstrip()
+            )
             continue
+        alike = {c.statistic for c in same}
+        shared = f"{same[0].statistic}. " if len(alike) == 1 else ""
+        held = f" Expected: {rule}." if rule else ""
         printed += marked(
-            str(severity), f"{about}, {len(same)} times{f': expected {rule}' if rule else ''}. {meant}".rstrip()
+            str(severity),
+            f"{about}, {len(same)} times{': ' if shared else '. '}{shared}{meant}{held}".replace("  ", " ").rstrip(),
         )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
-            text(f"        {c.subject}: {c.statistic}")
+            text(f"        {c.subject}" if shared else f"        {c.subject}: {c.statistic}")
         printed, left = printed + len(shown), left + len(same) - len(shown)
     if left:
         text(f"        and {left} more, which `coeflab fit` shows")

@@ -96,7 +96,7 @@ WORKS: dict[str, str] = {
     "groves1989": "N. C. Groves, T. T. Huang, M. S. Chang, Geometric Characteristics of DARPA SUBOFF Models, "
     "DTRC/SHD-1298-01, 1989.",
     "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
-    f"{UNNAMED}; Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
+    f"{UNNAMED}; Table 4 (published CFD, PMM CFD 2012, experiment 1990).",
     "coeflab_cfd": "coeflab, Steady RANS of the SUBOFF bare hull, made for this project with OpenFOAM 1912, 2026.",
     "ittc_captive": "ITTC, Captive Model Test Procedures, recommended procedure 7.5-02-06-02, revision 04, 2014.",
     "gertler1959": "M. Gertler, The DTMB Planar-Motion-Mechanism System, Symposium on Towing Tank Facilities, Zagreb, 1959.",

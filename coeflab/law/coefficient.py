@@ -18,7 +18,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import derivative_transfer
 
-COVERS = "noise, any smooth curvature, onset of stall at an unknown angle"  # of the U95 of a slope at the origin
+COVERS = "scatter, smooth curvature, onset of stall at an unknown angle"  # of the U95 of a slope at the origin
 
 
 class Status(StrEnum):

@@ -242,6 +242,22 @@ def held_of_study(study: Study) -> Held:
     return {b: (sum(found.get(b, ())), len(found.get(b, ()))) for b in Basis}
 
 
+KINDS = ("predictions by CFD", "re-fits of the authors' data", "recomputed stability indices")
+
+
+def headline_of_study(study: Study) -> tuple[str, ...]:
+    """How many numbers of a plan hold, kind by kind, in one sentence; empty without any."""
+    predicted = [bool(v.within) for v in validations(study, study.budgets) if v.within is not None]
+    again = [bool(c.passed) for c in study.comparisons if c.passed is not None]
+    recomputed = [i.holds for i in printed_indices(study)]
+    kinds = [(name, found) for name, found in zip(KINDS, (predicted, again, recomputed), strict=True) if found]
+    if not kinds:
+        return ()
+    good, count = (sum(map(f, (found for _, found in kinds))) for f in (sum, len))
+    each = ", ".join(f"{sum(found)} of {len(found)} {name}" for name, found in kinds)
+    return (f"{good} of the {count} compared numbers lie within their tolerance: {each}.",)
+
+
 def headline(numbers: Held) -> tuple[str, ...]:
     """How many numbers hold by basis, and how many of them validate anything where not all do: one or two sentences."""
     every = [sum(pair[k] for pair in numbers.values()) for k in (0, 1)]

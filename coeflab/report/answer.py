@@ -6,19 +6,18 @@ Everything that shows it takes it from here: terminal, notebook, HTML, PDF, and 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from coeflab.core.table import Severity, Table, number, plus_minus, with_u95
-from coeflab.core.types import brief
 from coeflab.core.wording import listed
-from coeflab.fits.glide_polar import munk_in_words, printed_inside
+from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
+from coeflab.report.answer_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
@@ -26,40 +25,20 @@ from coeflab.report.figures.svg import size_of
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
+from coeflab.report.sections.parameter_file import from_literature
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.vehicle.derived import ALONE, Derived, sense, stability
+from coeflab.vehicle.derived import ALONE, INDICES, Derived, sense, stability
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
-LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS, MOST_NAMED = 160, 240, 6, 3, 4
-NO_DATA = "no data"
+LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class _Beside:
-    """The published columns of one body.
-
-    Attributes
-    ----------
-    body : str
-        Whose coefficients are the answer.
-    columns : tuple of Reference
-        The experiment first.
-    among : CoefficientSet or None
-        The first of that body, whose length and reference point hold where a row has none.
-    """
-
-    body: str
-    columns: tuple[Reference, ...]
-    among: CoefficientSet | None
 
 
 def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
@@ -91,11 +70,11 @@ def _of_study(study: Study) -> Answer:
     if all(r.value is None for r in rows) and any(f.models for f in study.fits):
         return _of_models(study)
     return Answer(
-        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=_notes(study, beside, rows)
+        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=notes(study, beside, rows)
     )
 
 
-def _columns(study: Study) -> _Beside:
+def _columns(study: Study) -> Beside:
     """The body that the answer is about, and what is published of it: quoted, re-analysed, then other bodies."""
     quoted = [r for r in study.references if r.relation is Relation.QUOTED]
     campaigns = {f.campaign: f.body for f in study.fits}
@@ -107,7 +86,7 @@ def _columns(study: Study) -> _Beside:
     ]
     others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
     fit = next((f for f in study.fits if f.body == body), None)
-    return _Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
+    return Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
 
 
 def _wanted(study: Study, body: str) -> tuple[str, ...]:
@@ -120,7 +99,7 @@ def _wanted(study: Study, body: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(slopes))[:MOST_ROWS]
 
 
-def _row(study: Study, beside: _Beside, symbol: str) -> AnswerRow:
+def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
     found = [c for c in study.coefficients if c.symbol == symbol and c.body == beside.body]
     judged = {(x.coefficient.symbol, x.coefficient.campaign): x for x in study.comparisons if x.passed is not None}
     known = sorted((c for c in found if c.value is not None), key=lambda c: (c.symbol, c.campaign) not in judged)
@@ -162,7 +141,7 @@ def _judged(row: AnswerRow, verdict: Comparison | None) -> AnswerRow:
 
 
 def _towed_row(
-    study: Study, beside: _Beside, symbol: str, published: tuple[float | None, ...], found: Sequence[Coefficient]
+    study: Study, beside: Beside, symbol: str, published: tuple[float | None, ...], found: Sequence[Coefficient]
 ) -> AnswerRow:
     """From an own tow that the plan sets beside these columns; else why there is no value."""
     for tow in _tows(study, beside):
@@ -174,7 +153,7 @@ def _towed_row(
     return AnswerRow(symbol, None, None, NO_DATA if status is None else status.replace("_", " "), published=published)
 
 
-def _tows(study: Study, beside: _Beside) -> tuple[Towed, ...]:
+def _tows(study: Study, beside: Beside) -> tuple[Towed, ...]:
     """Own tows of the body, or those that the plan sets beside the first column."""
     names = {r.name for r in beside.columns[:1]}
     return tuple(t for t in towed(study) if t.body == beside.body or names & set(t.columns)) if study.plan.tows else ()
@@ -221,23 +200,26 @@ def _counted(n: int) -> str:
     return COUNTS[n] if n < len(COUNTS) else str(n)
 
 
-def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str:
+def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
     name = _short(study.plan.title or study.plan.name)
     judged = [r for r in rows if r.agrees is not None]
     valued = [r for r in rows if r.value is not None]
     kind = "static derivatives" if all(_is_static(r.symbol) for r in judged) else "derivatives"
     kind = kind if len(judged) != 1 else kind[:-1]
     several = len({f.body for f in study.fits}) > 1
-    absent = _absent(rows, f" on {beside.body.replace('_', ' ')}" if several and beside.body else "")
+    absent = _absent(rows, f" for {beside.body.replace('_', ' ')}" if several and beside.body else "")
     if judged:
         apart = [primed(r.symbol) for r in judged if not r.agrees]
         column = beside.columns[0].name
         if apart:
-            first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind} {_verb(apart)} from {column} by more than U95"
+            some = f"{_counted(len(apart))} of {_counted(len(judged))} {kind}"
+            first = (
+                f"{name}: our fits to the data of {column} differ from its {listed(apart)} by more than U95 ({some})"
+            )
         else:
-            every = {1: "the", 2: "both"}.get(len(judged), f"all {_counted(len(judged))}")
-            found = listed([primed(r.symbol) for r in judged]) if len(judged) <= MOST_NAMED else f"{every} {kind}"
-            first = f"{name} re-analysed: {found} {'agrees' if len(judged) == 1 else 'agree'} with {column} within U95"
+            found = listed([primed(r.symbol) for r in judged])
+            found = f"its {found}" if len(judged) <= MOST_NAMED else f"all {_counted(len(judged))} {kind}"
+            first = f"{name}: our fits to the data of {column} reproduce {found} within U95"
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
@@ -267,15 +249,11 @@ def _open(valued: Sequence[AnswerRow]) -> str:
     )
 
 
-def _verb(apart: Sequence[str]) -> str:
-    return "differs" if len(apart) == 1 else "differ"
-
-
 def _is_static(symbol: str) -> bool:
     return set(derivative(symbol).factors) <= {"v", "w"}
 
 
-def _absent(rows: tuple[AnswerRow, ...], on_body: str) -> str:
+def _absent(rows: tuple[AnswerRow, ...], for_body: str) -> str:
     """Which rows have no value, and why where one reason serves all; of which body where the study has several."""
     without = [r for r in rows if r.value is None]
     if not without:
@@ -283,7 +261,7 @@ def _absent(rows: tuple[AnswerRow, ...], on_body: str) -> str:
     if all(r.status == NO_DATA for r in without) and all(
         set(derivative(r.symbol).factors) & {"p", "q", "r"} for r in without
     ):
-        return f"no rotating-arm data{on_body}"
+        return f"no rotating-arm data{for_body}"
     return "; ".join(
         f"{listed([primed(r.symbol) for r in without if r.status == status])}: {status}"
         for status in dict.fromkeys(r.status for r in without)
@@ -298,7 +276,7 @@ def _stability(study: Study) -> Chip:
     """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
     every = [index for p in study.parameter_files.values() for index in stability(p)]
     if not every:
-        return Chip("Stability", "not determined", Severity.NOTE, "stability" if study.parameter_files else "")
+        return Chip("Stability", "no value: no index", Severity.NOTE, "stability" if study.parameter_files else "")
     first = [index for index in every if index.subject == every[0].subject]
     d: Derived = min(first, key=lambda index: index.name != "G_h")
     said = sense(d).removesuffix(ALONE).partition(" at ")[0]
@@ -311,7 +289,18 @@ def _stability(study: Study) -> Chip:
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
     plane = "horizontal" if d.name == "G_h" else "vertical"
-    return Chip(f"Stability, {plane} plane", f"{said}, {d.name} = {value}", grave, "stability")
+    file = next(p for p in study.parameter_files.values() if p.name == d.subject)
+    stated = from_literature(file, d.name)
+    published = f" ({', '.join(stated)} published)" if 0 < len(stated) < len(INDICES[d.name]) - 1 else ""
+    several = len(study.parameter_files) > 1
+    name = f"{_of_study_named(study, d.subject)}, {plane}" if several else f"Stability, {plane} plane"
+    return Chip(name, f"{said}, {d.name} = {value}{published}", grave, "stability")
+
+
+def _of_study_named(study: Study, name: str) -> str:
+    """A parameter file as people say it, without the name of the study that it begins with."""
+    words = name.removeprefix(f"{study.plan.name}_").replace("_", " ")
+    return f"{words[:1].upper()}{words[1:]}"
 
 
 def _largest(rows: Sequence[AnswerRow]) -> Chip:
@@ -334,10 +323,14 @@ def _warnings(study: Study) -> Chip:
 def _exports(study: Study) -> Chip:
     made, refused = len(study.exports), len(study.refused)
     if not made and not refused:
-        return Chip("Exports", "none planned", Severity.NOTE)
+        return Chip("Simulator files", "none planned", Severity.NOTE)
     loss = sum(not e.lossless for e in study.exports)
-    text = f"{made} made, {loss} with loss" + (f", {refused} refused" if refused else "")
-    return Chip("Exports", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports")
+    text = f"{made} made, {f'{loss} incomplete' if loss else 'all complete'}" + (
+        f", {refused} refused" if refused else ""
+    )
+    return Chip(
+        "Simulator files", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports"
+    )
 
 
 def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
@@ -371,54 +364,6 @@ def _has_slope(fit: FitResult, symbol: str) -> bool:
 
 def _spread(sweep: Sweep) -> bool:
     return bool(np.any(sweep.x != 0.0)) and len(sweep.curve) == 3
-
-
-def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[str, ...]:
-    towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
-    sources = [s for s in dict.fromkeys(r.source for r in rows if r.source) if s not in towed_rows]
-    out = []
-    if sources:
-        scaling = beside.among.scaling if beside.among else None
-        by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
-        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{by}.")
-        also = [f.campaign for f in study.fits if f.campaign not in (*sources, *towed_rows) and _gives(f, rows)]
-        if also:
-            out.append(f"Also fitted (section Coefficients of the report): {listed(list(dict.fromkeys(also)))}.")
-        if any(r.symbol == "Mw" and r.value is not None for r in rows):
-            out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
-    own = [r for r in rows if r.source in towed_rows]
-    if own:
-        out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
-    if any(r.agrees is not None for r in rows):
-        out.append(
-            f"{beside.columns[0].name}: the same data, evaluated by their authors; the only column with a verdict."
-        )
-    others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
-    for body in dict.fromkeys(r.body for r in others):
-        names = listed([r.name for r in others if r.body == body])
-        out.append(f"{names}: {f'another body, {body}' if body != beside.body else 'another method'}; no verdict.")
-    for r in others:
-        if r.other_scaling is not None:
-            out.append(f"{r.name}: its source does not state the length; here {_readings(r.scaling, r.other_scaling)}.")
-    return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
-
-
-def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
-    """Whether a fit of another body has a value of a wanted coefficient."""
-    return any(c.value is not None and c.symbol == r.symbol for c in fit.coefficients.coefficients for r in rows)
-
-
-def _readings(first: Scaling, other: Scaling) -> str:
-    """The length that a column is read with, and what the other would make of it."""
-    larger = [100.0 * (other.ratio(symbol, first) - 1.0) for symbol in ("Yv", "Nr")]
-    return f"by {first.length_name} (by {other.length_name}: Yv' {larger[0]:+.1f} %, Nr' {larger[1]:+.1f} %)"
-
-
-def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:
-    """Campaigns, each with the coefficients that it gives where there are several."""
-    if len(sources) < 2:
-        return list(sources)
-    return [f"{s} ({', '.join(primed(r.symbol) for r in rows if r.source == s)})" for s in sources]
 
 
 def _of_models(study: Study) -> Answer:
@@ -489,6 +434,7 @@ def answer_table(found: Answer) -> Table:
     if found.table is not None:
         return _on_a_terminal(found.table, found.notes)
     short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
+    short = [n.replace("published ", "publ. ") for n in short]
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)

@@ -21,13 +21,13 @@ from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
 from coeflab.core.machine import cores, end_with_parent
-from coeflab.core.table import Severity, Table
+from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import derivative, primed
-from coeflab.report.acceptance import headline, held_of_study
+from coeflab.report.acceptance import headline_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
@@ -45,9 +45,10 @@ from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
+from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
-from coeflab.study.validation import validations
+from coeflab.study.validation import WIDE, validations
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
 
@@ -55,8 +56,8 @@ Part = TypeVar("Part")
 MOST = 4
 NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
-    ("at_rest", "law"): "a fitted Z0 or M0 is part of the force law",
-    ("at_rest", "apart"): "a fitted Z0 or M0 is not part of the force law",
+    ("at_rest", "law"): "a fitted Z0 or M0 stays in the force law",
+    ("at_rest", "apart"): "a fitted Z0 or M0 is taken out of the force law",
 }
 _JOBS: list[Callable[[], object]] = []
 
@@ -177,9 +178,9 @@ def first_lines(text: str) -> str:
 
 
 def _setting(name: str, value: object) -> str:
-    """A setting of a fit, with what it means where its name does not say that."""
+    """A setting of a fit, behind what it means where its name does not say that."""
     meaning = SETTINGS.get((name, value), "")
-    return f"{name} = {value}" + f" ({meaning})" * bool(meaning)
+    return f"{meaning} ({name} = {value})" if meaning else f"{name} = {value}"
 
 
 def _found(anchor: str, known: set[str]) -> str:
@@ -301,13 +302,16 @@ def _named(c: Comparison) -> str:
     return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
 
 
-WIDE = 0.25  # of the published value: a wider U95 passes what a reader would call a difference
-
-
 WHAT_COUNTS = (
-    "Predicted: a coefficient from CFD, compared with the one measured on the same body; tolerance U_V. Printed and recomputed: a "
-    "coefficient from the authors' data (tolerance U95), or a stability index from their printed derivatives (tolerance: rounding of "
-    "the printed digits), compared with the one that they print.",
+    "Prediction: a coefficient from CFD against the one measured on the same body, tolerance U_V. Re-fit: our coefficient from the "
+    "authors' data against theirs, tolerance U95. Recomputed index: from their printed derivatives against their printed index, "
+    "tolerance the rounding of the digits.",
+)
+TWO_KINDS = (
+    "Only the predictions are independent evidence. A re-fit uses the authors' own measurements: a pass says that our evaluation "
+    "reproduces theirs within U95, not that the measurements are right.",
+    "Re-fits use the authors' own measurements: a pass says that our evaluation reproduces theirs within U95, not that the "
+    "measurements are right.",
 )
 
 
@@ -326,33 +330,22 @@ def _re_analysis(study: Study) -> list[str]:
     else:
         verb = "passed" if len(judged) == 1 else "all passed"
         out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
-    shares = [(c, c.combined / abs(c.published)) for c in judged if c.passed and c.combined and c.published]
-    if wide := [f"{_named(c)} ({share_text(share)})" for c, share in shares if share > WIDE]:
-        joined = "U95 joined with the uncertainty that the source states"
-        out.append(f"Weak tests ({joined}, above {share_text(WIDE)} of the published value): {listed(wide)}.")
+    if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
+        out.append(f"Weak passes: {tables.WEAK}: {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
-    held = held_of_study(study)
-    out.extend(headline(held))
-    out.extend(WHAT_COUNTS if any(count for _, count in held.values()) else ())
-    predicted = validations(study, study.budgets)
-    if any(v.within is not None for v in predicted):
-        out.append(
-            'Every prediction: table "Validation of the computation" of the appendix, section Uncertainty budget.'
-        )
+    predicted = [v for v in validations(study, study.budgets) if v.within is not None]
+    out += [*headline_of_study(study), *WHAT_COUNTS, TWO_KINDS[not predicted]]
+    if weak := [f"{primed(v.symbol)} of {v.simulation}" for v in predicted if v.is_weak]:
+        out.append(f"Weak predictions, U_V above {share_text(WIDE)} of the measured value: {listed(weak)}.")
     missed = [v for v in predicted if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
         out.append(
-            f"Predicted coefficients that differ from the test by more than U_V: {each}. U_V leaves out the turbulence model and all that "
-            'the tables of both campaigns list as "Not in U95", so such a difference does not fail the study.'
+            f"Predictions beyond U_V: {each}. This does not fail the study: U_V leaves out the error of the turbulence model, and the "
+            'errors listed under "Not in U95" in the tables of both campaigns.'
         )
-    out += _beyond_without_verdict(study)
-    out.append(
-        "The comparisons with the authors' evaluation re-analyse their own measurements. A pass says that our evaluation reproduces "
-        "theirs within U95, not that the measurements are right."
-    )
-    return out
+    return [*out, *_beyond_without_verdict(study)]
 
 
 def _beyond_without_verdict(study: Study) -> list[str]:
@@ -364,7 +357,7 @@ def _beyond_without_verdict(study: Study) -> list[str]:
             if r.verdict is None and r.validation is not None and r.validation.within is False:
                 reasons.setdefault(r.why_none, []).append(primed(r.symbol))
         out += [
-            f"Not counted, though |E| is larger than U_V: {listed(symbols)} of {tow.tow.campaign}; {why}."
+            f"Also beyond U_V, but not counted: {listed(symbols)} of {tow.tow.campaign}, as {why}."
             for why, symbols in reasons.items()
         ]
     return out
@@ -379,7 +372,7 @@ def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
         if c.reference not in names:
             names.append(c.reference)
     each = "; ".join(f"{listed(names)} (another {what})" for what, names in by.items())
-    return f"No verdict on {each}: a difference need not be an error."
+    return f"No verdict on {each}: a difference need not be an error of either side."
 
 
 def verdict(study: Study) -> Section:
@@ -390,7 +383,7 @@ def verdict(study: Study) -> Section:
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
         text.append(_no_verdict_on(study, others))
-    text += [*in_words(study), *_without_value(study)]
+    text += [*in_words(study), *_without_value(study), *_next(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     warned = sum(c.severity is Severity.WARN for c in study.checks)
     if study.checks:
@@ -436,8 +429,37 @@ def _without_value(study: Study) -> list[str]:
             f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
             for place, symbols in places.items()
         )
-        advice = "Add a campaign that varies what is missing." if is_untabled else status.advice
-        out.append(f"Without a value: {names}. {advice}".strip())
+        reason = (
+            ""
+            if is_untabled
+            else f" ({'reason in its section' if status is Status.NOT_DETERMINED else status.replace('_', ' ')})"
+        )
+        out.append(f"No value{reason}: {names}. {'' if is_untabled else status.advice}".strip())
+    return out
+
+
+def _next(study: Study) -> list[str]:
+    """What to measure next: motions that no table of a body varies, and runs for wanted values with a wide interval."""
+    varied: dict[str, set[str]] = {}
+    for t in study.tables:
+        varied.setdefault(t.body, set()).update(t.varies)
+    lacking: dict[str, dict[str, None]] = {}
+    for c in study.coefficients:
+        if c.status is Status.NO_TABLE and c.body:
+            lacking.setdefault(c.body, {}).update(
+                dict.fromkeys(f for f in derivative(c.symbol).factors if f not in varied.get(c.body, set()))
+            )
+    runs = [f"runs that vary {' and '.join(motions)} of {body}" for body, motions in lacking.items() if motions]
+    wide: dict[str, list[str]] = {}
+    for c in study.coefficients:
+        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
+            wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
+    out = [f"To measure next: {listed(runs)}."] if runs else []
+    if wide:
+        out.append(
+            f"U95 above {100.0 * WIDE:.0f} % of the value: {'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
+            "narrow it most."
+        )
     return out
 
 
@@ -474,13 +496,16 @@ def _laws(study: Study) -> tuple[Section, ...]:
         return ()
     text: tuple[str, ...] = (
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
-        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. A larger one fails the study, unless "
-        "the point lies outside the range of the law: the motion up to which the fitted form meets the points.",
+        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. The range of a law ends before the "
+        "first point that it misses by more, if at least half of the tested range remains: that is a warning. If less remains, the study "
+        "fails; X, and a law of slopes alone, may keep less.",
+        format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (f"In no parameter file, so not compared: {listed(none)}.",)
-    return (Section("law-at-points", "The law at the measured points", text, each),)
+    shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
+    return (Section("law-at-points", "The law at the measured points", text, shown),)
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:
@@ -495,8 +520,9 @@ def _comparison(study: Study) -> tuple[Section, ...]:
             )
     shown = filled(
         tables.campaigns(study),
-        without(tables.side_by_side(study), "random", "form"),
-        without(tables.verdicts(study), "combined"),
+        tables.without(tables.side_by_side(study), "random", "form"),
+        budget_tables.predictions(validations(study, study.budgets)),
+        tables.without(tables.verdicts(study), "combined"),
     )
     apart = filled(tables.differences(study))
     more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
@@ -509,15 +535,6 @@ def _with_campaigns(study: Study, coefficients: Section) -> Section:
     return replace(coefficients, tables=(*first, *coefficients.tables))
 
 
-def without(table: Table, *names: str) -> Table:
-    """The table without some columns, and without the notes on them."""
-    kept = [i for i, header in enumerate(table.headers) if header not in names]
-    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
-    notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
-    left = frozenset(kept.index(i) for i in table.left if i in kept)
-    return Table(table.title, tuple(table.headers[i] for i in kept), rows, notes, left)
-
-
 def _checks(study: Study) -> Section:
     """Failures and warnings, a row each; the others counted, and in the appendix."""
     if not study.checks:
@@ -526,7 +543,7 @@ def _checks(study: Study) -> Section:
     counts = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
     text = (f"{counts}. Only a failure makes the study fail.",)
     whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
-    shown = filled(replace(without(tables.checks(grave), "rule"), title="Failures and warnings"))
+    shown = filled(replace(tables.without(tables.checks(grave), "rule"), title="Failures and warnings"))
     return Section("checks", "Checks", text, shown, subsections=(whole,))
 
 

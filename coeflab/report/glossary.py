@@ -59,7 +59,7 @@ TERMS: tuple[Term, ...] = (
     Term("LBP", "Length between perpendiculars, 4.26086 m for SUBOFF: Roddy's length for primes.", ("roddy1990",)),
     Term("LOA", "Overall length, 4.356 m for SUBOFF. By LBP or by LOA, static force derivatives of SUBOFF differ by 4.5 %, moments by "
          "6.9 %.", ("groves1989",)),
-    Term("sideslip angle", "beta = asin(v/V), positive when the body moves to starboard. Roddy's drift angle has the other sign; "
+    Term("sideslip angle", "beta = asin(v/U), positive when the body moves to starboard. Roddy's drift angle has the other sign; "
          "each table declares its own.", ("sname1950",), ("sideslip", "drift angle", "angle of drift")),
     Term("angle of attack", "alpha = atan2(w, u), positive when the body moves down.", ("sname1950",)),
     Term("reference point", "The point that moments and velocities refer to. Coefficients about different points are moved to one "
@@ -87,14 +87,15 @@ TERMS: tuple[Term, ...] = (
     # Fits and intervals
     Term("U95", "Half-width of the 95 % interval: the true value lies in value +- U95 with about 95 % probability, as far as the "
          "named parts go. The uncertainty budget lists what is in it and what was not assessed.", ("jcgm100",), (), "slope_at_origin.md"),
-    Term("slope at the origin", "The recommended derivative: one model of the whole sweep (line, v|v|, cubic, smooth remainder of unknown "
-         "size), no window and no form chosen.", ("wahba1990",), ("slopes at the origin", "slope_at_origin"), "slope_at_origin.md"),
+    Term("slope at the origin", "The recommended derivative: the weighted median of many fits to the whole sweep, each a line plus v|v|, "
+         "cubic and smooth parts; no window and no form is chosen.", ("wahba1990",), ("slopes at the origin", "slope_at_origin"), "slope_at_origin.md"),
     Term("scatter", "Random error of single readings about the curve: the random part of U95.", (), ("random part",)),
     Term("form", "The terms that a fitted curve may have, such as a line or a + s v + q v|v|. The form part of U95 is the error from not "
          "knowing them.", (), ("form part", "model form", "single forms"), "fixed_forms.md", False),
     Term("form rejected", "The residuals show that the form is wrong: the value has no U95. Add the missing term or fit a "
          "narrower range.", (), ("form_rejected",), "fixed_forms.md"),
-    Term("sign open", "The 95 % interval contains zero.", (), ("sign_open",)),
+    Term("sign open", "There is a number, but U95 exceeds it: the 95 % interval contains zero. It is not to be used alone.", (),
+         ("sign_open",)),
     Term("tied law", "The force law that a simulator gets: it follows the measured points over their whole range, and its slopes at "
          "zero are the recommended ones.", (), ("tied_law",), "law_and_points.md"),
     Term("range of the data", "The convex hull of the measured conditions. A law is stated to hold inside; outside it is "
@@ -114,7 +115,7 @@ TERMS: tuple[Term, ...] = (
          "data_gate.md"),
     Term("inclusion frequency", "How often a term is selected when the data are resampled.", ("fasel2022",),
          ("inclusion frequencies",)),
-    Term("Sobol index", "Share of a figure's variance that comes from one coefficient.", (), ("Sobol indices", "Sobol")),
+    Term("Sobol index", "Share of a result's variance that comes from one coefficient.", (), ("Sobol indices", "Sobol")),
     Term("Monte Carlo error", "Uncertainty of an interval because a finite number of samples was drawn.", ("jcgm100",)),
     # Verification and validation
     Term("GCI", "Grid convergence index: the 95 % half-width for the grid, from at least three grids.", ("celik2008", "roache1998"),
@@ -122,13 +123,15 @@ TERMS: tuple[Term, ...] = (
     Term("grid study", "The same condition computed on three or more grids.", ("celik2008", "eca2014"), ("grid studies",),
          "validation.md"),
     Term("iteration noise", "Fluctuation of a force that remains when a steady computation has converged.", ("eca2014",)),
-    Term("U_V", "Validation uncertainty: the uncertainties of test and computation joined as a root sum of squares, "
-         "U_V^2 = U_D^2 + U_SN^2 + U_red^2 + U_input^2.", ("asme_vv20",), (), "validation.md"),
+    Term("U_V", "Validation uncertainty: U_V^2 = U_D^2 + U_SN^2 + U_input^2 + U_red^2, of the test, of grid, domain and "
+         "iterations, of the inputs of the computation, and of drawing a slope through computed points. The last is coeflab's "
+         "addition to ASME V&V 20.", ("asme_vv20",), (), "validation.md"),
     Term("U_SN", "Numerical uncertainty of the computation: grid, domain, iterations.", ("asme_vv20",), ("U_red",), "validation.md"),
     Term("E = S - D", "Comparison error: computation S minus test D. Where |E| < U_V no modelling error can be shown.", ("asme_vv20",), (),
          "validation.md"),
-    Term("basis", "Why a compared number counts as validation or not: predicted, printed and recomputed, calibration, "
-         "consistency.", (), ("printed and recomputed",), "validation.md", False),
+    Term("basis", "Where the number comes from that ours is compared with. Predicted: published, and not used to make our model. Printed and "
+         "recomputed: published, and computed here from other published numbers. Calibration: our model was fitted to it. Consistency: "
+         "computed here in a second way, or by theory. Only the first two are validation.", (), ("printed and recomputed",), "validation.md", False),
     # Potential flow
     Term("added mass", "Inertia of the water that an accelerated body moves: the 6x6 matrix M_A, symmetric. Acceleration derivatives "
          "are its negatives: Xudot = -m_x, Yvdot = -m_y.", ("newman1977", "fossen2011"), ("added-mass matrix",)),
@@ -167,8 +170,9 @@ TERMS: tuple[Term, ...] = (
          ("ittc_free_running",)),
     Term("free decay", "Roll or pitch released from an angle: period and damping.", ("ittc_roll_decay",)),
     Term("trim", "The speeds, attitude and commands of a steady motion.", (), ("trimmed",), "", False),
-    Term("extrapolated", "The motion leaves the range of the data: the figure has a value, without support by tests."),
-    Term("not determined", "No coefficient in the file, or no data, decides it: there is no number."),
+    Term("extrapolated", "The motion leaves the range of the data: the result has a value, without support by tests."),
+    Term("no value", "There is no number. The reason stands beside it or below the table, such as no data: no table varies the motion. "
+         "Files and JSON call it no_table, too_few_points or not_determined."),
     # Files
     Term("parameter file", "NAME.parameters.json: coefficients with covariance, range, sources, mass, added mass. Every simulator file is "
          "written from it.", (), ("parameter files",), "parameter_file.md"),

@@ -7,6 +7,7 @@ Against another body, or derivatives from an oscillation, E and U_V are given an
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,6 +30,8 @@ from coeflab.vehicle.reference import Reference
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
 AS_PRINTED = ", as printed"
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
+RUNS = {"": "straight", "v": "drift", "w": "attack", "p": "rolling", "q": "pitching", "r": "turning"}
+STATES = {"unconverged": "did not converge", "not run": "not started", "drifting": "still drifting"}
 
 
 @brief
@@ -92,12 +95,15 @@ class Towed:
         Names of the published columns.
     rows : tuple of TowedRow
         One a wanted coefficient.
+    turned : tuple of str
+        Which of its tables are no runs but others turned by symmetry, in sentences.
     """
 
     tow: PlannedTow
     body: str
     columns: tuple[str, ...]
     rows: tuple[TowedRow, ...]
+    turned: tuple[str, ...] = ()
 
 
 def towed(study: Study) -> tuple[Towed, ...]:
@@ -112,7 +118,16 @@ def _towed(study: Study, tow: PlannedTow) -> Towed:
     fits = tuple(f for f in study.fits if f.campaign == tow.campaign)
     body = fits[0].body if fits else tow.body
     rows = tuple(_row(study, tow, symbol, fits, columns, tests) for symbol in study.plan.wanted)
-    return Towed(tow, body, tuple(c.name for c in columns), rows)
+    return Towed(tow, body, tuple(c.name for c in columns), rows, _turned(_tables(study, tow.campaign)))
+
+
+def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
+    """Which tables are no runs, in one sentence; none without any."""
+    copies = [(t.name.rpartition("/")[2], t.by_symmetry.rpartition("/")[2]) for t in tables if t.by_symmetry]
+    if not copies:
+        return ()
+    own, sources = (", ".join(names) for names in zip(*copies, strict=True))
+    return (f"{own}: no runs, but {sources} turned by 90 deg about x.",)
 
 
 def _row(
@@ -236,7 +251,7 @@ def _missing(study: Study, tow: PlannedTow, symbol: str, own: Coefficient | None
 
 
 def _left_out(study: Study, campaign: str, symbol: str) -> str:
-    """Which runs of a motion do not count, by their state."""
+    """How many runs of a motion count, and why the others do not; empty where all do."""
     variable, component = _variable(symbol), symbol[:1]
     states: Counter[str] = Counter()
     runs = 0
@@ -248,8 +263,23 @@ def _left_out(study: Study, campaign: str, symbol: str) -> str:
         own = {e.row: e.status for e in t.exclusions if e.status and e.component in ("", component)}
         states.update(own[i] for i in moving if i in own and i not in apart)
         runs += sum(i not in apart for i in moving)
-    said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
-    return f"{states.total()} of {runs} runs with {variable} left out: {said}" if states else ""
+    return runs_used(runs, variable, states) if states else ""
+
+
+def runs_used(runs: int, variable: str, states: Mapping[str, int]) -> str:
+    """How many of the runs of a motion count, and what became of the others.
+
+    Parameters
+    ----------
+    runs : int
+    variable : str
+        What moves: ``v``, ``r``; empty for straight runs.
+    states : mapping of str to int
+        Of those that do not count.
+    """
+    said = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
+    kind, used = RUNS.get(variable, variable), runs - sum(states.values())
+    return f"{used} of {runs} {kind} runs used: {said}" if used else f"no {kind} run used (of {runs}, {said})"
 
 
 def _variable(symbol: str) -> str:

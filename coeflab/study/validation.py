@@ -85,6 +85,7 @@ def _half_a_digit(printed: str) -> float:
 NUMERICAL = ("random", "grid", STUDIES["domain"], STUDIES["iterations"])
 MODEL = STUDIES["turbulence"]
 REDUCTION = ("model form", "random and model form")
+WIDE = 0.25  # of the measured or published value: a wider uncertainty passes what a reader would call a difference
 
 
 @brief
@@ -140,6 +141,11 @@ class Validation:
     def within(self) -> bool | None:
         """Whether the error lies within U_V; None where there is no U_V."""
         return None if self.u_validation is None else abs(self.error) < self.u_validation
+
+    @property
+    def is_weak(self) -> bool:
+        """Whether the error lies within a U_V so wide that a value far from the measured one would do so, too."""
+        return bool(self.within) and (self.u_validation or 0.0) > WIDE * abs(self.measured)
 
     @property
     def statement(self) -> str:

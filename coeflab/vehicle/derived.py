@@ -85,12 +85,12 @@ class Derived:
 
     @property
     def limits(self) -> str:
-        """That the half-width is of first order, and the 95 % limits by drawing, where a denominator is uncertain; else empty."""
+        """That the half-width is of first order, and the 95 % limits by Monte Carlo, where a denominator is uncertain; else empty."""
         if self.result is None or not self.spread > LARGE_SPREAD:
             return ""
         r = self.result
         return (
-            f"U95 is linearised; 95 % limits by drawing {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
+            f"U95 is linearised; 95 % Monte Carlo limits {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
             f"seed {r.seed})"
         )
 
@@ -100,18 +100,18 @@ class Derived:
         return not self.driven and (self.result is None or abs(self.value) > self.result.linear)
 
 
-ALONE = ", no U95"
+ALONE, SIGN_OPEN, NO_CRITERION = ", no U95", "sign open", "no verdict"
 
 
 def sense(index: Derived) -> str:
-    """What a stability index says: not determined where its interval holds zero; without an interval `ALONE` follows.
+    """What a stability index says: `SIGN_OPEN` where its interval holds zero; without an interval `ALONE` follows.
 
-    Positive is stable only where side force and turning moment damp; where one of them drives, nothing is determined.
+    Positive is stable only where side force and turning moment damp; where one of them drives there is no verdict.
 
     G_v leaves out the restoring moment, so that it speaks of high speed only.
     """
     if not index.decided:
-        return "not determined"
+        return NO_CRITERION if index.driven else SIGN_OPEN
     by_value = "stable" if index.value > 0.0 else "unstable"
     by_value += f" {FAST}" if index.name == "G_v" else ""
     return by_value + ALONE if index.result is None else by_value
@@ -122,7 +122,7 @@ def without_restoring(parameters: ParameterFile) -> str:
     said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
     if parameters.hydrostatics is None:
         speed = number(parameters.conditions.speed, 3)
-        said += f"; at {speed} m/s the vertical plane is not determined, since BG is unknown"
+        said += f"; at {speed} m/s, the speed of the file, there is no verdict: BG is not known"
     return f"{said}."
 
 

@@ -420,7 +420,7 @@ def _place(m: MeasuredTable, primes: Mapping[str, Array], row: int) -> str:
             value = np.degrees(np.arcsin(np.clip(x[row], -1.0, 1.0)) if v in LINEAR else x[row]) if angle else x[row]
             name = ANGLES.get(v, v if v in CONTROLS else f"{v}'")
             said.append(f"{name} {value:.3g}{' deg' if angle else ''}")
-    return f"{m.labels[row]} ({', '.join(said) or 'at rest'})"
+    return f"{m.labels[row]} ({', '.join(said) or 'zero angle and rate'})"
 
 
 def held_ranges(

@@ -24,7 +24,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 
-X_APART = "X does not steer: the other components set the valid range of exports and motions."
+X_APART = "Valid ranges of exports and motions come from the other components, not X."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
@@ -338,7 +338,8 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
         largest = f.largest or 1.0
-        rule = f"every point within {100.0 * f.allowed / largest:.2g} % of the largest force: 3 times the scatter of repeated runs + 5 %"
+        allowed = 100.0 * f.allowed / largest
+        rule = f"every point within {allowed:.2g} % of the largest force: 3 times the scatter of repeated runs + 5 %"
         before = stated.get((f.component, f.table), f)
         if max(abs(f.rms - before.rms), abs(f.worst - before.worst)) > CHANGED * f.largest:
             now, then = (
@@ -349,8 +350,13 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
                 Check("law at points", f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)
             )
         said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
+        if f.beyond and not f.small and not f.missed:
+            said = (
+                f"points {', '.join(f.beyond)}, outside the range of the law, differ by up to {100.0 * f.worst_beyond / largest:.2g} %; "
+                f"inside it {100.0 * f.worst / largest:.2g} % at most (allowed {allowed:.2g} %)"
+            )
         if taken := _taken_off(parameters, f.component, f.table):
-            said += f", after subtracting the part of X odd in drift, an offset of the set-up, up to {100.0 * taken / largest:.2g} %"
+            said += f". An offset of the set-up is subtracted, up to {100.0 * taken / largest:.2g} %: the part of X odd in drift"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
@@ -362,9 +368,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             )
         elif f.beyond:
             severity = Severity.WARN
-            comment = (
-                f"At points {', '.join(f.beyond)}, outside its range, the law differs by up to {100.0 * f.worst_beyond / largest:.2g} %. "
-            ) + (X_APART if f.component == "X" else "Exports and motions use the smaller range.")
+            comment = X_APART if f.component == "X" else "Exports and motions use the smaller range."
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)
 

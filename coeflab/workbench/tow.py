@@ -23,7 +23,7 @@ from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
-from coeflab.study.towed import NOT_RUN, OPEN, TowedRow
+from coeflab.study.towed import NOT_RUN, OPEN, TowedRow, runs_used
 from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
@@ -173,8 +173,7 @@ def _left_out(row: TowedRow, runs: Sequence[TowedRun]) -> TowedRow:
     states = Counter(r.status for r in ended if not r.counts)
     if not ended or all(r.state is JobState.WAITING for r in ended):
         return row
-    said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
-    return replace(row, missing=OPEN, why=f"{states.total()} of {len(ended)} runs with {variable} left out: {said}")
+    return replace(row, missing=OPEN, why=runs_used(len(ended), variable, states))
 
 
 def _moves(condition: TowCondition) -> tuple[str, ...]:

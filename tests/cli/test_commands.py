@@ -51,8 +51,10 @@ def test_validation_prints_the_verdict(validated: Validated) -> None:
     assert done.returncode == (0 if all(judged) else 1), done.stderr
     assert done.stderr == ""
     assert all(judged)
-    assert "SUBOFF re-analysed: Yv', Nv', Zw' and Mw' agree with experiment 1990 within U95" in flat(done.stdout)
-    for column in ("experiment", "steady CFD", "PMM CFD"):
+    assert "SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95" in flat(
+        done.stdout
+    )
+    for column in ("experiment", "publ. CFD", "PMM CFD"):
         assert column in done.stdout
     assert re.search(r"\n  Yr' .* no data", done.stdout)
     written = set(files(folder / "reports" / "suboff"))

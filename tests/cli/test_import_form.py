@@ -236,10 +236,10 @@ def test_marked_rows_are_kept_out_of_fits_and_named(tmp_path: Path) -> None:
     form = invoke("import", file, "--out", tmp_path / "out", *sets(axes__frame="FRD"))
     done = invoke(*command_of(form.output))
     assert done.exit_code == 0, done.output
-    assert "Points left out: 3, 5* marked uncertain in the file; 6 blank in the source." in flat(done.output)
+    assert "Points left out: 3, 5*: marked uncertain in the file; 6: blank in the source." in flat(done.output)
     assert table_of(tmp_path / "out").usable["Y"].tolist() == [True, True, False, True, False, False]
     said = unused([table_of(tmp_path / "out")])  # the line of `coeflab fit`
-    assert said == "Points left out: 3, 5* marked uncertain in the file; 6 blank in the source."
+    assert said == "Points left out: 3, 5*: marked uncertain in the file; 6: blank in the source."
 
 
 def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Path) -> None:

@@ -105,20 +105,17 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     twice = replace(OTHER, other_scaling=replace(LENGTH, length=2.2, length_name="LWL"))
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
-    assert any(
-        "its source does not state the length; here by LOA (by LWL: Yv' +21.0 %, Nr' +46.4 %)" in note
-        for note in made.notes
-    )
+    assert any("length not stated, LOA assumed (if LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes)
 
 
 @pytest.mark.parametrize(
     ("references", "sentence"),
     [
-        ((REPORT, QUOTED), "Study tow re-analysed: Nv' of two static derivatives differs from experiment 1990 by more than U95; no rotating-arm data."),
+        ((REPORT, QUOTED), "Study tow: our fits to the data of experiment 1990 differ from its Nv' by more than U95 (one of two static derivatives); no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298"}, "report"),),
-         "Study tow re-analysed: Yv' agrees with report within U95; no rotating-arm data."),
+         "Study tow: our fits to the data of report reproduce its Yv' within U95; no rotating-arm data."),
         ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298", "Nv": "-0.0138"}, "report"),),
-         "Study tow re-analysed: Yv' and Nv' agree with report within U95; no rotating-arm data."),
+         "Study tow: our fits to the data of report reproduce its Yv' and Nv' within U95; no rotating-arm data."),
         ((), "Study tow: two of three wanted coefficients found, each with U95; no rotating-arm data."),
     ],
 )  # fmt: skip
@@ -133,7 +130,7 @@ def test_any_name_and_any_sweep(angles: list[float], named: str):
     assert len(made.sentence) <= 160
     assert all(len(note) <= 244 for note in made.notes)
     assert len(made.notes) <= 4
-    assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Exports"]
+    assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Simulator files"]
     assert all(len(c.text.split()) <= 6 for c in made.chips)
     folded = replace(answer_table(made), notes=())
     assert max(map(len, plain_lines(folded))) <= 80
@@ -183,7 +180,7 @@ def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyP
     assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
     assert row.difference == pytest.approx(0.0003)
     assert made.rows[:2] == beside.rows[:2]
-    assert "Nr': own tow own_tow; no verdict." in made.notes
+    assert "Nr': our CFD own_tow; no verdict." in made.notes
     assert "no rotating-arm data" not in made.sentence
 
 
@@ -354,29 +351,28 @@ def test_suboff(suboff: Study):
     made = answer(suboff)
     said = verdict(suboff).paragraphs
     assert said[1] == (
-        "Weak tests (U95 joined with the uncertainty that the source states, above 25 % of the published value): Zw' of "
+        "Weak passes: U95 and the source's uncertainty, root sum of squares, exceed 25 % of the published value: Zw' of "
         "suboff_roddy_1 (44 %), Yv' of suboff_roddy_3 (53 %) and Kv' of suboff_roddy_3 (45 %)."
     )
-    assert (
-        said[2]
-        == "22 of the 24 compared numbers lie within their tolerance: predicted 7 of 9; printed and recomputed 15 of 15."
+    assert said[2] == (
+        "22 of the 24 compared numbers lie within their tolerance: 7 of 9 predictions by CFD, 12 of 12 re-fits of the authors' "
+        "data, 3 of 3 recomputed stability indices."
     )
-    assert said[3].startswith("Predicted: a coefficient from CFD, compared with the one measured")
-    assert said[4].startswith("Every prediction: ")
-    assert said[5].startswith(
-        "Predicted coefficients that differ from the test by more than U_V: Kv' of suboff_cfd_barehull"
-    )
-    assert "such a difference does not fail the study" in said[5]
-    assert said[6] == (
-        "Not counted, though |E| is larger than U_V: Yr' and Nr' of suboff_tow_bare_hull; the test is by another method, PMM."
+    assert said[3].startswith("Prediction: a coefficient from CFD against the one measured")
+    assert said[4].startswith("Only the predictions are independent evidence.")
+    assert said[5].startswith("Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull")
+    assert said[6].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
+    assert "This does not fail the study" in said[6]
+    assert said[7] == (
+        "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method, PMM."
     )
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
-        == "DARPA SUBOFF re-analysed: Yv', Nv', Zw' and Mw' agree with experiment 1990 within U95; no rotating-arm data on suboff "
+        == "DARPA SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95; no rotating-arm data for suboff "
         "fully appended."
     )
-    assert made.columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
+    assert made.columns == ("experiment 1990", "published CFD", "PMM CFD 2012")
     assert [r.source for r in made.rows] == ["suboff_roddy_2"] * 2 + ["suboff_roddy_1"] * 2 + ["", ""]
     assert [r.agrees for r in made.rows] == [True] * 4 + [None] * 2
     assert [r.published[0] for r in made.rows] == [-0.027834, -0.013648, -0.01391, 0.010324, 0.0052, -0.0044]

@@ -85,8 +85,8 @@ def test_the_core_names_the_rows_that_no_fit_uses_and_the_coefficients_without_a
         for b in budgets(study)
     )
     (table,) = coefficients_section(replace(study, tables=left, budgets=found)).tables
-    assert any(n.startswith("Points left out: ") and "(Y)" in n for n in table.notes)
-    assert any("grid (study divergent) of Nv'" in n for n in table.notes)
+    assert any(n.startswith("Readings left out (point, components): ") and " Y" in n for n in table.notes)
+    assert any("grid, for Nv' (grid study divergent)" in n for n in table.notes)
 
 
 @pytest.mark.parametrize("angles", [FULL, [-4.0, -2.0, 0.0, 2.0]])

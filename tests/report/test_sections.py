@@ -47,7 +47,7 @@ def test_forces_at_rest_and_the_check_of_symmetry_have_one_value():
     found = symmetry_check(study)
     assert len(rest.rows) == len(found) == 2
     for row, c in zip(rest.rows, found, strict=True):
-        assert f"'(0) = {row[3]} +- {row[4]}," in c.statistic
+        assert f"' at zero drift = {row[3]} +- {row[4]}," in c.statistic
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_the_check_of_symmetry_does_as_its_rule_says(offset, noise, severity):
         c for c in symmetry_check(replace(small_study(FULL), tables=(table,), fits=(fit,))) if "Yv" in c.subject
     ]
     assert found.severity.value == severity
-    assert found.rule.startswith("pass: the 95 % interval contains zero, or below 0.1 % of the largest")
+    assert found.rule.startswith("zero within U95; a note from 0.1 % of the largest, a warning from 5 %")
 
 
 def test_data_quality_finds_the_planted_offset_and_names_the_doubtful_cell():
@@ -151,8 +151,8 @@ def test_a_centre_that_is_not_known_has_no_mark_and_is_said():
     marks, unknown = hull_marks(with_files(file), body, (file.name,))
     assert [m.label for m in marks] == ["CB"]
     assert "centre of gravity is not known" in unknown[0]
-    assert "not determined: Nv' or Yv' is missing" in unknown[1]
-    assert "not determined: Mw' or Zw' is missing" in unknown[2]
+    assert "has no value: Nv' or Yv' is missing" in unknown[1]
+    assert "has no value: Mw' or Zw' is missing" in unknown[2]
 
 
 def test_the_centre_of_pressure_is_the_moment_over_the_force():

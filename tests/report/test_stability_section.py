@@ -40,7 +40,7 @@ def test_stability_has_indices_roots_and_figures():
 
 def test_stability_without_hydrostatics_says_what_is_missing():
     (section,) = stability_sections(with_files(made().model_copy(update={"hydrostatics": None})))
-    assert section.tables[1].rows[1][-1] == "not determined, no BG"
+    assert section.tables[1].rows[1][-1] == "no value: no BG"
     assert "no hydrostatics" in section.figures[1].caption
 
 
@@ -56,16 +56,17 @@ def with_u95(values, half):
 
 @pytest.mark.parametrize(
     ("values", "half", "said"),
-    [(STABLE, 0.05, "stable"), (UNSTABLE, 0.05, "unstable"), (NEARLY, 0.05, "not determined")],
+    [(STABLE, 0.05, "stable"), (UNSTABLE, 0.05, "unstable"), (NEARLY, 0.05, "sign open")],
 )
-def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, half, said):
+def test_an_index_is_stable_unstable_or_of_open_sign_by_its_interval(values, half, said):
     study = with_files(with_u95(values, half))
     (section,) = stability_sections(study)
     by_index = {row[1]: row for row in section.tables[0].rows}
     assert by_index["G_h"][4] == said
+    words = "undecided (sign of G_h open)" if said == "sign open" else said
     (sentence,) = [text for text in in_words(study) if "G_h" in text]
     assert sentence.startswith(
-        f"With controls fixed, straight motion in the horizontal plane is {said}: synthetic (G_h"
+        f"With controls fixed, straight motion in the horizontal plane is {words}: synthetic (G_h"
     )
     assert sentence in document(study).sections[0].paragraphs
     (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
@@ -91,7 +92,7 @@ def test_an_index_over_an_uncertain_denominator_has_limits_by_drawing():
         (section,) = stability_sections(with_files(with_u95(STABLE, half)))
         by_half[half] = next(row for row in section.tables[0].rows if row[1] == "G_h")
     assert "linearised" not in by_half[0.05][-1]
-    said = by_half[0.3][-1].partition("U95 is linearised; 95 % limits by drawing ")[2]
+    said = by_half[0.3][-1].partition("U95 is linearised; 95 % Monte Carlo limits ")[2]
     assert "20000 draws, seed 1" in said
     low, high = (float(one) for one in said.partition(" (")[0].split(" .. "))
     value = float(by_half[0.3][2])
@@ -103,8 +104,8 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
-    assert said.endswith(" From literature, not from our fits: Yr' and Nr' of synthetic.")
-    assert "literature" not in in_words(with_files(file))[0]
+    assert said.endswith(" These indices take published derivatives, not ours: Yr' and Nr' of synthetic.")
+    assert "published" not in in_words(with_files(file))[0]
 
 
 def test_a_missing_rate_derivative_is_named():
@@ -112,7 +113,7 @@ def test_a_missing_rate_derivative_is_named():
     (section,) = stability_sections(with_files(made(few)))
     assert [t.title for t in section.tables] == ["Stability indices"]
     assert [t.title for t in section.subsections[0].tables] == ["Mass and inertia used"]
-    assert section.tables[0].rows == (("synthetic", "G_h", "-", "-", "not determined", "missing: Nr'"),)
+    assert section.tables[0].rows == (("synthetic", "G_h", "-", "-", "no value", "missing: Nr'"),)
 
 
 def test_the_mass_that_an_index_is_made_of_is_shown_and_named_as_not_assessed():
@@ -159,10 +160,12 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     study = with_files(diving)
     (said,) = in_words(study)
     start = "With controls fixed, straight motion in the horizontal plane is stable, no U95: synthetic (G_h"
-    vertical = " In the vertical plane, it is unstable at high speed (without restoring moment), no U95: synthetic (G_v"
+    vertical = (
+        " In the vertical plane, it is unstable at high speed (restoring moment left out), no U95: synthetic (G_v"
+    )
     assert said.startswith(start)
     assert vertical in said
-    assert said.endswith("; at 1.50 m/s it is not determined, as BG is not known.")
+    assert said.endswith(". At 1.50 m/s, the speed of the file, there is no verdict: BG is not known.")
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)
@@ -173,7 +176,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
-    assert "since BG is unknown" in found.comment
+    assert "BG is not known" in found.comment
 
 
 def test_no_parameter_file_no_stability():

@@ -132,7 +132,7 @@ def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies:
 
 
 def test_published_columns_stand_beside_by_our_length(bodies: tuple[Towed, ...]) -> None:
-    assert bodies[2].columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
+    assert bodies[2].columns == ("experiment 1990", "published CFD", "PMM CFD 2012")
     by = {r.symbol: r.published for r in bodies[2].rows}
     assert by["Yr"] == pytest.approx((0.0052, 0.0044, 0.0046), rel=1e-4)
     assert by["Mw"] == pytest.approx((0.0103, 0.0110, 0.0103), rel=1e-4)
@@ -146,14 +146,14 @@ def test_what_did_not_converge_is_open_with_its_reason(bodies: tuple[Towed, ...]
     assert by["Yv"].value is not None
     assert by["Yr"].value is None
     assert by["Yr"].missing == OPEN
-    assert by["Yr"].why == "4 of 6 runs with r left out: 1 diverged, 3 drifting"
+    assert by["Yr"].why == "2 of 6 turning runs used: 1 diverged, 3 still drifting"
     assert by["Zw"].missing == NOT_RUN
     assert by["Zw"].why == "no run with w"
 
 
 def test_runs_left_out_are_counted_beside_a_value_too(bodies: tuple[Towed, ...]) -> None:
     by = {r.symbol: r for r in bodies[2].rows}
-    assert by["Yv"].why == "1 of 6 runs with v left out: 1 drifting"
+    assert by["Yv"].why == "5 of 6 drift runs used: 1 still drifting"
 
 
 def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path: Path) -> None:
@@ -167,8 +167,8 @@ def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path:
     (tmp_path / "plan.toml").write_text(head + table + aff8)
     (found,) = towed(run(read_plan(tmp_path / "plan.toml")))
     by = {r.symbol: (r.missing, r.why) for r in found.rows}
-    assert by["Nv"] == (OPEN, "6 of 6 runs with v left out: 6 drifting")
-    assert by["Nr"] == (OPEN, "6 of 6 runs with r left out: 6 drifting")
+    assert by["Nv"] == (OPEN, "no drift run used (of 6, 6 still drifting)")
+    assert by["Nr"] == (OPEN, "no turning run used (of 6, 6 still drifting)")
     assert by["Zw"][0] == NOT_RUN
 
 
@@ -195,14 +195,14 @@ def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest
         show.table(tow_against(one))
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
-    assert "Own tow: AFF-8" in shown
-    assert "All: there is no campaign absent_planes yet." in shown
+    assert "Own CFD: AFF-8" in shown
+    assert "All: no value, there is no campaign absent_planes yet." in shown
     assert "no verdict" in shown
 
 
 def test_report_and_json_hold_the_tows(study: Study) -> None:
     section = next(s for s in tow_sections(study))
-    assert [t.title for t in section.tables][-2:] == ["Own tow: AFF-8", "Comparison error of the tow: AFF-8"]
+    assert [t.title for t in section.tables][-2:] == ["Own CFD: AFF-8", "Own CFD against the test: AFF-8"]
     found = as_json.study(study, [])["tows"]
     assert [len(t["rows"]) for t in found] == [6, 6, 6]
     assert found[1]["rows"][0]["missing"] == NOT_TOWED

@@ -280,7 +280,7 @@ def test_a_motion_whose_every_run_crashed_is_open_and_says_so(whole: tuple[Tow, 
     none = [t for t in made.study.tables if "r" not in t.varies]
     lost = replace(made, runs=tuple(crashed), study=replace(made.study, tables=tuple(none)))
     rows = {r.symbol: (r.missing, r.why) for r in lost.six}
-    assert rows["Yr"] == rows["Nr"] == ("open", "2 of 2 runs with r left out: 2 crashed")
+    assert rows["Yr"] == rows["Nr"] == ("open", "no turning run used (of 2, 2 crashed)")
     waiting = [replace(r, state=JobState.WAITING) if r.condition.turns else r for r in crashed]
     assert {r.why for r in replace(lost, runs=tuple(waiting)).six if r.symbol == "Yr"} == {"no run with r"}
 

@@ -74,11 +74,11 @@ def test_without_settings_nothing_is_determined(opened):
     page.evaluate("""() => { const { edits, changed } = document.getElementById("bench").bench;
         edits[0] = { limit: null, dropped: Array.from({ length: 12 }, (_, i) => i), without: [] }; changed(); }""")
     settled(page)
-    assert page.evaluate(SHOWN) == "not determined"
+    assert page.evaluate(SHOWN) == "no value"
     text = page.locator(".values").inner_text()
     assert "2 different settings, at least 3 are needed" in text
     assert "Yv' has no value" in text
-    assert "not determined: Yv′ has no value" in text
+    assert "no motion: Yv′ has no value" in text
 
 
 def test_a_slope_that_is_not_known_is_said_with_the_zigzag(opened):

@@ -158,7 +158,7 @@ def test_too_few_settings_are_not_determined(page, bench):
     assert reason == "2 different settings, at least 3 are needed"
     index = page.evaluate(ANSWER, {"0": edit})["indices"][0][0]
     assert index["value"] is None
-    assert index["sense"] == "not determined"
+    assert index["sense"] == "no value"
 
 
 @pytest.mark.parametrize(("which", "change"), [(0, 0.8), (1, 1.0)])

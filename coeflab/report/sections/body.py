@@ -292,9 +292,9 @@ def _pressures(study: Study, parameters: ParameterFile, of_file: str) -> tuple[l
         full = f"centre of pressure for {plane}{of_file}"
         if found is None:
             moment, force, _ = CENTRES[name]
-            unknown.append(f"The {full} is not determined: {moment}' or {force}' is missing.")
+            unknown.append(f"The {full} has no value: {moment}' or {force}' is missing.")
         elif found[0].result is None:
-            unknown.append(f"The {full} is not determined: {found[0].statement}.")
+            unknown.append(f"The {full} has no value: {found[0].statement}.")
         else:
             marks.append(_pressure(full, SHORT[name], *found))
     return marks, unknown

@@ -312,8 +312,8 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "A tow is a CFD campaign that the plan names under [[tow]]; of several for one body the first that is there counts. Grid: the part "
-        "of U95 that the grid study gives, in % of the value.",
+        "Own tows are our CFD runs of a towed body, not tank tests; one campaign a body. Grid: the part of U95 that the grid study gives, "
+        "in % of the value.",
         "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
         "needs a steady test of the same body.",
     )
@@ -322,7 +322,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     each = (t for one in with_values for t in (tables.own_tow(one), tables.tow_against(one)))
     rest = _filled(tuple(tables.own_tow(one) for one in found if one not in with_values))
     more = (Section("no-tow", "Not towed", tables=rest, appendix=True),) if rest else ()
-    return (Section("own-tows", "Own tows", text, _filled(tuple(each)), subsections=more),)
+    return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)
 
 
 def _nothing(found: Towed) -> str:

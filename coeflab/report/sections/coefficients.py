@@ -12,6 +12,8 @@ from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
+from coeflab.report.tables.results import without
+from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.study.study import Study
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
 
@@ -23,19 +25,25 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope is the weighted median over many curves, all fitted to the whole sweep: a line with v|v|, cubic and smooth parts of different "
-    "size. The weight of a curve says how well it explains the points (docs/slope_at_origin.md).",
-    "No form and no range is chosen, except where a note below a table says so. No published value is used.",
-    "U95 covers {}. Its parts are given in % of the value. Random: scatter of the points. Form: unknown shape of the curve. "
-    "Input: declared errors of the inputs, and the grid; for a term of higher degree, the uncertainty of the slope.",
-    "n: points in the fit of this coefficient. A dash: not assessed, so not in U95.",
+    "Each slope is the weighted median of many fits to the whole sweep, each a line plus v|v|, cubic and smooth parts. A fit weighs the more, "
+    "the better it explains the points (docs/slope_at_origin.md). No published value is used.",
+    "Slopes: no form and no range is chosen. Terms of higher degree: their form is chosen, and the notes below the tables name them.",
+    "U95 covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
+    "Form: unknown shape of the curve.",
+    "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
+    "to all runs that its law covers, also some in which two motions vary. A dash: not assessed, so not in U95.",
 )
+INPUT = "Input: declared errors of the inputs, and the grid."
+SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."
+OPEN = "Sign open: U95 exceeds the value. Such a value is not to be used alone; within its law it belongs to the fit of the others."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
     "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
+CONDITIONS = "In CFD angle, rate, speed, length, density and reference point are set, not measured, and have no errors of readings."
+OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 
 
@@ -102,14 +110,22 @@ def coefficients_section(study: Study) -> Section:
         if study.coefficients
         else NONE
     )
+    found = tuple(
+        t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
+    )
+    heads = {name for t in found for name in t.headers}
+    if any(f.sweeps for f in study.fits):
+        parts = [s for name, s in (("input", INPUT), ("slope", SLOPE)) if name in heads]
+        text += (" ".join(parts),) if parts else ()
+    if any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row):
+        text += (OPEN,)
+    if any(name in SET for b in study.budgets if b.kind == "cfd" for name in b.unassessed):
+        text += (CONDITIONS,)
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
         text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
     absent = _without_value(study)
-    found = tuple(
-        t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
-    )
     whole = tables.coefficients(study)
     appendix = Section("all-coefficients", "All columns", tables=(whole,), appendix=True) if whole.rows else None
     return Section(
@@ -121,31 +137,51 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     mine = [c for c in study.coefficients if c.campaign == campaign and c.status is not Status.NO_TABLE]
     zero = zeros(study, campaign, mine)
     order = {symbol: i for i, symbol in enumerate(study.plan.wanted)}
+    tied = {
+        c.symbol
+        for f in study.fits
+        if f.campaign == campaign and f.tied is not None
+        for c in f.coefficients.coefficients
+    }
+    tied -= {s.symbol for f in study.fits if f.campaign == campaign for s in f.sweeps}
     shown = sorted((c for c in mine if c not in zero), key=lambda c: order.get(c.symbol, len(order)))
     rows = tuple(
         (
-            primed(c.symbol), *noun_tables.with_status(c), percent(c.u95, c.value), percent(c.parts.random, c.value),
-            percent(c.parts.model_form, c.value), percent(c.parts.input, c.value), str(c.n_points) if c.n_points else ABSENT,
+            primed(c.symbol), *noun_tables.with_status(c), f"{percent(c.u95, c.value)}{OPEN_SIGN * _is_open(c)}",
+            percent(c.parts.random, c.value), percent(c.parts.model_form, c.value),
+            *((ABSENT, percent(c.parts.input, c.value)) if c.symbol in tied else (percent(c.parts.input, c.value), ABSENT)),
+            str(c.n_points) if c.n_points else ABSENT,
         )
         for c in shown
     )  # fmt: skip
     budgets = [b for b in study.budgets if b.campaign == campaign]
     open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
-    in_some = [_of_some(name, budgets) for name in open_parts]
+    computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
-        in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(in_some)}." if in_some else "",
+        in_one_line(zero), form_not_assessed(shown),
+        *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
-    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
+    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "slope", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
-    return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+    whole = Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+    return without(
+        whole, *(n for i, n in enumerate(headers) if n in ("input", "slope") and all(row[i] == ABSENT for row in rows))
+    )
+
+
+def _is_open(c: Coefficient) -> bool:
+    """Whether the data leave the sign of a value open."""
+    return c.value is not None and c.u95 is not None and abs(c.value) <= c.u95
 
 
 def _of_some(name: str, budgets: Sequence[Budget]) -> str:
     """A part that was not assessed; the grid with its symbols where it is in U95 of the others."""
     if not name.startswith("grid") or all(b.part("grid") is None for b in budgets):
         return name
-    return f"{name} of {listed([primed(b.symbol) for b in budgets if name in b.unassessed])}"
+    left = listed([primed(b.symbol) for b in budgets if name in b.unassessed])
+    state = name.removeprefix("grid").replace("(study", "(grid study")
+    return f"grid, for {left}{state}"
 
 
 def _wrong(study: Study, campaign: str) -> str:
@@ -162,4 +198,4 @@ def _without_value(study: Study) -> tuple[str, ...]:
         if c.status is Status.NO_TABLE:
             missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
     each = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in missing.items())
-    return (f"No table: {each}.",) if each else ()
+    return (f"No value, as no table varies the motion: {each}.",) if each else ()

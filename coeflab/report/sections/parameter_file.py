@@ -21,7 +21,7 @@ from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
-from coeflab.law.symbols import primed
+from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section, Series
@@ -33,7 +33,8 @@ from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import FAST, INDICES, Derived, by_mass, sense, stability
+from coeflab.vehicle.derived import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
+from coeflab.vehicle.law_at_points import SMALL
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
 
@@ -101,10 +102,10 @@ def _said(part: str, values: Array) -> str:
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
-    "Positive: stable. Negative: unstable. Interval with zero in it: not determined.",
-    "U95 comes from the U95 of the four derivatives, fitted or from literature, without mass and centre of gravity. It is linearised and "
-    "decides the verdict; limits by drawing show how skew the interval is.",
-    "G_v holds at high speed: it has no restoring moment of weight and buoyancy.",
+    "Positive: stable. Negative: unstable. Interval with zero in it: sign open.",
+    "U95 comes from the U95 of the four derivatives, fitted or published, without mass and centre of gravity. It is linearised and "
+    "decides the verdict; Monte Carlo limits show how skew the interval is.",
+    "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
     "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
 )
 
@@ -119,7 +120,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     out: list[str] = []
     for index, senses in said.items():
         each = [
-            _of_one_sense(v, senses[v], lacking, with_values)
+            _of_one_sense(index, v, senses[v], lacking, with_values)
             for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
         ]
         if each:
@@ -129,31 +130,51 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
                 else f"With controls fixed, straight motion in {IN_PLANE[index]} is"
             )
             out.append(f"{start} {'. It is '.join(each)}.")
-    return [" ".join((*out, *_by_others(study)))] if out else []
+    return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
+
+
+SOURCES = {"experiment": "test", "cfd": "CFD"}
+
+
+def _one_body(study: Study) -> list[str]:
+    """Which parameter files with an index are of one body, and what each comes from."""
+    by: dict[str, dict[str, str]] = {}
+    for p in study.parameter_files.values():
+        if stability(p):
+            of = {name for c in p.coefficients for name in (c.campaign or "").split(", ")}
+            kinds = dict.fromkeys(SOURCES.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
+            by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
+    return [
+        f"{listed(list(files))} are one body, by {listed(list(files.values()))}, in this order."
+        for files in by.values()
+        if len(files) > 1
+    ]
 
 
 def _of_one_sense(
-    verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
+    index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
 ) -> str:
     """The parameter files that one verdict holds for; at high speed also what is open at their own."""
     each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-        each += f"; at {speeds} m/s it is not determined, as BG is not known" if speeds else ""
-    return f"{verdict.replace(FAST, f'{FAST} (without restoring moment)')}: {each}"
+        each += f". At {speeds} m/s, the speed of the file, there is no verdict: BG is not known" if speeds else ""
+    undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
+    said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
+    return f"{said}: {each}"
 
 
 def _by_others(study: Study) -> list[str]:
     """Which derivatives of the indices are from literature, file by file; none where an index has no other."""
     each = []
     for p in study.parameter_files.values():
-        stated = [_from_literature(p, d.name) for d in stability(p)]
+        stated = [from_literature(p, d.name) for d in stability(p)]
         symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
         each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
-    return [f"From literature, not from our fits: {'; '.join(each)}."] if each else []
+    return [f"These indices take published derivatives, not ours: {'; '.join(each)}."] if each else []
 
 
-def _from_literature(parameters: ParameterFile, index: str) -> list[str]:
+def from_literature(parameters: ParameterFile, index: str) -> list[str]:
     """Derivatives of a stability index that no campaign of the study gave."""
     found = [parameters.coefficient(str(s)) for s in INDICES[index][:-1]]
     return [c.symbol for c in found if c is not None and c.origin == "literature"]
@@ -188,7 +209,11 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
         speeds: dict[str, list[str]] = {}
         for name in dict.fromkeys(row[0] for row in roots):
             speeds.setdefault(f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", []).append(name)
-        at = f"Roots at {next(iter(speeds))}" if len(speeds) == 1 else "Roots at the speed of the file"
+        at = (
+            f"Roots at {next(iter(speeds))}, the speed of the file"
+            if len(speeds) == 1
+            else "Roots at the speed of the file"
+        )
         each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
         notes = (f"speed of the file: {each}.",) if len(speeds) > 1 else ()
         tables.append(Table(at, heads, tuple(roots), notes, frozenset({0, 1, 2, 4})))
@@ -210,11 +235,11 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         if index not in given:
             lacking += ["m'"] if parameters.mass is None else []
             remark = f"missing: {', '.join(lacking)}"
-            out.append((parameters.name, index, ABSENT, ABSENT, "not determined", remark))
+            out.append((parameters.name, index, ABSENT, ABSENT, "no value", remark))
             continue
         d = given[index]
         half = None if d.result is None else d.result.linear
-        stated = _from_literature(parameters, index)
+        stated = from_literature(parameters, index)
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
         remarks += [d.limits] if d.limits else []
@@ -234,7 +259,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     told = (
-        "published: printed in the source, from its own derivatives and mass. No verdict here, as our derivatives are others.",
+        "published: the source's own index, from its derivatives and mass. It is judged only where we recompute it from those (Verdict).",
         *notes,
     )
     return Table(
@@ -281,8 +306,9 @@ def _roots(name: str, locus: RootLocus) -> tuple[str, ...]:
     if locus.critical is not None:
         critical = number(locus.critical)
     else:
-        critical = "none" if locus.is_restored or locus.index == "G_h" else "not determined, no BG"
-    return name, IN_PLANE[locus.index].removeprefix("the "), _pairs(locus.at_speed), time, critical
+        critical = "none" if locus.is_restored or locus.index == "G_h" else "no value: no BG"
+    left = "" if locus.is_restored or locus.index == "G_h" else ", BG left out"
+    return name, IN_PLANE[locus.index].removeprefix("the ") + left, _pairs(locus.at_speed), time, critical
 
 
 def _pairs(values: NDArray[np.complex128]) -> str:
@@ -298,8 +324,10 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 SIMULATED = (
     "Each manoeuvre is computed from one parameter file of this study. A result that uses motions beyond the data is marked "
-    "extrapolated; a result that the file does not determine has no value.",
-    "The results have no U95: each manoeuvre is computed once, with the values of its file. For intervals run coeflab uncertainty FILE.",
+    "extrapolated; one that its data leave open has no value, and the reason stands below the table.",
+)
+WITHOUT_U95 = (
+    "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
 )
 SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 
@@ -310,7 +338,15 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
         return ()
     files = {p.name: p for p in study.parameter_files.values()}
     each = tuple(_manoeuvre(m, f"manoeuvre-{i}", files.get(m.vehicle.name)) for i, m in enumerate(study.manoeuvres))
-    return (Section("manoeuvres", "Simulated manoeuvres", SIMULATED, subsections=each),)
+    return (Section("manoeuvres", "Simulated manoeuvres", (*SIMULATED, without_u95(study)), subsections=each),)
+
+
+def without_u95(study: Study) -> str:
+    """Why the quantities of the manoeuvres have no U95, or that there is none to have one."""
+    if any(f.value is not None for made in study.manoeuvres for f in made.figures):
+        return WITHOUT_U95
+    every = {1: "The manoeuvre", 2: "Neither manoeuvre"}.get(len(study.manoeuvres), "None of the manoeuvres")
+    return f"{every} could {'not ' * (len(study.manoeuvres) == 1)}be computed, so there is no U95."
 
 
 def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
@@ -319,7 +355,7 @@ def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
     wanted = [f"{c}{r}" for r, components in (("r", "YN"), ("q", "ZM")) if r in made.vehicle.free for c in components]
     found = [parameters.coefficient(s) for s in wanted if s[-1] not in covered] if parameters else []
     stated = [primed(c.symbol) for c in found if c is not None and c.origin == "literature" and c.value is not None]
-    return f" From literature: {listed(stated)}." if stated else ""
+    return f" {listed(stated)} are published values, not fits." if stated else ""
 
 
 def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
@@ -329,7 +365,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
     text = []
     if made.undetermined:
         text.append(
-            f"Nothing is drawn: the file does not determine this motion. {made.undetermined}{_stated_rates(made, parameters)}"
+            f"Nothing is drawn: the data do not support this motion. {made.undetermined}{_stated_rates(made, parameters)}"
         )
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
@@ -387,7 +423,7 @@ KINDS = {
 
 
 ACCELERATIONS = {
-    "measured": "acceleration derivatives of the file first, the computed added mass for the others",
+    "measured": "the file's acceleration derivatives, else computed added mass",
     "computed": "computed added mass only",
 }
 
@@ -399,7 +435,7 @@ def summary(study: Study) -> Table:
         for made in study.exports
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
-    headers = ("parameter file", "target", "loss", "largest difference in %", "accelerations", "files")
+    headers = ("parameter file", "target", "loss", "largest difference in %", "added mass", "files")
     lossy = [made.loss for made in study.exports if made.loss is not None]
     kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
@@ -410,11 +446,12 @@ def summary(study: Study) -> Table:
         ),
         *(f"{kind}: {KINDS[kind]}." for kind in Kind if kind in kinds),
         *(
-            f"accelerations {used}: {ACCELERATIONS[used]}."
+            f"added mass {used}: {ACCELERATIONS[used]}."
             for used in ACCELERATIONS
             if any(row[4] == used for row in rows)
         ),
-        "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. "
+        "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. A "
+        "component below 1 % of the largest force or moment is too small to judge. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
     )
     return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
@@ -436,7 +473,31 @@ def _worst(made: Export) -> str:
     if made.loss is None:
         return ABSENT
     name, worst = made.loss.furthest
-    return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
+    small = _too_small(made.loss)
+    if name not in small:
+        return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
+    shares = {c: float(x) for c, x in zip(COMPONENTS, np.nan_to_num(made.loss.relative), strict=True) if c not in small}
+    if made.loss.accelerations is not None:
+        i, share = made.loss.accelerations.furthest
+        shares[f"d{MOTIONS[i]}/dt"] = share
+    name = max(shares, key=lambda c: shares[c])
+    rest = (
+        f"{loss_tables.percent(shares[name])} ({name})"
+        if shares[name] > LOSSLESS
+        else loss_tables.percent(shares[name])
+    )
+    return f"{rest}; {', '.join(small)} too small to judge"
+
+
+def _too_small(loss: Loss) -> list[str]:
+    """Components that are next to nothing beside their like in the file, and differ in the target."""
+    largest = loss.forces.largest
+    of = np.repeat([float(largest[:3].max()), float(largest[3:].max())], 3)
+    return [
+        c
+        for c, own, like, share in zip(COMPONENTS, largest, of, loss.relative, strict=True)
+        if own < SMALL * like and share > LOSSLESS
+    ]
 
 
 def _place(made: Export) -> str:

@@ -27,6 +27,10 @@ from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFi
 from coeflab.vehicle.second_order import ROUNDING, products_once
 
 NAMED = 3
+IN_PERCENT = (
+    "In % of the largest force of the component in that table. Two offsets of the set-up are subtracted from the points first: a force "
+    "at zero angle and rate that the law does not have, and the part of X that changes its sign with the drift."
+)
 
 
 def forces(loss: Loss) -> Table:
@@ -78,10 +82,7 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
          ABSENT if f.small else percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
         for f in found
     )  # fmt: skip
-    notes = [
-        "In % of the largest force of the component in that table. Offsets of the set-up are subtracted from the points: the force at "
-        "zero angle and rate where the law has no constant, and the part of X odd in drift where the fit found one."
-    ]
+    notes = [IN_PERCENT]
     if not controls:
         notes.append("Points with a deflected control are left out: no force of controls is compared.")
     notes += [

@@ -26,6 +26,7 @@ from coeflab.motion.identify.identification import Identified, IdentifiedTerm
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.tune.tuning import STATUSES, WORDS, Tuning, largest_correlations
+from coeflab.report.tables.nouns import NO_VALUE
 
 DEGREES = {"rad": "deg", "rad/s": "deg/s"}
 
@@ -44,10 +45,10 @@ def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Tabl
         value = ABSENT if f.value is None else "0" if dust else f"{f.value * factor:.5g}"
         interval = "" if f.low is None or f.high is None else f"{f.low * factor:.4g} .. {f.high * factor:.4g}"
         rows.append(
-            (f.name, value, "" if unit == "1" else unit, lengths, *((interval,) if bounded else ()), f.status,
+            (f.name, value, "" if unit == "1" else unit, lengths, *((interval,) if bounded else ()), NO_VALUE if f.status == "not determined" else f.status,
              f.definition)
         )  # fmt: skip
-    headers = ("figure", "value", "unit", "in L", *(("95 % interval",) if bounded else ()), "status", "definition")
+    headers = ("quantity", "value", "unit", "in L", *(("95 % interval",) if bounded else ()), "status", "definition")
     reasons: dict[str, list[str]] = {}
     for f in figures:
         if f.why:

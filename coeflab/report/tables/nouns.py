@@ -26,7 +26,7 @@ DEFINED = (
     "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid."
 )
 ROUNDING = 1e-12
-REJECTED = "form rejected"
+REJECTED, NO_VALUE = "form rejected", "no value"
 
 
 def window_text(c: Coefficient) -> str:
@@ -43,10 +43,15 @@ def window_text(c: Coefficient) -> str:
 def with_status(c: Coefficient) -> tuple[str, str]:
     """Value and U95, or the status that says why one of them is none."""
     if c.value is None:
-        return c.status.replace("_", " "), ABSENT
+        return without_value(c), ABSENT
     return (
         (with_u95(c.value, None)[0], REJECTED) if c.status == REJECTED.replace(" ", "_") else with_u95(c.value, c.u95)
     )
+
+
+def without_value(c: Coefficient) -> str:
+    """What stands in the place of a value: the reason, or that there is none."""
+    return NO_VALUE if c.status == "not_determined" else c.status.replace("_", " ")
 
 
 def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed", *, covers: str = COVERS) -> Table:
@@ -69,14 +74,18 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "window", "n", "campaign", "estimator")
     fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
     notes = (DEFINED.format(covers),) + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
-    notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in sorted({c.status for c in several}) if s.advice)
+    notes += tuple(
+        f"{NO_VALUE if s == 'not_determined' else s.replace('_', ' ')}: {s.advice}"
+        for s in sorted({c.status for c in several})
+        if s.advice
+    )
     return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
 
 
 def _with_half(value: float, half: float, rejected: bool, known: bool) -> tuple[str, str]:
     """In any unit: five digits where no half-width says how many."""
     if not known:
-        return "not determined", ABSENT
+        return NO_VALUE, ABSENT
     if rejected:
         return number(value, 5), REJECTED
     return with_u95(value, half) if math.isfinite(half) and half > 0.0 else (number(value, 5), number(half, 3))
@@ -114,7 +123,7 @@ def parameters(file: ParameterFile) -> Table:
     """The coefficients of a parameter file, primed and in SI at its conditions."""
     rows = tuple(
         (
-            c.symbol, *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
+            c.symbol, *(with_u95(c.value, c.u95) if c.value is not None else (without_value(c), ABSENT)),
             number(c.value_si), c.unit_si, c.origin, c.campaign or c.citation or ABSENT,
         )
         for c in file.coefficients

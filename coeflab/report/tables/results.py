@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
+import numpy as np
+
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -18,19 +20,24 @@ from coeflab.core.table import (
     probability,
     with_u95,
 )
+from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
+from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.study import Study
-from coeflab.study.towed import AS_PRINTED, Towed
+from coeflab.study.towed import AS_PRINTED, STATES, Towed
+from coeflab.study.validation import WIDE
 from coeflab.tables.force_table import Exclusion, ForceTable
-from coeflab.vehicle.reference import Reference, Relation
+from coeflab.vehicle.reference import Comparison, Reference, Relation
 
-NO_DATA = "no data"
+NO_DATA, NO_VALUE = "no data", "no value"
+AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
+WEAK = f"U95 and the source's uncertainty, root sum of squares, exceed {100.0 * WIDE:.0f} % of the published value"
 
 
 def coefficients(study: Study, campaign: str | None = None) -> Table:
@@ -144,6 +151,16 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     return f"{each} (U95; covers {covers(study, chosen)})."
 
 
+def weight(c: Comparison) -> float:
+    """Our U95 and the uncertainty that the source states, root sum of squares, over the published value; 0 without them."""
+    return c.combined / abs(c.published) if c.combined and c.published else 0.0
+
+
+def is_weak(c: Comparison) -> bool:
+    """Whether a comparison passes that would also pass with a value far from the published one."""
+    return bool(c.passed) and weight(c) > WIDE
+
+
 def verdicts(study: Study) -> Table:
     """Ours against the authors' own evaluation of the same data: the only comparison with a verdict."""
     rows = [
@@ -153,7 +170,7 @@ def verdicts(study: Study) -> Table:
             *with_u95(c.coefficient.value, c.coefficient.u95),
             as_printed(c.published),
             *with_u95(None if c.difference is None else abs(c.difference), c.combined),
-            VERDICTS[c.passed],
+            "weak pass" if is_weak(c) else VERDICTS[c.passed],
             c.reference,
         )
         for c in study.comparisons
@@ -162,6 +179,7 @@ def verdicts(study: Study) -> Table:
     headers = ("", "campaign", "coeflab", "U95", "published", "|difference|", "combined", "verdict", "reference")
     notes = (
         f"{Relation.RE_ANALYSIS}: {Relation.RE_ANALYSIS.meaning}.",
+        *([f"weak pass: {WEAK}."] if any(row[-2] == "weak pass" for row in rows) else []),
         "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
     )
     return Table("Re-analysis of published evaluations", headers, tuple(rows), notes, frozenset({0, 1, 7, 8}))
@@ -194,7 +212,11 @@ def side_by_side(study: Study) -> Table:
                     *(as_printed(published.get(k)) for k in columns),
                 )
             )
-    names = tuple(f"{name}, read with {reading}" if name in twice else name for name, reading in columns)
+    given = {r.name for r in study.references if r.relation is Relation.QUOTED}
+    names = tuple(
+        f"{name}, read with {reading}" if name in twice else f"{name}, as quoted" if name in given else name
+        for name, reading in columns
+    )
     headers = ("", "campaign", "coeflab", "U95", "random", "form", *names)
     notes = tuple(_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS)
     return Table("Side by side with the published table", headers, tuple(rows), notes, frozenset({0, 1}))
@@ -202,12 +224,15 @@ def side_by_side(study: Study) -> Table:
 
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
+    if r.relation is Relation.QUOTED:
+        digits = "The first page gives the digits of the report itself where it is held."
+        return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
     another = "another method" if r.body in ours else "another body"
-    return f"{r.name}: {'quoted' if r.relation is Relation.QUOTED else another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
+    return f"{r.name}: {another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
 
 
 def campaigns(study: Study) -> Table:
-    """Every campaign with its body, the kind of its source and the parameter files that use it; no rows for a single one."""
+    """What was tested or computed, a row a campaign, and the parameter files that use it; no rows for a single one."""
     towed_ones = {t.campaign for t in study.plan.tows}
     rows = []
     for name in dict.fromkeys(t.campaign for t in study.tables):
@@ -219,16 +244,36 @@ def campaigns(study: Study) -> Table:
         ]
         kinds = ", ".join(dict.fromkeys(t.source.kind for t in mine))
         bodies = ", ".join(dict.fromkeys(t.body for t in mine))
-        rows.append((name, bodies, f"{kinds}, own tow" if name in towed_ones else kinds, ", ".join(files) or ABSENT))
-    headers = ("campaign", "body", "source", "parameter file")
-    return Table("Campaigns", headers, tuple(rows) if len(rows) > 1 else (), (), frozenset(range(4)))
+        varied = ", ".join(dict.fromkeys(m if m in t.controls else f"{m}'" for t in mine for m in t.varies))
+        speed = np.concatenate([np.atleast_1d(t.speed) for t in mine])
+        known = [r for t in mine if (r := t.reynolds(t.scaling.length)) is not None]
+        reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
+        source = f"{kinds}, own tow" if name in towed_ones else kinds
+        rows.append((name, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
+    headers = ("campaign", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
+    notes = []
+    for body in dict.fromkeys(t.body for t in study.tables):
+        configuration = study.body.configuration(body) if study.body else None
+        if configuration is not None and configuration.title:
+            notes.append(f"{body}: {configuration.title}")
+    at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
+    notes = [f"{'; '.join(notes)}."] if notes else []
+    notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
+    title = "What was tested and computed"
+    return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
+
+
+def _span(values: Array) -> str:
+    """A number of three digits, or the smallest and the largest."""
+    low, high = (f"{float(x):.3g}" for x in (np.nanmin(values), np.nanmax(values)))
+    return low if low == high else f"{low} .. {high}"
 
 
 def own_tow(found: Towed) -> Table:
     """The wanted coefficients of a towed body beside the published columns, what is missing with its reason; 80 columns."""
     rows = []
     for r in found.rows:
-        value, u95 = (r.missing, ABSENT) if r.missing else with_u95(r.value, r.u95)
+        value, u95 = (NO_VALUE, ABSENT) if r.missing else with_u95(r.value, r.u95)
         rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(as_printed, r.published)))
     said: dict[str, list[str]] = {}
     for r in found.rows:
@@ -236,12 +281,18 @@ def own_tow(found: Towed) -> Table:
     absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
     where = f"Campaign {found.tow.campaign}{absent}." if found.tow.campaign else ""
     every = len(found.rows) > 1 and len(said) == 1
-    reasons = [f"{'All' if every else ', '.join(symbols)}: {why}." for why, symbols in said.items() if why]
+    lacking = {r.why for r in found.rows if r.missing}
+    reasons = [
+        f"{'All' if every else ', '.join(symbols)}: {'no value, ' * (why in lacking)}{why}."
+        for why, symbols in said.items()
+        if why
+    ]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
     grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
-    notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
-    headers = ("", "tow", "U95" if not grid else "U95 without grid", "grid", *found.columns)
-    return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
+    notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
+    columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
+    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
+    return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
 
 
 def tow_against(found: Towed) -> Table:
@@ -251,7 +302,7 @@ def tow_against(found: Towed) -> Table:
         v = r.validation
         if v is None:
             continue
-        verdict = "no verdict" if r.verdict is None else "|E| < U_V" if r.verdict else "|E| > U_V"
+        verdict = AGAINST[r.verdict]
         rows.append(
             (
                 primed(r.symbol), with_u95(v.computed, r.u95)[0], with_u95(v.measured, v.u_measured)[0],
@@ -260,21 +311,30 @@ def tow_against(found: Towed) -> Table:
         )  # fmt: skip
     none: dict[str, list[str]] = {}
     tests: dict[str, list[str]] = {}
+    printed: dict[str, list[str]] = {}
     for r in found.rows:
         none.setdefault(r.why_none, []).append(primed(r.symbol))
-        if r.validation is not None:
-            tests.setdefault(r.validation.experiment, []).append(primed(r.symbol))
-    notes = [
-        f"D of {', '.join(symbols)}: {test if test.endswith(AS_PRINTED) else f'our fit to the points of {test}, not a printed value'}."
-        for test, symbols in tests.items()
-    ]
+        if r.validation is None:
+            continue
+        test = r.validation.experiment
+        tests.setdefault(test, []).append(primed(r.symbol))
+        value = next((p for p in r.published if p is not None), None)
+        if value is not None and not test.endswith(AS_PRINTED):
+            printed.setdefault(test, []).append(as_printed(value))
+    notes = [f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}." for test, symbols in tests.items()]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
-    open_parts = dict.fromkeys(u for r in found.rows if r.validation is not None for u in r.validation.lacking)
-    notes += [f"U_V of the tow leaves out: {'; '.join(open_parts)}."] if open_parts else []
-    headers = ("", "S, tow", "D, test", "E = S - D", "U_V", "verdict")
-    return Table(
-        f"Comparison error of the tow: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5})
-    )
+    judged = [r.validation for r in found.rows if r.validation is not None]
+    notes += sentences_on_open((u for v in judged for u in v.lacking), computed=True, what="U_V leaves out, of the CFD")
+    notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
+    headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
+    return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
+
+
+def _test(test: str, printed: Sequence[str]) -> str:
+    """Where the measured side of a tow comes from, with the printed values beside our fit."""
+    if test.endswith(AS_PRINTED):
+        return test
+    return f"our fit to the points of {test}" + (f" (printed: {', '.join(printed)})" if printed else "")
 
 
 def by_campaign(study: Study) -> Table:
@@ -288,7 +348,7 @@ def by_campaign(study: Study) -> Table:
         for campaign in campaigns:
             c = found.get((symbol, campaign))
             if c is None or c.value is None:
-                cells.append(NO_DATA if c is None or c.status is Status.NO_TABLE else c.status.replace("_", " "))
+                cells.append(NO_DATA if c is None or c.status is Status.NO_TABLE else noun_tables.without_value(c))
             else:
                 without = ", form rejected" if c.status is Status.FORM_REJECTED else ""
                 cells.append(plus_minus(c.value, c.u95) + without)
@@ -468,6 +528,7 @@ NAMED = 12  # rows that a line names; of more the first
 def unused(tables: Sequence[ForceTable]) -> str:
     """In one line the rows that no fit uses, or not whole, because their source or the state of their run says so; empty without such."""
     by: dict[str, list[str]] = {}
+    parts = False
     for t in tables:
         rows: dict[int, list[Exclusion]] = {}
         for e in t.exclusions:
@@ -479,13 +540,14 @@ def unused(tables: Sequence[ForceTable]) -> str:
             first = found[0]
             kind = first.status or ("marked uncertain in the file" if first.uncertain else first.reason)
             name = t.labels[row] + f" of {t.name.rpartition('/')[2]}" * (len(tables) > 1)
-            by.setdefault(kind, []).append(name if of == "row" else f"{name} ({of})")
+            parts |= of != "row"
+            by.setdefault(kind, []).append(name if of == "row" else f"{name} {of}")
     said = [
-        f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)}"
-        + (f": {why.replace(': ', ', ')}" if ": " in why else f" {why}")
+        f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)}: {STATES.get(why, why).replace(': ', ', ')}"
         for why, rows in by.items()
     ]
-    return f"Points left out: {'; '.join(said)}." if said else ""
+    what = "Readings left out (point, components)" if parts else "Points left out"
+    return f"{what}: {'; '.join(said)}." if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:
@@ -526,3 +588,12 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
         frozenset({0}),
         spare,
     )
+
+
+def without(table: Table, *names: str) -> Table:
+    """The table without some columns, and without the notes on them."""
+    kept = [i for i, header in enumerate(table.headers) if header not in names]
+    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
+    notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
+    left = frozenset(kept.index(i) for i in table.left if i in kept)
+    return Table(table.title, tuple(table.headers[i] for i in kept), rows, notes, left)

@@ -5,18 +5,19 @@ Uncertainty budgets, grid studies, validations and derived quantities, as tables
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
+from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.uncertainty.budget import Budget
+from coeflab.fits.uncertainty.budget import COUPLED, Budget
 from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import Validation
+from coeflab.study.validation import WIDE, Validation
 from coeflab.vehicle.derived import Derived
 
 SMALL = 0.01
@@ -155,6 +156,39 @@ def members_csv(carried: Carried) -> bytes:
 
 
 UNITS = {"angle": "rad", "reference point": "m"}
+READ = ("angle", "rate", "speed", "force", "moment", "length", "density", "reference point", COUPLED)
+SET = (
+    "angle",
+    "speed",
+    "length",
+    "density",
+    "reference point",
+    "rate",
+    COUPLED,
+)  # in a computation: no errors of readings
+
+
+def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str = "Not in U95") -> list[str]:
+    """What an uncertainty leaves out, as sentences; none where nothing is open.
+
+    Parameters
+    ----------
+    names : iterable of str
+        As in `Budget.unassessed`.
+    computed : bool
+        Of a computation, whose conditions are set and have no errors of readings.
+    what : str
+        How the sentence begins.
+    """
+    left = list(dict.fromkeys(names))
+    fixed = [n for n in left if computed and n in SET]
+    rest = [n for n in left if n not in fixed]
+    read = [n.removeprefix("error of ") for n in rest if n in READ]
+    others = [n for n in rest if n not in READ]
+    said = [*([f"errors of {listed(read)}"] if read else []), *others]
+    out = [f"{what}: {'; '.join(said)}."] if said else []
+    known = [n for n in fixed if n != COUPLED]
+    return [*out, f"Set in CFD, not measured: {listed(known)}."] if known else out
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -316,6 +350,29 @@ def validation(found: Sequence[Validation]) -> Table:
         *(f"{primed(v.symbol)}: {v.statement}." for v in found),
     )
     return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11}))
+
+
+def _beside(value: float, half: float | None) -> str:
+    """In the digits that go with a half-width; of a value that they do not show, two of its own."""
+    return number(value, 2) if half and abs(value) < 0.01 * half else with_u95(value, half)[0]
+
+
+def predictions(found: Sequence[Validation]) -> Table:
+    """Comparison error of every computed coefficient that has a verdict, in digits that go with U_V."""
+    rows = tuple(
+        (
+            primed(v.symbol), v.simulation, v.experiment, _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
+            *with_u95(v.error, v.u_validation), f"no modelling error shown{', weak' * v.is_weak}" if v.within else "beyond U_V",
+        )
+        for v in found
+        if v.within is not None
+    )  # fmt: skip
+    headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
+    weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.is_weak for v in found) else ""
+    notes = (
+        f"Computed and measured on the same body, independently of each other; D is our fit to the points of the test.{weak}",
+    )
+    return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
 
 def derived(found: Sequence[Derived]) -> Table:

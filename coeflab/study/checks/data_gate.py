@@ -38,7 +38,7 @@ SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("
 LATERAL = ("beta", "v", "r", "p", "dr")
 EVEN = {"beta": "v", "alpha": "w", "r": "r", "q": "q"}
 MOST_LINES, MIRRORED = 12, 2
-ANGLE_OF = {"beta": "asin(v/V)", "alpha": "alpha"}
+ANGLE_OF = {"beta": "asin(v/U)", "alpha": "alpha"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,7 +24,7 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             continue
         if name not in given:
             lacking += ["m'"] if parameters.mass is None else []
-            statistic, comment = "not determined", f"Missing: {', '.join(lacking)}."
+            statistic, comment = "no value", f"Missing: {', '.join(lacking)}."
         else:
             d = given[name]
             half = None if d.result is None else d.result.linear
@@ -32,8 +32,11 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             statistic = f"{name} = {d.value:.3f}" if half is None else f"{name} = {plus_minus(d.value, half)}"
             statistic += f": {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
-            whether = "Directionally" if d.decided else "Directional stability with controls fixed is"
-            comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
+            comment = (
+                f"Directionally {verdict} with controls fixed."
+                if d.decided
+                else f"Stability with controls fixed: {verdict}."
+            )
             if d.driven:
                 comment += f" {d.driven} is not negative: it drives the motion instead of damping it, and the index does not apply."
             else:

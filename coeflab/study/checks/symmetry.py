@@ -15,7 +15,7 @@ summary = "intercepts of Y, K, N at zero drift and yaw rate against their own er
 citations = ("wahba1990",)
 ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
 NOTHING, LARGE = 1e-3, 0.05
-RULE = f"pass: the 95 % interval contains zero, or below {100 * NOTHING:g} % of the largest; note: below {100 * LARGE:g} %; else warning"
+RULE = f"zero within U95; a note from {100 * NOTHING:g} % of the largest, a warning from {100 * LARGE:g} %"
 
 
 def _intercept(sweep: Sweep) -> Check | None:
@@ -36,10 +36,15 @@ def _intercept(sweep: Sweep) -> Check | None:
         "symmetry",
         f"{sweep.campaign} {primed(sweep.symbol)}",
         severity,
-        f"{sweep.component}'(0) = {plus_minus(value, error)}, {100 * share:.1f} % of the largest {sweep.component}'",
+        f"{sweep.component}' at zero {_motion(sweep)} = {plus_minus(value, error)}, should be zero by symmetry; it is {100 * share:.1f} % of "
+        f"the largest {sweep.component}'",
         RULE,
         comment,
     )
+
+
+def _motion(sweep: Sweep) -> str:
+    return "drift" if sweep.variable == "v" else "yaw rate"
 
 
 def check(study: Study) -> Sequence[Check]:

@@ -137,7 +137,7 @@ const benchOf = (data) => {
       live.forEach((b, j) => { if (b && b.name === a.name) cells[i][j] = a.campaign.covariance[a.i][b.i]; });
     });
     const lost = values.findIndex((v) => v === null);
-    if (lost >= 0) return { name: index.name, value: null, u95: null, sense: "not determined", why: `${index.symbols[lost]} has no value` };
+    if (lost >= 0) return { name: index.name, value: null, u95: null, sense: "no value", why: `${index.symbols[lost]} has no value` };
     const [slopeForce, lever, rateForce, rateMoment] = values, a = rateForce - index.mass, b = rateMoment - index.moment;
     const product = lever * a / (slopeForce * b), value = 1 - product;
     const g = [product / slopeForce, -a / (slopeForce * b), -lever / (slopeForce * b), product / b];
@@ -155,7 +155,7 @@ const benchOf = (data) => {
     if (driven) out.why = `${driven[0]} is not below zero: the sign of ${index.name} is no criterion`;
     const decided = !driven && (out.u95 === null || Math.abs(value) > out.u95);
     const words = `${value > 0 ? "stable" : "unstable"}${index.name === "G_v" ? " at high speed" : ""}`;
-    out.sense = decided ? words + (out.u95 === null ? ", no U95" : "") : "not determined";
+    out.sense = decided ? words + (out.u95 === null ? ", no U95" : "") : driven ? "no verdict" : "sign open";
     return out;
   };
 

@@ -19,7 +19,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const digits = (size) => Math.min(Math.max(1 - Math.floor(Math.log10(size)), 0), 12);
   const signed = (text) => text.replace("-", "−");
   const value = (x, u95) => {
-    if (x === null) return "not determined";
+    if (x === null) return "no value";
     if (!u95) return signed(String(Number(x.toPrecision(4))));
     return `${signed(x.toFixed(digits(u95)))} ± ${u95.toFixed(digits(u95))}`;
   };
@@ -241,7 +241,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
       const words = `${s.labels[p.i]}: ${s.variable}′ ${short(p.x, 4)}, ${name} ${short(p.y, 4)}${gone ? ", left out by you" : far ? `, beyond the ${limitName(s).toLowerCase()}` : wrong ? ", does not fit the others: left out by the fit" : ""}`;
       inside.push(`<circle class="point" data-at="${p.i}" cx="${f.px(p.xy[0]).toFixed(2)}" cy="${f.py(p.xy[1]).toFixed(2)}" r="5" fill="${gone || far || wrong ? "var(--paper, #fff)" : own}" stroke="${own}" stroke-width="1.5"${far ? ' stroke-dasharray="2 2"' : ""}><title>${escaped(words)}</title></circle>`);
     }
-    const said = has ? `${plain(s.symbol)} ${value(row.value, row.u95)}` : "not determined";
+    const said = has ? `${plain(s.symbol)} ${value(row.value, row.u95)}` : "no value";
     return whole(w, h, `${s.body.replaceAll("_", " ")}: ${name} over ${s.variable}′, ${s.campaign}`, said, [...f.out, clip(w, h, m, inside, `${prefix}-sweep`)]);
   };
   // Words inside a figure, broken to its width.
@@ -267,7 +267,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     if (motion.why) words.push(stopped(motion));
     if (lines.every((l) => l[0].length < 2)) return notice(words);
     const drawn = lines.filter((l) => l[0].length > 1);
-    if (drawn.some((l) => l[4].determined !== Infinity)) words.push("Cross: not determined from here on.");
+    if (drawn.some((l) => l[4].determined !== Infinity)) words.push("Cross: no value from here on.");
     const told = written(words, 4, 16, w - 8), above = 18 * told.length, h = Math.round(Math.max(0.5 * w, 300)) + above, m = [56, 28 + above, 14, 44];
     let across = padded(lines.flatMap((l) => l[0]), 0.1), up = padded(lines.flatMap((l) => l[1]), 0.04);
     const wide = w - m[0] - m[2], tall = h - m[1] - m[3], per = Math.max((across[1] - across[0]) / wide, (up[1] - up[0]) / tall);
@@ -277,7 +277,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const f = frame(w, h, across, up, ["east, m", "north, m"], m), inside = [];
     for (const [east, north, own, dash, run] of drawn) {
       inside.push(`<path d="${f.path(east, north)}" fill="none" stroke="${own}" stroke-width="1.8"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`);
-      if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(east[east.length - 1]) - 5).toFixed(1)} ${(f.py(north[north.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>not determined from here on</title></path>`);
+      if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(east[east.length - 1]) - 5).toFixed(1)} ${(f.py(north[north.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>no value from here on</title></path>`);
     }
     inside.push(`<circle cx="${f.px(0).toFixed(1)}" cy="${f.py(0).toFixed(1)}" r="4" fill="${colour.a}"><title>start</title></circle>`);
     return whole(w, h, "Track of the zigzag", ["blue now, dashed grey as in the study", ...words].join(". "), [...told, ...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
@@ -316,7 +316,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     viewLabels[1].textContent = `slope: ${s.component}′/${s.variable}′ over |${s.variable}′|`;
     picture.innerHTML = sweepFigure();
     key.textContent = `Orange: slope at the origin with U95. Blue: fitted curve, grey its 95 % band. Dashed grey: slope of the study. Click a point to leave it out. Crosses: left out by the study.`;
-    number.textContent = has ? value(row.value, row.u95) : "not determined";
+    number.textContent = has ? value(row.value, row.u95) : "no value";
     const lines = [make("h2", {}, ...spelled(s.symbol), ` of ${s.campaign}`), number];
     if (has) lines.push(make("p", {}, `U95 ${relative(row.value, row.u95)}${Math.abs(row.value) <= row.u95 ? "; the sign is open" : ""}`));
     else lines.push(make("p", { class: "warn" }, row.reason));
@@ -335,7 +335,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
       const [now, then] = shown.indices[i][j], uses = x.sources.includes(state.index);
       if (!uses && !x.sources.some((k) => k >= 0 && edits[k] && !local().isUntouched(edits[k]))) return;
       list.push(make("p", { class: "big" }, ...spelled(x.name), ` ${value(now.value, now.u95)}`),
-        make("p", {}, make("span", { class: now.sense === "not determined" || byValue(now) ? "warn" : now.sense.startsWith("stable") ? "pass" : "fail" }, senseOf(now)), ` (${f.name}; study ${value(then.value, then.u95)}, ${senseOf(then)})`));
+        make("p", {}, make("span", { class: !/stable/.test(now.sense) || byValue(now) ? "warn" : now.sense.startsWith("stable") ? "pass" : "fail" }, senseOf(now)), ` (${f.name}; study ${value(then.value, then.u95)}, ${senseOf(then)})`));
       if (now.why && !byValue(now)) list.push(make("p", { class: "quiet" }, now.why));
       const fixed = x.symbols.map((t, n) => (x.sources[n] < 0 ? `${t.replace("'", "′")} ${short(x.values[n], 4)} (${x.origins[n]})` : "")).filter(Boolean);
       if (fixed.length) list.push(make("p", { class: "quiet" }, `Not on this page: ${fixed.join(", ")}`));
@@ -357,11 +357,11 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const head = make("h2", {}, `Zigzag ${z.name}, ${f.name}`);
     if (motion.lost) {
       track.innerHTML = notice([`Not determined: ${plain(motion.lost)} has no value.`]);
-      motionBox.replaceChildren(head, make("p", { class: "warn" }, `not determined: ${plain(motion.lost)} has no value`));
+      motionBox.replaceChildren(head, make("p", { class: "warn" }, `no motion: ${plain(motion.lost)} has no value`));
       return;
     }
     track.innerHTML = trackFigure();
-    const cell = (x) => { if (x.value === null) return x.status; const [v, unit] = angleOf(x); return `${v.toFixed(Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(v) || 1)), 0), 4))}${unit}`; };
+    const cell = (x) => { if (x.value === null) return x.status === "not determined" ? "no value" : x.status; const [v, unit] = angleOf(x); return `${v.toFixed(Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(v) || 1)), 0), 4))}${unit}`; };
     const rows = motion.figures.map((x, i) => [x.name, cell(x), cell(still.figures[i])]), notes = [];
     if (shown.unknown.length) notes.push(make("p", { class: "warn" }, `${notKnown()}.`));
     if (motion.why) notes.push(make("p", { class: "warn" }, stopped(motion)));

@@ -1,0 +1,146 @@
+"""What stands below the rows of a first page: whose fits and whose values they are, what U95 leaves out, what is independent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from coeflab.core.types import brief
+from coeflab.core.wording import listed
+from coeflab.fits.glide_polar import munk_in_words
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import primed
+from coeflab.report.document import AnswerRow
+from coeflab.report.tables.uncertainty import SET
+from coeflab.study.study import Study
+from coeflab.study.validation import validations
+from coeflab.vehicle.reference import Reference, Relation
+
+MOST_LETTERS, MOST_NAMED = 240, 4
+NO_DATA = "no data"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Beside:
+    """The published columns of one body.
+
+    Attributes
+    ----------
+    body : str
+        Whose coefficients are the answer.
+    columns : tuple of Reference
+        The experiment first.
+    among : CoefficientSet or None
+        The first of that body, whose length and reference point hold where a row has none.
+    """
+
+    body: str
+    columns: tuple[Reference, ...]
+    among: CoefficientSet | None
+
+
+def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
+    """Sentences of three lines at most.
+
+    Parameters
+    ----------
+    study : Study
+    beside : Beside
+    rows : sequence of AnswerRow
+    """
+    towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
+    sources = [s for s in dict.fromkeys(r.source for r in rows if r.source) if s not in towed_rows]
+    out = []
+    if sources:
+        scaling = beside.among.scaling if beside.among else None
+        by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
+        count = len({f.campaign for f in study.fits})
+        of = f" of {count} campaigns" if count > len(sources) else ""
+        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
+        if any(r.symbol == "Mw" and r.value is not None for r in rows):
+            out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
+    own = [r for r in rows if r.source in towed_rows]
+    if own:
+        out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
+    if any(r.agrees is not None for r in rows):
+        out.append(_the_authors(study, beside, rows))
+    out += filter(None, (_not_in_u95(study, rows), _independent(study)))
+    others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
+    for body in dict.fromkeys(r.body for r in others):
+        names = listed([r.name for r in others if r.body == body])
+        out.append(f"{names}: {f'another body, {body}' if body != beside.body else 'another method'}; no verdict.")
+    for r in others:
+        if r.other_scaling is not None:
+            out.append(f"{r.name}: length not stated, {_readings(r.scaling, r.other_scaling)}.")
+    return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
+
+
+def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str:
+    """What the compared column is, and by which tests of their own its authors have what no table here gives."""
+    column = beside.columns[0]
+    reports = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and r.body == beside.body]
+    methods: dict[str, list[str]] = {}
+    for row in rows:
+        printed = row.published[0] if row.published else None
+        stated = column.printed(row.symbol)
+        if row.status != NO_DATA or printed is None or stated is None:
+            continue
+        digit = 10.0 ** -len(stated.printed.partition(".")[2])
+        method = next(
+            (
+                kind.method for r in reports for kind in r.literature for v in kind.values
+                if v.symbol == row.symbol and v.value is not None and abs(v.value - printed) <= digit
+            ),
+            "",
+        )  # fmt: skip
+        if method:
+            methods.setdefault(method, []).append(primed(row.symbol))
+    each = "".join(f"; {', '.join(s)} from their {m} tests, not held here" for m, s in methods.items())
+    return f"{column.name}: the authors' values from the same points, the only verdict{each}."
+
+
+def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
+    """What no U95 of the rows holds, the first of it by name; empty where every one holds all."""
+    mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
+    budgets = [b for b in study.budgets if (b.campaign, b.symbol.removesuffix("'")) in mine]
+    fixed = SET if all(b.kind == "cfd" for b in budgets) else ()
+    names = [
+        n.removeprefix("error of ")
+        for n in dict.fromkeys(n for b in budgets for n in b.unassessed)
+        if n not in fixed and all(n in b.unassessed for b in budgets)
+    ]
+    if not names:
+        return ""
+    more = f" and {len(names) - MOST_NAMED + 1} more" if len(names) > MOST_NAMED else ""
+    shown = names[: MOST_NAMED - 1] if more else names
+    return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more}, see Coefficients."
+
+
+def _independent(study: Study) -> str:
+    """How many computed coefficients agree with those measured on the same body; empty where none is compared."""
+    found = [v for v in validations(study, study.budgets) if v.within is not None]
+    if not found:
+        return ""
+    bodies = listed(
+        [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
+    )
+    outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
+    inside, weak = (sum(map(bool, kind)) for kind in ([v.within for v in found], [v.is_weak for v in found]))
+    weakly = f", {weak} of them weakly" if weak else ""
+    beyond = f"; beyond it {', '.join(outside)}" if outside else ""
+    return f"Independent: {inside} of {len(found)} coefficients from CFD lie within U_V of the test of the same body ({bodies}){weakly}{beyond}."
+
+
+def _readings(first: Scaling, other: Scaling) -> str:
+    """The length that a column is read with, and what the other would make of it."""
+    force, moment = (f"{100.0 * (other.ratio(symbol, first) - 1.0):+.1f} %" for symbol in ("Yv", "Nr"))
+    return f"{first.length_name} assumed (if {other.length_name}: Yv' {force}, Nr' {moment})"
+
+
+def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:
+    """Campaigns, each with the coefficients that it gives where there are several."""
+    if len(sources) < 2:
+        return list(sources)
+    return [f"{s} ({', '.join(primed(r.symbol) for r in rows if r.source == s)})" for s in sources]
