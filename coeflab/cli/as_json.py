@@ -160,6 +160,14 @@ def accelerations(water: WaterInertia) -> dict[str, Any]:
     return {"asked": water.asked, "used": water.used, "source": water.source, "warnings": list(water.warnings)}
 
 
+def findings(found: Sequence[Check]) -> list[dict[str, str]]:
+    """Findings of `coeflab params check`."""
+    return [
+        {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
+        for c in found
+    ]
+
+
 def export(made: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
     loss = made.loss

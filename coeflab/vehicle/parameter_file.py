@@ -30,11 +30,13 @@ from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text, read_toml
 from coeflab.core.types import in_angles
+from coeflab.core.units import same_unit
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import derivative
 from coeflab.vehicle.law_at_points import HeldRange, LawAtPoints, MeasuredTable
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
@@ -236,6 +238,10 @@ class ParameterFile(Strict):
             raise ValueError(f"{', '.join(twice)} occurs more than once")
         at = self.conditions
         for c in self.coefficients:
+            if c.unit_si and not same_unit(c.unit_si, derivative(c.symbol).unit):
+                raise ValueError(
+                    f"{c.symbol}: unit_si {shown(c.unit_si)} is not {derivative(c.symbol).unit}, that of its symbol"
+                )
             if c.value is None or c.value_si is None:
                 continue
             si = c.value * self.scaling.unit(c.symbol, at.density, at.speed)

@@ -18,6 +18,7 @@ from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
+from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -310,7 +311,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -324,6 +325,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *added_mass_findings(parameters, signs),
         *_munk(parameters),
         *damping_findings(parameters, signs),
+        *sign_findings(parameters),
         *law_findings(parameters),
     )
 
