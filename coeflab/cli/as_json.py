@@ -180,6 +180,7 @@ def export(made: Export) -> dict[str, Any]:
         "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
         "changes": [] if loss is None else list(loss.changes),
         "grid": None if loss is None else loss.grid,
+        "controls": [] if loss is None else list(loss.controls),
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
