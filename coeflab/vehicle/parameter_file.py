@@ -28,6 +28,7 @@ from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
+from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
 from coeflab.core.types import in_angles
 from coeflab.core.units import same_unit
@@ -386,6 +387,11 @@ def read_parameter_file(path: Path) -> ParameterFile:
     """
     path = file_typed(path)
     text = read_text(path, JSON_BYTES)
+    if kind := model_kind(text):
+        raise InputError(
+            f"{kind}, a simulator's model", "a parameter file in JSON", file=path,
+            advice=f"Read it by: coeflab params check {path}. Only parameter files are exported, compared and simulated.",
+        )  # fmt: skip
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
         raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
