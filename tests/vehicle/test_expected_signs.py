@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -118,3 +120,46 @@ def test_a_unit_that_is_not_that_of_the_symbol_is_refused(tmp_path: Path, symbol
 )  # fmt: skip
 def test_units_are_one_whatever_their_spelling(one: str, other: str, same: bool) -> None:
     assert same_unit(one, other) is same
+
+
+def test_partners_of_other_sizes_are_noted_with_both_values() -> None:
+    """Prestero's Nr|r| is half of his Mq|q| on a body of revolution."""
+    notes = {c.subject: c.statistic for c in plausibility(remus()) if c.severity is Severity.NOTE}
+    assert notes == {"Nr|r| and Mq|q|": "-94 and -188 (SI)"}
+
+
+def refusal(folder: Path, change: Callable[[dict[str, Any]], None]) -> str:
+    content = json.loads(read_parameter_file(Path("remus100")).to_json())
+    change(content)
+    (folder / "a.json").write_text(json.dumps(content))
+    with pytest.raises(InputError) as why:
+        read_parameter_file(folder / "a.json")
+    return str(why.value)
+
+
+def test_a_misspelt_key_is_named_with_its_coefficient(tmp_path: Path) -> None:
+    def misspell(content: dict[str, Any]) -> None:
+        yuv = next(c for c in content["coefficients"] if c["symbol"] == "Yuv'")
+        yuv["valeu"] = yuv.pop("value")
+
+    told = refusal(tmp_path, misspell)
+    assert "coefficients.Yuv'.valeu: found an unknown key" in told
+
+
+def test_a_value_beside_another_in_si_says_what_to_change(tmp_path: Path) -> None:
+    def double(content: dict[str, Any]) -> None:
+        content["coefficients"][17]["value"] *= 2.0
+
+    assert "write null for value_si" in refusal(tmp_path, double)
+
+
+def test_a_mass_that_no_inertia_fits_is_named(tmp_path: Path) -> None:
+    def heavy(content: dict[str, Any]) -> None:
+        content["mass"]["mass"] = 3048.0
+
+    assert "at a mass of 3048 kg" in refusal(tmp_path, heavy)
+
+
+def test_suboff_is_said_to_be_fitted() -> None:
+    with pytest.raises(InputError, match="coeflab validate suboff"):
+        read_parameter_file(Path("suboff"))

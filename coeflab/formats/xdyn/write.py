@@ -132,6 +132,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
         f"# {propulsion(parameters)}",
         *(f"# {said}; rad" for said in control_signs(parameters)),
+        *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
