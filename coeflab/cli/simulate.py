@@ -65,8 +65,8 @@ def command(
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
     See --help-options. A vehicle with an arm makes the phases of its body.toml, or --manoeuvre free_motion, station_keeping or
     end_effector_track. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
-    was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written. So does a
-    manoeuvre of which no figure is reached; one figure is enough for 0. And where a finding of `coeflab params check` on the file fails, such as a wrong sign.
+    was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written. Exit code 1
+    too where not one figure was reached, and where a finding of `coeflab params check` on the file fails, such as a wrong sign.
     """
     from coeflab.cli.fit import further
     from coeflab.motion.simulation import simulate

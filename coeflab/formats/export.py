@@ -391,7 +391,9 @@ def loss_of(
     turned = steered_terms(parameters)
     names = tuple(n for n in CONTROLS if any(n in t.variables for t in turned))
     if steered is None or not names:
-        said = (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
+        said: tuple[str, ...] = (
+            (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
+        )
         ours, theirs = law.force(nu), force(files, nu)
     else:
         controls, said = _deflected(parameters, names, len(nu))

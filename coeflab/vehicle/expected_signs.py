@@ -98,7 +98,7 @@ def control_signs(p: ParameterFile) -> tuple[str, ...]:
     control, stated = slopes(p).control, {c.symbol for c in p.coefficients if c.value}
     out = []
     for k, name in enumerate(CONTROLS):
-        said = []
+        said: list[str] = []
         for words in (TURNS, PUSHES):
             column = {c: float(control[COMPONENTS.index(c), k]) for c in words}
             largest = max(map(abs, column.values()))

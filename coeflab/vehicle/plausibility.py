@@ -284,9 +284,10 @@ def _partners(p: ParameterFile) -> list[Check]:
     found = []
     for a, b in PARTNERS:
         first, second = p.coefficient(a), p.coefficient(b)
-        if first and second and first.value_si and second.value_si:
-            if not _alike(abs(first.value_si), abs(second.value_si), MISTYPED):
-                found.append((f"{a} and {b}", f"{first.value_si:.4g} and {second.value_si:.4g} (SI)"))
+        if first is None or second is None or not first.value_si or not second.value_si:
+            continue
+        if not _alike(abs(first.value_si), abs(second.value_si), MISTYPED):
+            found.append((f"{a} and {b}", f"{first.value_si:.4g} and {second.value_si:.4g} (SI)"))
     return [
         _damping_check(
             pair, Severity.NOTE, values, "of one size", "The added mass is alike in both planes, these are not."

@@ -143,7 +143,7 @@ def test_a_misspelt_key_is_named_with_its_coefficient(tmp_path: Path) -> None:
         yuv["valeu"] = yuv.pop("value")
 
     told = refusal(tmp_path, misspell)
-    assert "coefficients.Yuv'.valeu: found an unknown key" in told
+    assert '"coefficients.Yuv\'.valeu": found an unknown key' in told
 
 
 def test_a_value_beside_another_in_si_says_what_to_change(tmp_path: Path) -> None:
