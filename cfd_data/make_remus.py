@@ -31,7 +31,7 @@ MASS, BELOW, INERTIA = 30.48, 0.0196, (0.177, 3.45, 3.45)
 LENGTH, DENSITY, SPEED = 1.33, 1030.0, 1.54
 NOTES = (
     "Yv|v| is -131 kg/m, as Zw|w|: the thesis prints -1.31e+3, ten times that of the same body of revolution in the other plane.",
-    "Weight equals buoyancy here; the vehicle floats up with 7 N.",
+    "The vehicle has 7 N more buoyancy than weight; this file leaves them out: buoyancy equals weight.",
     "No limit and no rate of the rudder is stated.",
 )
 

@@ -160,6 +160,14 @@ def accelerations(water: WaterInertia) -> dict[str, Any]:
     return {"asked": water.asked, "used": water.used, "source": water.source, "warnings": list(water.warnings)}
 
 
+def findings(found: Sequence[Check]) -> list[dict[str, str]]:
+    """Findings of `coeflab params check`."""
+    return [
+        {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
+        for c in found
+    ]
+
+
 def export(made: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
     loss = made.loss
@@ -172,6 +180,7 @@ def export(made: Export) -> dict[str, Any]:
         "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
         "changes": [] if loss is None else list(loss.changes),
         "grid": None if loss is None else loss.grid,
+        "controls": [] if loss is None else list(loss.controls),
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),

@@ -11,10 +11,13 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from coeflab.core.table import Table
     from coeflab.vehicle.comparison import Comparison
 
 
+ROUNDING = 1e-9
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 
@@ -33,8 +36,8 @@ def command(
     """Compare two parameter files by their combined U95.
 
     Lengths and reference points are converted. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"
-    means that at 95 % of its points the difference is inside the combined 95 % half-width. Exit code 1 where two files of
-    one body are apart.
+    means that at 95 % of its points the difference is inside the combined 95 % half-width. Where one of two values has no U95,
+    another sign and a ratio above 1.5 are marked. Exit code 1 where two files of one body are apart or of other signs.
     """
     from coeflab.vehicle.comparison import compare
     from coeflab.vehicle.parameter_file import read_parameter_file
@@ -90,12 +93,16 @@ def as_json(found: Comparison) -> dict[str, Any]:
     }
 
 
-def _comparable(table: Table) -> Table:
-    """The rows that can be compared; of the others their names, by reason."""
+def _comparable(table: Table, differ: Sequence[bool]) -> Table:
+    """The rows that can be compared, or whose values ``differ``; of the others their names, by reason."""
     from coeflab.vehicle.comparison import Verdict
 
     column = table.headers.index("verdict")
-    rows = [row for row in table.rows if row[column] != Verdict.NOT_COMPARABLE.value]
+    rows = [
+        row
+        for row, other in zip(table.rows, differ, strict=True)
+        if other or row[column] != Verdict.NOT_COMPARABLE.value
+    ]
     reasons: dict[str, list[str]] = {}
     for row in table.rows:
         if row not in rows:
@@ -113,11 +120,16 @@ def _print(found: Comparison) -> None:
     from coeflab.report.tables import models as comparison_tables
     from coeflab.vehicle.comparison import Verdict
 
-    for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
+    apart = [bool(r.difference) and abs(r.difference or 0.0) > ROUNDING * abs(r.a or 0.0) for r in found.rows]
+    for table, differ in (
+        (comparison_tables.coefficients(found), apart),
+        (comparison_tables.models(found), [False] * len(found.models)),
+    ):
         if table.rows:
-            show.table(table if show.whole() else _comparable(table))
+            show.table(table if show.whole() else _comparable(table, differ))
     if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
         if verdicts:
-            show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in Verdict) + ".")
+            said = [v for v in Verdict if v in verdicts or v not in (Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)]
+            show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in said) + ".")

@@ -28,13 +28,15 @@ def command(
 ) -> None:
     """Write what a simulator loads, and say what is lost.
 
-    The loss is measured by the simulator's own force law.
+    The loss is measured by the simulator's own force law. Says what `coeflab params check` finds wrong in the file. Exit code 1
+    where a finding of it fails, such as a wrong sign; the files are written.
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.wording import file_stem
     from coeflab.report.tables import formats as loss_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
+    from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench.exports import export
 
     parameters = read_parameter_file(file)
@@ -53,11 +55,15 @@ def command(
         if not parameters.measured:
             show.text("The parameter file has no measured points to compare the law with.")
         show.table(loss_tables.parts(parameters, loss.water))
+    found = plausibility(parameters)
+    if not json:
+        show.file_findings(parameters.name, found)
     refused = loss is not None and not made.lossless and (strict or not accept_loss)
     if refused and json:
         from coeflab.cli.as_json import export as export_json
+        from coeflab.cli.as_json import findings as findings_json
 
-        show.json_object({"files": [], **export_json(made)})
+        show.json_object({"files": [], **export_json(made), "findings": findings_json(found)})
     if loss is not None and refused:
         raise InputError(
             f"a target that loses part of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
@@ -69,8 +75,11 @@ def command(
     write_all(folder, made.files)
     if json:
         from coeflab.cli.as_json import export as export_json
+        from coeflab.cli.as_json import findings as findings_json
 
-        show.json_object({"files": [str(p) for p in paths], **export_json(made)})
-        return
-    for path in paths:
-        show.path(path)
+        show.json_object({"files": [str(p) for p in paths], **export_json(made), "findings": findings_json(found)})
+    else:
+        for path in paths:
+            show.path(path)
+    if show.failed(found):
+        raise typer.Exit(1)

@@ -40,14 +40,13 @@ def check(
     found = read_model_file(file, density)
     p = found.parameters
     if json:
+        from coeflab.cli.as_json import findings as findings_json
+
         show.json_object({
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
             "coefficients": [c.symbol for c in p.coefficients], "passed": found.passed,
             "by_added_mass": [row[0] for row in model_file_tables.by_added_mass(p).rows],
-            "findings": [
-                {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
-                for c in found.findings
-            ],
+            "findings": findings_json(found.findings),
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))

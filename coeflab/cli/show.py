@@ -358,6 +358,23 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
     text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
 
 
+def file_findings(name: str, found: Sequence[Check]) -> None:
+    """What `coeflab params check` finds wrong in a file that a command uses; nothing where all passes."""
+    from coeflab.core.table import Severity
+
+    if any(c.severity in (Severity.FAIL, Severity.WARN) for c in found):
+        text(f"{name} itself, as coeflab params check finds it:")
+        findings(found)
+        text()
+
+
+def failed(found: Sequence[Check]) -> bool:
+    """Whether a finding is a failure."""
+    from coeflab.core.table import Severity
+
+    return any(c.severity is Severity.FAIL for c in found)
+
+
 def _short(comment: str) -> str:
     """The first sentence of what a finding means; all of it with ``--wide``."""
     first, stop, _ = comment.partition(". ")

@@ -65,11 +65,13 @@ def command(
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
     See --help-options. A vehicle with an arm makes the phases of its body.toml, or --manoeuvre free_motion, station_keeping or
     end_effector_track. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
-    was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written.
+    was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written. Exit code 1
+    too where not one figure was reached, and where a finding of `coeflab params check` on the file fails, such as a wrong sign.
     """
     from coeflab.cli.fit import further
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.parameter_file import read_parameter_file
+    from coeflab.vehicle.plausibility import plausibility
 
     body = arm_at(file)
     if help_options:
@@ -101,10 +103,11 @@ def command(
         simulator=simulator, tables=tables, accelerations=accelerations,
     )  # fmt: skip
     written = [] if out is None or made.undetermined else _write(made, out, to)
+    found = plausibility(parameters)
     if json:
-        from coeflab.cli.as_json import simulation
+        from coeflab.cli.as_json import findings, simulation
 
-        show.json_object({**simulation(made), "files": [str(p) for p in written]})
+        show.json_object({**simulation(made), "findings": findings(found), "files": [str(p) for p in written]})
     elif made.undetermined:
         name = made.manoeuvre.name.replace("_", " ")
         show.text(
@@ -113,7 +116,10 @@ def command(
         show.text(made.undetermined)
     else:
         _print(made, written)
-    if made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
+        show.text()
+    if not json:
+        show.file_findings(parameters.name, found)
+    if show.failed(found) or made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
         raise typer.Exit(1)
 
 

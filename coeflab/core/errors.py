@@ -13,6 +13,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -33,6 +34,9 @@ def clipped(text: object) -> str:
     """A path or the like as it stands, the middle of a very long one left out."""
     whole = str(text)
     return whole if len(whole) <= LONGEST else f"{whole[: LONGEST // 2]}...{whole[-LONGEST // 4 :]}"
+
+
+_LETTER = re.compile(r"character \d+")  # where on its line a text breaks
 
 
 class CoeflabError(Exception):
@@ -103,8 +107,11 @@ class InputError(CoeflabError):
         if self.line is not None:
             place.append(f"line {self.line}")
         if self.column is not None:
-            is_header = self.line and not self.keyed
-            place.append(f"column {shown(self.column)}" if is_header else shown(self.column))
+            if self.line and _LETTER.fullmatch(self.column):
+                place.append(self.column)
+            else:
+                is_header = self.line and not self.keyed
+                place.append(f"column {shown(self.column)}" if is_header else shown(self.column))
         head = ", ".join(place)
         text = f"found {self.found}; expected {self.expected}."
         return (f"{head}: " if head else "") + text + (f" {self.advice}" if self.advice else "")

@@ -74,6 +74,24 @@ def _registry() -> Any:
     return pint.UnitRegistry(cache_folder=None)
 
 
+_DERIVED = re.compile(r"[A-Za-z*/()\u00b7 .]*(?:\^-?[1-9][A-Za-z*/()\u00b7 .]*)*")
+
+
+def same_unit(one: str, other: str) -> bool:
+    """Whether two units are one, factor and all: ``N s/m`` and ``N/(m/s)`` are, ``N/(deg)`` and ``N/(rad)`` are not."""
+    if one.split() == other.split():
+        return True
+    if any(len(text) > _LONGEST or not _DERIVED.fullmatch(text) for text in (one, other)):
+        return False
+    import pint
+
+    try:
+        factor = _registry().Quantity(1.0, one).to(other).magnitude
+    except (pint.errors.PintError, TokenError, SyntaxError, AttributeError, TypeError, ValueError):
+        return False
+    return math.isclose(factor, 1.0, rel_tol=1e-9)
+
+
 def parse_header(text: str) -> Header:
     """Split ``"Y [N]"`` into name and unit."""
     clean = " ".join(text.split())

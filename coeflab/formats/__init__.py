@@ -98,6 +98,26 @@ class InertialExporter(SimulatorExporter, Protocol):
         ...
 
 
+@runtime_checkable
+class SteeredExporter(SimulatorExporter, Protocol):
+    """A simulator's exporter whose target holds control angles, so that their forces are compared too."""
+
+    def steered_force(
+        self, files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(n, 6) forces of the target, read from the written files, as `force`.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        nu : (n, 6) array
+        controls : (n, 3) array
+            dr, ds, db, rad.
+        """
+        ...
+
+
 class NoDensityError(InputError):
     """A model file that states no density of the water, where none is given."""
 

@@ -20,8 +20,9 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.core.wording import file_stem
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.rigid_body import momentum_force
-from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.vehicle.force_law import by_coefficients, force_of_tables
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, primed
+from coeflab.vehicle.expected_signs import control_signs
+from coeflab.vehicle.force_law import by_coefficients, force_of_tables, steered_terms
 from coeflab.vehicle.inertia import COMPUTED, MEASURED, WaterInertia, known_mass, stated_accelerations, water_inertia
 from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -162,6 +163,7 @@ def missing_water(parameters: ParameterFile) -> tuple[str, ...]:
 SPEEDS = (0.5, 1.0, 1.5)  # of the file's: a law that holds at one speed only shows
 # Values of a motion: zero and both signs at the least, five where there are fewer than MANY motions to combine.
 POINTS, FEW, MANY = 5, 3, 5
+DEFLECTED = 0.35  # rad, of a control that no campaign covers: 20 deg
 ASSUMED = 0.2  # prime range of a motion that no campaign covers: 11 deg of incidence
 LOSSLESS = 1e-9  # rounding of coefficients that are written with 17 digits and multiplied a few times
 ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
@@ -239,6 +241,9 @@ class Loss:
         The velocities that were tried, in words.
     at_points : tuple of LawAtPoints
         How far the target's force is from the measured points of the file; empty where the file has none.
+    controls : tuple of str
+        Which controls of the file's coefficients were varied, or that the target holds none of them; then what each does above
+        zero.
     """
 
     target: str
@@ -251,6 +256,7 @@ class Loss:
     water: WaterInertia
     grid: str
     at_points: tuple[LawAtPoints, ...] = ()
+    controls: tuple[str, ...] = ()
 
     @property
     def worst(self) -> Array:
@@ -354,6 +360,7 @@ def loss_of(
     changes: tuple[str, ...],
     water: WaterInertia,
     added_mass: Callable[[Mapping[str, bytes]], Array] | None = None,
+    steered: Callable[[Mapping[str, bytes], Array, Array], Array] | None = None,
 ) -> Loss:
     """Evaluate a target's law and added mass, from its own files, beside those of the parameter file.
 
@@ -377,10 +384,23 @@ def loss_of(
         The accelerations that the export was asked for.
     added_mass : callable, optional
         The target's files -> the (6, 6) added mass that it integrates, FRD, about the file's reference point.
+    steered : callable, optional
+        As ``force``, with (n, 3) controls dr ds db in rad, of a target that holds them.
     """
     nu, words = covered_grid(parameters)
+    turned = steered_terms(parameters)
+    names = tuple(n for n in CONTROLS if any(n in t.variables for t in turned))
+    if steered is None or not names:
+        said: tuple[str, ...] = (
+            (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
+        )
+        ours, theirs = law.force(nu), force(files, nu)
+    else:
+        controls, said = _deflected(parameters, names, len(nu))
+        nu = np.tile(nu, (len(controls) // len(nu), 1))
+        ours = law.force(nu) + ForceLaw(turned, np.zeros((6, 6, 6))).force(nu, controls)
+        theirs = steered(files, nu, controls)
     tables = force_of_tables(parameters, nu)
-    ours, theirs = law.force(nu), force(files, nu)
     if tables is not None:
         ours, words = ours + tables, f"{words}; the file's force with its fitted tables"
     compared, why = None, "its exporter does not say what added mass it integrates"
@@ -393,7 +413,21 @@ def loss_of(
         parameters.scaling.length,
         controls=False,
     )
-    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found)
+    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found,
+                (*said, *control_signs(parameters)))  # fmt: skip
+
+
+def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:
+    """Controls (n, 3) for every state with none deflected, then with each alone to either side; and that in words.
+
+    A control goes as far as the file's data do, else to `DEFLECTED`.
+    """
+    reach = {n: max([abs(x) for c in parameters.offered if c.variable == n for x in (c.low, c.high)], default=0.0) or DEFLECTED
+             for n in names}  # fmt: skip
+    rows = [np.zeros(3)]
+    rows += [np.where(np.array(CONTROLS) == n, way * reach[n], 0.0) for n in names for way in (-1.0, 1.0)]
+    said = f"controls: each state also with {', '.join(f'{n} -{x:.3g} and {x:.3g} rad' for n, x in reach.items())}, one at a time"
+    return np.repeat(rows, states, axis=0), (said,)
 
 
 def accelerations_apart(

@@ -49,7 +49,7 @@ def inertia_doubt(mass: float, centre: Array, inertia: Array) -> str:
     own = about_another(inertia, mass, centre, np.zeros(3))
     low, middle, high = np.linalg.eigvalsh((own + own.T) / 2.0)
     if low <= 0.0:
-        return f"a principal moment of inertia about the centre of gravity of {low:g} kg m^2"
+        return f"a principal moment of inertia about the centre of gravity of {low:g} kg m^2, at a mass of {mass:g} kg"
     if high > (low + middle) * (1.0 + ROUNDING):
         return f"principal moments of inertia {low:g}, {middle:g}, {high:g} kg m^2, one larger than the others' sum"
     return ""

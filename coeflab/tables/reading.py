@@ -12,6 +12,7 @@ import numpy as np
 from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.delimited import Cells, read_cells
+from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
 from coeflab.tables.collect import collect, collect_groups
@@ -80,6 +81,11 @@ def importer_of(path: Path, name: str = "") -> str:
     if len(known) == 1:
         return known[0]
     if not known and (begin := _first_lines(path)):
+        if kind := model_kind_of(path):
+            raise InputError(
+                f"{kind}, a simulator's model", "a table or runs of a solver", file=path,
+                advice=f"Read it by: coeflab params check {path}.",
+            )  # fmt: skip
         others = ", ".join(n for n in readers if n != GENERAL)
         unread = InputError(
             "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else --as one of {others}",

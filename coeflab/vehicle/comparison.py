@@ -24,10 +24,12 @@ from coeflab.vehicle.parameter_model import ParameterModel
 
 
 class Verdict(StrEnum):
-    """What the difference of two coefficients says."""
+    """What the difference of two coefficients says; other sign and other size of two values of which one has no U95."""
 
     WITHIN = "within"
     APART = "apart"
+    OTHER_SIGN = "other sign"
+    OTHER_SIZE = "other size"
     NOT_COMPARABLE = "not comparable"
 
 
@@ -249,6 +251,7 @@ def _common_grid(first: ParameterModel, second: ParameterModel, rates: Mapping[s
 
 
 SAME_POINT = 1e-9
+OTHER_SIZE = 1.5  # of the larger over the smaller of two values without U95
 
 
 @brief
@@ -315,8 +318,9 @@ class Comparison:
 
     @property
     def disagrees(self) -> bool:
-        """Whether files of one body are apart in anything; different bodies owe each other nothing."""
-        return self.same_body and Verdict.APART in (*(r.verdict for r in self.rows), *(m.verdict for m in self.models))
+        """Whether files of one body are apart or of other signs in anything; different bodies owe each other nothing."""
+        found = {*(r.verdict for r in self.rows), *(m.verdict for m in self.models)}
+        return self.same_body and bool(found & {Verdict.APART, Verdict.OTHER_SIGN})
 
 
 def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
@@ -421,14 +425,23 @@ def _row(
     u95_a, u95_b = None if a is None else a.u95, None if b is None else b.u95
     difference = value_b - value_a if not why and value_a is not None and value_b is not None else None
     combined = float(np.hypot(u95_a, u95_b)) if u95_a is not None and u95_b is not None else None
+    verdict = Verdict.NOT_COMPARABLE
     if not why and combined is None:
         why = "no U95 on one side"
-    verdict = Verdict.NOT_COMPARABLE
+        verdict = _by_value(value_a or 0.0, value_b or 0.0)
     if not why and difference is not None and combined is not None:
         verdict = Verdict.WITHIN if abs(difference) <= combined else Verdict.APART
         if a is not None and b is not None and a.origin == b.origin == "literature" and a.citation == b.citation:
             why = f"both quoted from {a.citation}"
     return Compared(primed(symbol), value_a, value_b, u95_a, u95_b, difference, combined, verdict, why)
+
+
+def _by_value(a: float, b: float) -> Verdict:
+    """Of two values of which one has no U95."""
+    if a * b < 0.0:
+        return Verdict.OTHER_SIGN
+    small, large = sorted((abs(a), abs(b)))
+    return Verdict.OTHER_SIZE if large > OTHER_SIZE * small else Verdict.NOT_COMPARABLE
 
 
 def _feels_the_point(symbol: str) -> bool:

@@ -60,6 +60,11 @@ def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
     return tuple(out)
 
 
+def steered_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
+    """The coefficients of controls."""
+    return tuple(t for t in stated_terms(parameters) if _steered(t) and t.coefficient)
+
+
 def _accelerates(factors: tuple[str, ...]) -> bool:
     return any(f.endswith("dot") for f in factors)
 

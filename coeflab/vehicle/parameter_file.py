@@ -28,13 +28,16 @@ from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
+from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
 from coeflab.core.types import in_angles
+from coeflab.core.units import same_unit
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import derivative
 from coeflab.vehicle.law_at_points import HeldRange, LawAtPoints, MeasuredTable
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
@@ -236,11 +239,17 @@ class ParameterFile(Strict):
             raise ValueError(f"{', '.join(twice)} occurs more than once")
         at = self.conditions
         for c in self.coefficients:
+            if c.unit_si and not same_unit(c.unit_si, derivative(c.symbol).unit):
+                raise ValueError(
+                    f"{c.symbol}: unit_si {shown(c.unit_si)} is not {derivative(c.symbol).unit}, that of its symbol"
+                )
             if c.value is None or c.value_si is None:
                 continue
             si = c.value * self.scaling.unit(c.symbol, at.density, at.speed)
             if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
-                raise ValueError(f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}")
+                raise ValueError(
+                    f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}; change one of them, or write null for value_si"
+                )
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
@@ -362,7 +371,12 @@ def file_typed(path: Path) -> Path:
                 f"{shown(str(path), 300)}, a vehicle with an arm, which has no parameter file", "a parameter file",
                 advice=f"Write its equations: coeflab derive {path} --to c. Simulate it: coeflab simulate {path}.",
             )  # fmt: skip
-    return named(path, SHIPPED)
+    try:
+        return named(path, SHIPPED)
+    except InputError as why:
+        if "suboff" in str(path).lower():
+            why.advice = "Its files are fitted, not shipped: `coeflab validate suboff` writes reports/suboff/suboff_fully_appended.parameters.json."
+        raise
 
 
 def read_parameter_file(path: Path) -> ParameterFile:
@@ -380,6 +394,11 @@ def read_parameter_file(path: Path) -> ParameterFile:
     """
     path = file_typed(path)
     text = read_text(path, JSON_BYTES)
+    if kind := model_kind(text):
+        raise InputError(
+            f"{kind}, a simulator's model", "a parameter file in JSON", file=path,
+            advice=f"Read it by: coeflab params check {path}. Only parameter files are exported, compared and simulated.",
+        )  # fmt: skip
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
         raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
@@ -388,8 +407,8 @@ def read_parameter_file(path: Path) -> ParameterFile:
     try:
         return _validated(text, version)
     except ValidationError as why:
-        first = why.errors()[0]
-        place = ".".join(str(p) for p in first["loc"]) or "file"
+        first = _telling(why)
+        place = _place(first["loc"], text) or "file"
         more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
         found, expected = _in_words(first["type"], first["msg"], first["input"])
         if is_later(version, SCHEMA_VERSION):
@@ -401,6 +420,23 @@ def read_parameter_file(path: Path) -> ParameterFile:
         raise InputError(found, expected + more, file=path, column=place, advice=advice(version)) from None
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None
+
+
+def _telling(why: ValidationError) -> Any:
+    """The first error; where a key is missing beside one that nobody knows, the unknown key, which may be the same misspelt."""
+    every = why.errors()
+    beside = (e for e in every if e["type"] == "extra_forbidden" and e["loc"][:-1] == every[0]["loc"][:-1])
+    return next(beside, every[0]) if every[0]["type"] == "missing" else every[0]
+
+
+def _place(where: tuple[str | int, ...], text: str) -> str:
+    """Keys to a value; of a coefficient its symbol stands for its number."""
+    match where:
+        case ("coefficients", int(k), *rest):
+            symbol = json.loads(text)["coefficients"][k]
+            named = symbol.get("symbol") if isinstance(symbol, dict) else None
+            return ".".join(map(str, ("coefficients", named if isinstance(named, str) else k, *rest)))
+    return ".".join(map(str, where))
 
 
 def _validated(text: str, version: str) -> ParameterFile:

@@ -18,6 +18,7 @@ from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
+from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -126,6 +127,7 @@ SMALLEST = {1: 0.15, 2: 0.05}
 OPPOSITE = (("Nv", "Mw"), ("Nuv", "Muw"), ("Nv|v|", "Mw|w|"), ("Yr", "Zq"), ("Yur", "Zuq"), ("Yr|r|", "Zq|q|"))
 EQUAL = (("Yv", "Zw"), ("Yuv", "Zuw"), ("Nr", "Mq"), ("Nur", "Muq"))
 ALIKE = 0.01
+PARTNERS = (*OPPOSITE, *EQUAL, ("Nr|r|", "Mq|q|"), ("Yv|v|", "Zw|w|"))
 
 
 @brief
@@ -146,7 +148,7 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
         out += _by_tables(p)
     elif not any(c.severity is Severity.FAIL for c in out):
         out.append(_damping_check("damping", Severity.PASS, f"{len(own)} terms of a motion on itself", "below zero"))
-    return [*out, *_rates(p, own), *_mirrored(p), *_ideal_products(p)]
+    return [*out, *_rates(p, own), *_mirrored(p), *_partners(p), *_ideal_products(p)]
 
 
 def _damping_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
@@ -274,6 +276,26 @@ def _mirrored(p: ParameterFile) -> list[Check]:
     return out
 
 
+def _partners(p: ParameterFile) -> list[Check]:
+    """Yaw and pitch of other sizes, of a body whose added mass is alike in both planes."""
+    diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
+    if not (_alike(diagonal[1], diagonal[2]) and _alike(diagonal[4], diagonal[5])):
+        return []
+    found = []
+    for a, b in PARTNERS:
+        first, second = p.coefficient(a), p.coefficient(b)
+        if first is None or second is None or not first.value_si or not second.value_si:
+            continue
+        if not _alike(abs(first.value_si), abs(second.value_si), MISTYPED):
+            found.append((f"{a} and {b}", f"{first.value_si:.4g} and {second.value_si:.4g} (SI)"))
+    return [
+        _damping_check(
+            pair, Severity.NOTE, values, "of one size", "The added mass is alike in both planes, these are not."
+        )
+        for pair, values in found
+    ]
+
+
 def _same_size(p: ParameterFile, a: str, b: str, sign: float) -> tuple[str, float, float] | None:
     """Both values where the second is ``sign`` times the first."""
     first, second = p.coefficient(a), p.coefficient(b)
@@ -310,7 +332,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -324,6 +346,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *added_mass_findings(parameters, signs),
         *_munk(parameters),
         *damping_findings(parameters, signs),
+        *sign_findings(parameters),
         *law_findings(parameters),
     )
 

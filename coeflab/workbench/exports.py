@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
-from coeflab.formats import EXPORTERS, InertialExporter, SimulatorExporter
+from coeflab.formats import EXPORTERS, InertialExporter, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.force_law import force_law
@@ -53,6 +53,7 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     found = loss_of(
         target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
+        plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)

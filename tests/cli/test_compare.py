@@ -134,6 +134,29 @@ def test_what_has_no_value_or_no_interval_is_not_compared() -> None:
     assert found.rows[0].ratio is None
 
 
+@pytest.mark.parametrize(
+    ("value", "verdict", "code"),
+    [
+        (0.028, Verdict.OTHER_SIGN, 1), (-0.043, Verdict.OTHER_SIZE, 0), (-0.018, Verdict.OTHER_SIZE, 0),
+        (-0.041, Verdict.NOT_COMPARABLE, 0), (0.0, Verdict.OTHER_SIZE, 0),
+    ],
+)  # fmt: skip
+def test_without_u95_signs_and_sizes_are_marked(
+    coeflab: Run, write: Callable[[ParameterFile, str], Path], value: float, verdict: Verdict, code: int
+) -> None:
+    first, second = made(changed(Yv=(-0.028, None))), made(changed(Yv=(value, None)), name="second")
+    found = compare(first, second)
+    assert {r.symbol: r.verdict for r in found.rows}["Yv'"] is verdict
+    assert found.disagrees == (code == 1)
+    if verdict is Verdict.OTHER_SIGN:
+        done = coeflab("compare", write(first, "a.json"), write(second, "b.json"))
+        assert done.returncode == 1
+        assert "1 other sign" in done.stdout
+        assert {-0.028, 0.028} <= {float(w) for w in done.stdout.split() if w.strip("-").startswith("0.028")}
+        other = made(changed(Yv=(value, None)), body="another")
+        assert coeflab("compare", write(first, "a.json"), write(other, "c.json")).returncode == 0
+
+
 def resting(on: dict[str, str], inputs: dict[str, str], campaign: str = "tow", **changes: Any) -> ParameterFile:
     """A file whose coefficients rest on tables, among inputs with a hash each."""
     content = made(VALUES, **changes).model_dump(mode="json")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import Run, flat
 from tests.vehicle.test_inertia import accelerating
 
@@ -120,3 +122,31 @@ def test_the_choice_of_accelerations_is_named(coeflab: Run, tmp_path: Path) -> N
         assert f"# Inertia of the water: {word}" in (out / "file.yml").read_text()
     refused = coeflab("export", file, "--to", "xdyn", "--accelerations", "computed", "--strict")
     assert "/dt differs by up to" in refused.stderr
+
+
+def flipped(folder: Path, *symbols: str) -> Path:
+    """REMUS 100 with coefficients of the other sign."""
+    file = read_parameter_file(Path("remus100"))
+    changed = tuple(
+        replace(c, value=-c.value, value_si=-c.value_si)
+        if c.symbol.removesuffix("'") in symbols and c.value is not None and c.value_si is not None
+        else c
+        for c in file.coefficients
+    )
+    (folder / "flipped.json").write_bytes(file.model_copy(update={"coefficients": changed}).to_json())
+    return folder / "flipped.json"
+
+
+def test_a_wrong_sign_in_the_file_is_said_by_what_uses_it(coeflab: Run, tmp_path: Path) -> None:
+    path = flipped(tmp_path, "Yuv", "Nuv", "Zuw", "Muw")
+    made = coeflab("export", path, "--to", "mss", "--out", tmp_path / "m", "--accept-loss")
+    moved = coeflab("simulate", path, "--manoeuvre", "zigzag")
+    for done in (made, moved):
+        assert done.returncode == 1
+        assert "Yuv': dY/dv = 44 N/(m/s) at 1.54 m/s" in flat(done.stdout)
+    assert list((tmp_path / "m").glob("*.m"))
+    told = json.loads(coeflab("export", path, "--to", "mss", "--out", tmp_path / "j", "--json").stdout)
+    assert "Yuv'" in {f["what"] for f in told["findings"] if f["severity"] == "fail"}
+    right = coeflab("simulate", "remus100", "--manoeuvre", "zigzag")
+    assert "params check" not in right.stdout
+    assert right.returncode == 0

@@ -105,3 +105,11 @@ def test_names_that_hurt(name: str) -> None:
     assert json.loads(found["resources/model.json"])["name"] == name
     root = ElementTree.fromstring(found["modelDescription.xml"])
     assert len(list(root.iter("ScalarVariable"))) == len(json.loads(found["resources/model.json"])["variables"])
+
+
+def test_it_says_that_its_host_needs_python_and_which_thrust_is_missing() -> None:
+    found, said = parts(torpedo()), " ".join(fmi.changes(torpedo()))
+    assert "needs Python 3" in found["modelDescription.xml"].decode()
+    assert "needs Python 3" in said
+    assert "propulsion is not in the export" in said
+    assert "external.X" in said

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,13 +12,15 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.export import Kind, covered_grid, missing_mass, missing_water
+from coeflab.core.types import Array
+from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
+from coeflab.formats.export import LOSSLESS, Kind, covered_grid, loss_of, missing_mass, missing_water
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
 from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench.exports import export
 from tests.formats import files as made
@@ -185,3 +190,49 @@ def test_a_force_that_is_worse_than_none_is_said() -> None:
     text = export(torpedo(), "holoocean").files["file.holoocean.loss.txt"].decode()
     assert text.count("worse than no force at all: ") == len(worse)
     assert export(torpedo(), "xdyn").loss.worse_than_nothing == ()
+
+
+STEERED = [n for n in TARGETS if isinstance(EXPORTERS.load(n), SteeredExporter)]
+
+
+@pytest.mark.parametrize("target", STEERED)
+def test_controls_are_among_what_is_compared(target: str) -> None:
+    """A rudder of the other sign in the target's law shows, and so does one that is not read."""
+    file = read_parameter_file(Path("remus100"))
+    plugin = EXPORTERS.load(target)
+    assert isinstance(plugin, SteeredExporter)
+    rendered = plugin.render(file)
+
+    def apart(force: Callable[[Mapping[str, bytes], Array, Array], Array]) -> float:
+        loss = loss_of(
+            target, force_law(file), file, rendered, plugin.force, (), (), (), water_inertia(file), None, force
+        )
+        assert loss.controls[0] == (
+            "controls: each state also with dr -0.35 and 0.35 rad, ds -0.35 and 0.35 rad, one at a time"
+        )
+        return float(loss.relative[5])
+
+    assert apart(plugin.steered_force) <= LOSSLESS
+    assert apart(lambda files, nu, controls: plugin.steered_force(files, nu, -controls)) > 0.1
+    assert apart(lambda files, nu, _: plugin.force(files, nu)) > 0.1
+
+
+@each_target
+def test_what_a_control_does_stands_in_every_export(target: str) -> None:
+    made_of = export(read_parameter_file(Path("remus100")), target)
+    report = next(c for n, c in made_of.files.items() if n.endswith(".loss.txt")).decode()
+    for said in ("dr > 0: turns to port (Ndr < 0)", "ds > 0: bow down (Mds < 0)"):
+        assert said in report
+        if target in STEERED and target != "fmi":
+            assert any(said in c.decode() for n, c in made_of.files.items() if not n.endswith(".loss.txt"))
+    assert ("controls: dr, ds not held" in report) == (target not in STEERED)
+
+
+def test_the_unit_says_what_its_inputs_do() -> None:
+    (content,) = (
+        c for n, c in export(read_parameter_file(Path("remus100")), "fmi").files.items() if n.endswith(".fmu")
+    )
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        assert (
+            'description="rad; dr &gt; 0: turns to port (Ndr &lt; 0)"' in archive.read("modelDescription.xml").decode()
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,10 @@ from coeflab.formats.gazebo import read as gazebo
 from coeflab.formats.gazebo import write as fluid
 from coeflab.formats.gazebo.law import read_gz_link
 from coeflab.formats.gazebo_plugin import write as plugin
+from coeflab.formats.model_files import read_model_file
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.second_order import FLU
 from tests.formats import files as made
 from tests.formats import of_second_order as second
@@ -148,7 +150,21 @@ def test_unreadable_files_say_why(old: str, new: str, found: str, tmp_path: Path
 
 def test_a_density_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "m.sdf"
-    path.write_bytes(next(iter(plugin.render(made.plain()).values())))
+    written = next(iter(plugin.render(made.plain()).values())).decode()
+    path.write_text(re.sub(r"<coeflab_density>.*</coeflab_density>", "", written), encoding="utf-8")
     with pytest.raises(InputError, match="no density"):
         gazebo.read(path)
     assert gazebo.read(path, density=999.0).conditions.density == 999.0
+
+
+def test_our_own_model_states_density_and_length(tmp_path: Path) -> None:
+    file = read_parameter_file(Path("remus100"))
+    name = next(iter(fluid.render(file)))
+    (tmp_path / name).write_bytes(fluid.render(file)[name])
+    back = read_model_file(tmp_path / name).parameters
+    assert back.conditions.density == file.conditions.density
+    assert back.scaling == file.scaling
+    yv, yuv = back.coefficient("Yuv"), file.coefficient("Yuv")
+    assert yv is not None
+    assert yuv is not None
+    assert yv.value == pytest.approx(yuv.value, rel=1e-9)

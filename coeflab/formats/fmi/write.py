@@ -26,6 +26,7 @@ from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     not_written,
     number,
+    propulsion,
     spelt,
     written_accelerations,
     written_changes,
@@ -34,16 +35,18 @@ from coeflab.formats.exported_law import (
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Factor, Term
+from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
-summary = "FMI 2.0: an FMU for co-simulation, six degrees of freedom under the file's own law"
+summary = "FMI 2.0: an FMU for co-simulation under the file's own law; the host that runs it needs Python 3"
 citations = ("sname1950", "fossen2011", "fmi2", "pythonfmu")
 adds_coriolis = False
 holds = frozenset({"hydrostatics"})
 not_held = not_written
 
 STEP = 0.01
+PYTHON = "the unit is a Python program (pythonfmu): the machine that runs it needs Python 3, not coeflab"
 SLOWEST = 1e-9
 _MOVING = (*MOTIONS, *CONTROLS)
 _GROUPS = {"prime": "coefficient", "rest": "rest", "potential": "ideal"}
@@ -102,7 +105,8 @@ def _variables(parameters: ParameterFile, terms: tuple[ForceTerm, ...], dots: Ma
     out.append(_variable("step", "parameter", STEP, "longest step of the integration, s"))
     out += [_variable(_place(t), "parameter", t.written, t.note) for t in terms]
     out += [_variable(f"acceleration.{n}", "parameter", v, "primed, less the added mass") for n, v in dots.items()]
-    out += [_variable(f"control.{c}", "input", 0.0, "rad") for c in CONTROLS]
+    signs = {said[:2]: f"rad; {said}" for said in control_signs(parameters)}
+    out += [_variable(f"control.{c}", "input", 0.0, signs.get(c, "rad")) for c in CONTROLS]
     out += [_variable(f"external.{c}", "input", 0.0, "at the reference point, N or N m") for c in COMPONENTS]
     for group, members, unit in (
         ("position", ("north", "east", "down"), "of the reference point, m"),
@@ -152,7 +156,7 @@ def _model(parameters: ParameterFile) -> dict[str, Any]:
 def _description(parameters: ParameterFile, variables: list[Variable], guid: str) -> bytes:
     """modelDescription.xml; references of variables are their numbers from 0, indices from 1."""
     name = identifier(parameters.name)
-    said = sayable(one_line(f"{parameters.name}, body: {parameters.body}"))
+    said = sayable(one_line(f"{parameters.name}, body: {parameters.body}; {PYTHON}"))
     root = Element(
         "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, description=said, generationTool="coeflab",
         variableNamingConvention="structured",
@@ -233,6 +237,13 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     """What the unit's ``hydrodynamics`` (`coeflab/formats/fmi/unit.py`) computes from the model.json in the FMU, all
     velocities at once, with zero control angles.
     """
+    return steered_force(files, nu, np.zeros((len(nu), 3)))
+
+
+def steered_force(
+    files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The same under control angles."""
     model, values = _read(files)
     terms = []
     for t in model["terms"]:
@@ -240,7 +251,7 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
         value = values[t["value"]] * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
         term = Term(tuple(Factor(_MOVING[index], power, absolute) for index, power, absolute in t["factors"]))
         terms.append(ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0))
-    return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu)
+    return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu, controls)
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
@@ -271,9 +282,11 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
     return (
         *written_changes(parameters, "the unit", "the parameters ideal.*", "the parameters acceleration.*"),
+        PYTHON,
         "positions are north, east, down",
         "the water is at rest",
         "weight and buoyancy are equal and act at one point: the file states no buoyancy; a righting moment goes to the inputs external.*"
         if parameters.hydrostatics is None
         else "weight and buoyancy by the parameters mass.* and hydrostatics.*; the outputs hydrodynamic.* do not contain them",
+        f"{propulsion(parameters)}; thrust goes to the input external.X",
     )

@@ -24,7 +24,8 @@ SYSTEM = {"filename": "gz-sim-hydrodynamics-system", "name": "gz::sim::systems::
 RESISTANCE = "coeflab_x0"
 FLUID = tuple((i, j) for i in range(6) for j in range(i, 6))
 FLUID_TAGS = {(i, j): "xyzpqr"[i] + "xyzpqr"[j] for i, j in FLUID}
-DENSITIES = ("water_density", "waterDensity", "uniform_fluid_density", "default_density")
+DENSITY, LENGTH = "coeflab_density", "coeflab_length"
+DENSITIES = ("water_density", "waterDensity", "uniform_fluid_density", "default_density", DENSITY)
 # Row, column, sign, and index of diagonal entry and velocity, of every entry of buildCoriolisMatrix.
 CORIOLIS = (
     (0, 4, -1, 2), (0, 5, 1, 1), (1, 3, 1, 2), (1, 5, -1, 0), (2, 3, -1, 1), (2, 4, 1, 0), (3, 1, -1, 2), (3, 2, 1, 1),

@@ -17,8 +17,9 @@ from coeflab.core.table import Check, Severity
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.types import Array
+from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
-from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, read_gz_link
+from coeflab.formats.gazebo.law import DENSITIES, FORCES, LENGTH, VELOCITIES, GzLink, read_gz_link
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -86,7 +87,8 @@ def read(
     density : float, optional
         kg/m^3, where the file states none.
     length, speed : float, optional
-        Of the primes, m and m/s; 1 m and 1 m/s where not given, which the file says. Forces do not depend on them.
+        Of the primes, m and m/s; else those that coeflab wrote into the file, or 1 m, and 1 m/s, which the result says. Forces
+        do not depend on them.
 
     Raises
     ------
@@ -105,6 +107,7 @@ def read(
             "no density", "the density of the water", file=path,
             advice="The plugin needs none, primes do: give it (--density 1025), or write <uniform_fluid_density>.",
         )  # fmt: skip
+    of_primes = root.find(f".//{LENGTH}")
     model = LinkModel(
         model=link.model,
         link=link.link,
@@ -115,6 +118,8 @@ def read(
         mass=link.mass,
         centre=link.centre * FLU[:3] + 0.0,
         inertia=None if link.inertia is None else link.inertia * np.outer(FLU[:3], FLU[:3]) + 0.0,
+        length=None if of_primes is None else numbers(of_primes.text, (1,), LENGTH, path)[0],
+        length_name="" if of_primes is None else one_line(of_primes.get("name") or "length")[:200],
         notes=(
             "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
             "|u| v is read as U v: both agree on straight courses",

@@ -12,12 +12,12 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from coeflab.core.text.xml import parse_xml, serialised
+from coeflab.core.text.xml import parse_xml, sayable, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
-from coeflab.formats.gazebo.law import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
+from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, SecondOrder, slot
@@ -73,6 +73,9 @@ def sdf(
         SubElement(system, "link_name").text = LINK
         for tag, text in plugin:
             SubElement(system, tag).text = text
+        SubElement(system, DENSITY).text = number(p.conditions.density)
+        length = SubElement(system, LENGTH, name=sayable(one_line(p.scaling.length_name)))
+        length.text = number(p.scaling.length)
     frame = f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3"
     shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. Add visuals yourself."
     inertia = f"Inertia of the water: {one_line(water_inertia(p).source)}"

@@ -29,6 +29,7 @@ from coeflab.formats.exported_law import (
 from coeflab.formats.mss.m_file import assignments
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
@@ -65,6 +66,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%",
         "%   nu    = [ u v w p q r ]'  velocity through the water at the reference point (m/s, rad/s)",
         "%   delta = [ dr ds db ]'     rudder, stern plane, bow plane (rad), zero if not given",
+        *(f"%                             {said}" for said in control_signs(parameters)),
         "%   tau   = [ X Y Z K M N ]'  force and moment about the reference point (N, N m)",
         "%   MA    = added mass matrix about the reference point, positive (kg, kg m, kg m^2)",
         "%   h     = struct of the coefficients",
@@ -162,23 +164,32 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
     """The function's own assignments, one after the other, with zero control angles."""
-    names, _ = _evaluated(files, nu)
+    return steered_force(files, nu, np.zeros((len(nu), 3)))
+
+
+def steered_force(
+    files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The same under control angles."""
+    names, _ = _evaluated(files, nu, controls)
     return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
     """The function's own ``MA``, entry by entry."""
-    names, matrix = _evaluated(files, np.zeros((1, 6)))
+    names, matrix = _evaluated(files, np.zeros((1, 6)), np.zeros((1, 3)))
     rows = matrix.strip().removeprefix("-[").removesuffix("]").split(";")
     return -np.array([[float(evaluate(entry, names, {})) for entry in row.split()] for row in rows])
 
 
-def _evaluated(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> tuple[dict[str, Any], str]:
-    """What the function's assignments give at velocities (n, 6), and the text of that of MA."""
+def _evaluated(
+    files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
+) -> tuple[dict[str, Any], str]:
+    """What the function's assignments give at velocities (n, 6) and controls (n, 3), and the text of that of MA."""
     text = next(content for name, content in files.items() if name.endswith(".m")).decode()
     functions: dict[str, Callable[..., Any]] = {
         "nu": lambda k: nu[:, int(k) - 1],
-        "delta": lambda _: np.zeros(len(nu)),
+        "delta": lambda k: controls[:, int(k) - 1],
         "sqrt": np.sqrt,
         "max": np.maximum,
         "abs": np.abs,

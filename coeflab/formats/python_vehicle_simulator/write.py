@@ -27,6 +27,7 @@ from coeflab.formats.exported_law import (
 )
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -65,7 +66,7 @@ class {name}:
     z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
     weight and buoyancy equal.
 
-    u_control = [ rudder (rad), stern plane (rad), bow plane (rad), thrust (N) ], followed without lag.
+    u_control = [ rudder (rad), stern plane (rad), bow plane (rad), thrust (N) ], followed without lag.{controls}
     """
 
     def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
@@ -145,6 +146,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             gravity=GRAVITY if h is None else h.gravity,
             buoyancy=None if h is None else h.centre_of_buoyancy,
             volume=None if h is None else h.volume,
+            controls="".join(f"\n    {said}" for said in control_signs(p)),
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",
@@ -218,8 +220,15 @@ def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
     """What ``hydrodynamics`` returns, read from the class without running it, with zero control angles."""
+    return steered_force(files, nu, np.zeros((len(nu), 3)))
+
+
+def steered_force(
+    files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The same under control angles."""
     methods, numbers = _read(files)
-    names = {**numbers, "nu": list(nu.T), "delta": [np.zeros(len(nu))] * 3}
+    names = {**numbers, "nu": list(nu.T), "delta": list(controls.T)}
     for node in methods["hydrodynamics"].body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             names[node.targets[0].id] = _value(node.value, names)

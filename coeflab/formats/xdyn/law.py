@@ -154,8 +154,15 @@ class XdynBody:
         """What expressions may use beside their own keys: constants, with every command at zero."""
         return {"rho": self.density, "t": 0.0, **dict.fromkeys(model.commands, 0.0)}
 
-    def force(self, nu: Array) -> Array:
-        """Hydrodynamic force and moment about the centre of gravity, (n, 6), for velocities (n, 6) there."""
+    def force(self, nu: Array, commands: Mapping[str, Array] | None = None) -> Array:
+        """Hydrodynamic force and moment about the centre of gravity, (n, 6), for velocities (n, 6) there.
+
+        Parameters
+        ----------
+        nu : (n, 6) array
+        commands : mapping of name to (n,) array, optional
+            Of those that a model has; zero unless given.
+        """
         out = np.zeros_like(nu)
         states: dict[str, Callable[..., Any]] = {m: partial(_state, nu[:, j]) for j, m in enumerate(MOTIONS)}
         functions: dict[str, Callable[..., Any]] = {
@@ -168,7 +175,8 @@ class XdynBody:
             "sin": np.sin,
         }
         for model in self.manoeuvring:
-            found = settled(model.expressions, self.given(model), functions)
+            moved = {name: x for name, x in (commands or {}).items() if name in model.commands}
+            found = settled(model.expressions, {**self.given(model), **moved}, functions)
             at_point = np.column_stack([np.broadcast_to(found[c], len(nu)) for c in COMPONENTS])
             out += at_point @ force_transfer(self.centre - model.point).T
         for power, matrix in self.damping:

@@ -30,8 +30,9 @@ from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, Xdyn
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import about_another, rigid_body_inertia
-from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.transforms import force_transfer, moved, velocity_transfer
+from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -130,6 +131,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
         f"# {propulsion(parameters)}",
+        *(f"# {said}; rad" for said in control_signs(parameters)),
+        *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
@@ -227,9 +230,15 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
 
     The reference point is the origin of the manoeuvring model's frame.
     """
+    return steered_force(files, nu, np.zeros((len(nu), 3)))
+
+
+def steered_force(files: Mapping[str, bytes], nu: Array, controls: Array) -> Array:
+    """The same under the commands dr ds db."""
     body = _read(*next((n, c) for n, c in files.items() if n.endswith(".yml")))
     shift = body.manoeuvring[0].point - body.centre
-    return np.asarray(body.force(nu @ velocity_transfer(-shift).T) @ force_transfer(shift).T)
+    commands = dict(zip(CONTROLS, controls.T, strict=True))
+    return np.asarray(body.force(nu @ velocity_transfer(-shift).T, commands) @ force_transfer(shift).T)
 
 
 @remembered(2)  # a loss report evaluates one file at many motions

@@ -43,6 +43,7 @@ def forces(loss: Loss) -> Table:
     notes = [
         f"At {loss.grid}; in steady motion, FRD, about the file's reference point.",
         f"0: below {LOSSLESS:g} of the largest value.",
+        *loss.controls,
     ]
     if loss.accelerations is not None:
         notes.append(

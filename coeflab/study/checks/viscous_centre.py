@@ -18,15 +18,14 @@ from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 from coeflab.tables.to_frd import TAKEN_OUT
+from coeflab.vehicle.expected_signs import REACH, UNSURE
 from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "centres of the viscous side force against the hull; inertia in rotating-arm forces against m'"
 citations = ("feldman1979", "gertler1967")
 
 PLANES = (("Yv", "Nv", "Yr", "Nr", 1.0), ("Zw", "Mw", "Zq", "Mq", -1.0))
-REACH = 0.75  # of the length, from the centre of gravity: half a hull, and half as much again for what strips leave out
 ANYWHERE = 1.75  # from a reference point that may lie at either end
-UNSURE = 0.1  # of a potential part; without an added mass, of m' in the place of the added mass along x
 ALONE = (-0.3, 0.9)  # Yr' / m' where nobody measured Yv'; 0.1 to 0.5 on hulls with and without tails
 
 

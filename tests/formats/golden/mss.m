@@ -6,6 +6,8 @@ function [tau, MA, h] = file(nu, delta)
 %
 %   nu    = [ u v w p q r ]'  velocity through the water at the reference point (m/s, rad/s)
 %   delta = [ dr ds db ]'     rudder, stern plane, bow plane (rad), zero if not given
+%                             dr > 0: turns to port (Ndr < 0)
+%                             ds > 0: bow down (Mds < 0)
 %   tau   = [ X Y Z K M N ]'  force and moment about the reference point (N, N m)
 %   MA    = added mass matrix about the reference point, positive (kg, kg m, kg m^2)
 %   h     = struct of the coefficients
