@@ -148,7 +148,7 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
             why = (
                 f"{offer.why.partition(';')[0]}{span}"
                 if group is Group.COLUMN
-                else offer.why.replace("; no unit is stated", "; unit?")
+                else _unread(raw, offer)
             )
             if offer.note and group is Group.COLUMN:
                 group, why = Group.GRAVE, offer.note
@@ -163,13 +163,21 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
             yield Line(name, str(said), why + span, Group.COLUMN, f'Column "{name}": {said}; {offer.why}.')
 
 
+def _unread(raw: RawTable, offer: Proposal) -> str:
+    """Why a column is open; a unit that nobody knows by the line where it stands."""
+    if offer.unread:
+        place = f"line {raw.header_line}: " if raw.header_line and raw.dialect.get("units") == "in the header" else ""
+        return place + offer.why.partition("; ")[2]
+    return offer.why.replace("; no unit is stated", "; unit?")
+
+
 def _covered(offer: Proposal) -> str:
     """By which key what a proposal lacks is said for all columns; empty where it lacks nothing, or something of its own."""
     if offer.whole:
         return ""
     if "coefficient" in offer.text:
         return "by coefficients.area" + " and .length" * ("L=?" in offer.text)
-    return "by columns.units" if without_unit(offer.text) else ""
+    return "by columns.units" if without_unit(offer) else ""
 
 
 def _doubtful(doubt: Doubt) -> Line:

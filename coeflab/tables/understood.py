@@ -21,7 +21,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import Proposal, proposals
+from coeflab.tables.proposals import Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
@@ -132,6 +132,7 @@ def understood(
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
+    shows += tuple(Evidence(f"warning: {why}") for one in columns if (why := taken_as(one)))
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)

@@ -229,6 +229,22 @@ def test_a_turn_within_the_length_of_the_body_is_warned_of() -> None:
     assert "r'; largest |r'| = 63: a circle of 0.016 lengths in radius; Is r in deg/s declared as rad/s" in text
 
 
+def test_moments_a_thousand_times_too_small_for_their_forces_are_warned_of() -> None:
+    """kN m declared as N m; a moment that nobody measured is none."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+
+    def found(factor: float) -> list[str]:
+        changed = replace(table, forces={**table.forces, "N": factor * table.forces["N"]})
+        return [f"{c.statistic}; {c.comment}" for c in sizes.check(replace(own, tables=(changed,)))]
+
+    assert not found(1.0)
+    assert not found(0.1)
+    assert not found(0.0)
+    (text,) = found(0.001)
+    assert text.startswith("largest |N'| = 0.0004 of the largest |Y'|; Are moments in kN m declared as N m")
+
+
 def test_numerical_zeros_are_no_findings() -> None:
     """K of 1e-13 beside N of 10: neither a bias nor readings that do not belong."""
     own = study("suboff_roddy_3", "slope_at_origin")
