@@ -145,11 +145,7 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
         elif name in still:
             missing = _covered(offer)
             group = Group.COLUMN if offer.whole or missing else Group.OPEN
-            why = (
-                f"{offer.why.partition(';')[0]}{span}"
-                if group is Group.COLUMN
-                else _unread(raw, offer)
-            )
+            why = f"{offer.why.partition(';')[0]}{span}" if group is Group.COLUMN else _unread(raw, offer)
             if offer.note and group is Group.COLUMN:
                 group, why = Group.GRAVE, offer.note
             text = offer.text.replace("coefficient A=?", "coefficient")
