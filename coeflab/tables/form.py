@@ -155,7 +155,8 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
                 argument("--map", name, offer.text or OPEN), True,
             )  # fmt: skip
         elif (said := found.mapping.get(name)) is not None and not (said.name == "ignore" and len(raw.columns) > MANY):
-            why = offer.why.partition(";")[0] if offer.certain else "said"
+            by = "accepted" if name in found.accepted else "said"
+            why = offer.why.partition(";")[0] if offer.certain else by
             yield Line(name, str(said), why + span, Group.COLUMN, f'Column "{name}": {said}; {offer.why}.')
 
 
