@@ -516,5 +516,7 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
     if is_estimated(made.six):
         body = tow.tank.body.parent
         named = body.name if body.parent == shipped("geometry") else str(tow.tank.body)
-        return f"coeflab vehicle {shlex.quote(named)} adds mass and added mass; coeflab tow without --solver runs OpenFOAM"
+        return (
+            f"coeflab vehicle {shlex.quote(named)} adds mass and added mass; coeflab tow without --solver runs OpenFOAM"
+        )
     return f"coeflab fit {place}/{CAMPAIGN} --next 3"

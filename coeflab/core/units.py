@@ -51,7 +51,9 @@ _UNIT = re.compile(rf"\s*(?:1\s*/\s*)?{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*\s*
 # underscore between letters mean one thing.
 _EXPONENT = re.compile(r"\b(mm|cm|dm|m|km|in|inch|ft|s|sec|min)-?[1-4]\b")
 _BEHIND = re.compile(r"(?<=[A-Za-z])(?=-?[1-4])")
-_POINT = re.compile(r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])|(?<=[A-Za-z])\s*[-_]\s*(?=[A-Za-z])|(?<=[A-Za-z])\s+x\s+(?=[A-Za-z])")
+_POINT = re.compile(
+    r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])|(?<=[A-Za-z])\s*[-_]\s*(?=[A-Za-z])|(?<=[A-Za-z])\s+x\s+(?=[A-Za-z])"
+)
 _RAISED = str.maketrans(
     "\u00b9\u00b2\u00b3\u2074\u207b\u2212\u2010\u2011\u22c5\u2022\u2219\u00d7", "1234----\u00b7\u00b7\u00b7\u00b7"
 )

@@ -137,7 +137,7 @@ def understood(
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
-    shows += tuple(Evidence(f"warning: {why}") for one in columns if (why := taken_as(one)))
+    shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -153,7 +153,9 @@ def understood(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    return Understood(offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted))
+    return Understood(
+        offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
+    )
 
 
 def _with_frame(raw: RawTable, settings: Settings) -> Settings:

@@ -259,7 +259,9 @@ def test_a_moved_reference_point_is_fitted_anew_and_said() -> None:
     by_hand = first["Nv"].value - 0.05 * first["Yv"].value
     assert second["Nv"].value != by_hand
     assert abs(second["Nv"].value - by_hand) < min(first["Nv"].u95, second["Nv"].u95)
-    said = [any("moved there and then fitted" in t for t in conventions_section(one).paragraphs) for one in (own, moved)]
+    said = [
+        any("moved there and then fitted" in t for t in conventions_section(one).paragraphs) for one in (own, moved)
+    ]
     assert said == [False, True]
 
 
