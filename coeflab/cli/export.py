@@ -8,6 +8,7 @@ import typer
 
 from coeflab.cli import complete, show
 
+WITH_MASS = "Mass and added mass: coeflab vehicle BODY --campaign CAMPAIGN, or coeflab merge VEHICLE.json CAMPAIGN."
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
 
 
@@ -69,6 +70,7 @@ def command(
             f"a target that loses part of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
             "a target that holds everything" if strict else "--accept-loss, to write the rest",
             file=file,
+            advice="" if parameters.added_mass else WITH_MASS,
         )
     folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")
     paths = [folder / name for name in sorted(made.files)]

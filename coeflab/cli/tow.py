@@ -164,7 +164,7 @@ def _tow(
         if dry_run:
             asked = [*([said] if said else []), *(["--matrix", str(matrix)] if matrix else [])]
             asked += ["--solver", solver] if solver else []
-            _dry(tow, before, asked, None if place != folder else folder, cores, json)
+            _dry(tow, before, asked, None if place != folder else folder, cores, json, by_default=own is None)
             return
     _carry_out(tow, before, folder, cores, json)
 
@@ -179,8 +179,9 @@ def _place(folder: Path, temporary: bool) -> Iterator[Path]:
 
 
 def _dry(
-    tow: Tow, before: Mapping[str, Any] | None, asked: Sequence[str], folder: Path | None, cores: int, json: bool
-) -> None:
+    tow: Tow, before: Mapping[str, Any] | None, asked: Sequence[str], folder: Path | None, cores: int, json: bool,
+    by_default: bool = False,
+) -> None:  # fmt: skip
     """What the tow is expected to take, and what to install."""
     from coeflab.core.machine import cores as machine_cores
     from coeflab.core.machine import physical_memory
@@ -214,6 +215,7 @@ def _dry(
     else:
         head += "."
     show.sentence(head)
+    show.sentence(tables.water(tow.tank, by_default))
     own = physical_memory()
     if own and memory > 0.9 * own:
         show.sentence(f"The largest job takes {tables.size(memory, 'B')} of this machine's {tables.size(own, 'B')}.")
@@ -466,9 +468,11 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = F
         show.json_object(_as_json(tow, made))
     else:
         show.table(tables.six(tow.tank, made.six, made.unfitted))
-        for said in (tables.covers(made.six), *tables.symmetry_checks(tow.tank, made.runs)):
+        estimated = tables.is_estimated(made.six)
+        checks = () if estimated else tables.symmetry_checks(tow.tank, made.runs)
+        for said in (tables.covers(made.six), *checks):
             show.sentence(said)
-        show.sentence(tables.outcome(made.runs))
+        show.sentence(tables.outcome(made.runs, estimated))
         for remark, names in tables.remarks(made.runs).items():
             show.sentence(f"  {remark} ({names})")
         show.table(tables.ended(made.runs))
@@ -495,6 +499,8 @@ def _as_json(tow: Tow, made: Collected) -> dict[str, Any]:
 
 def _next(tow: Tow, made: Collected, folder: Path) -> str:
     """What to type, or to mend first."""
+    from coeflab.core.files import shipped
+    from coeflab.report.tables.tow import is_estimated
     from coeflab.tank.folder import CAMPAIGN, TANK
     from coeflab.tank.jobs import JobState
 
@@ -507,4 +513,10 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
         return f"coeflab tow {place} --continue"
     if JobState.UNCONVERGED in states:
         return f"allow more iterations in {folder / TANK}, then coeflab tow {place} --continue"
+    if is_estimated(made.six):
+        body = tow.tank.body.parent
+        named = body.name if body.parent == shipped("geometry") else str(tow.tank.body)
+        return (
+            f"coeflab vehicle {shlex.quote(named)} adds mass and added mass; coeflab tow without --solver runs OpenFOAM"
+        )
     return f"coeflab fit {place}/{CAMPAIGN} --next 3"

@@ -39,8 +39,7 @@ _WRITTEN = {
     "kn": "knot",
     "kt": "knot",
     "rpm": "revolution/minute",
-    **{n: f"{n.removesuffix('m')}*m" for n in ("Nm", "kNm")},
-    **dict.fromkeys(("ft-lbf", "lbf-ft"), "ft*lbf"),
+    **{f"{size}N{arm}": f"{size}N*{arm}" for size in ("", "m", "k", "M") for arm in ("m", "cm", "mm")},
 }
 # Degrees in German, gon elsewhere, and by prefix a thousand million radians.
 _TWO_MEANINGS = ("Grad", "grad", "GRAD", "Grd", "grd")
@@ -48,11 +47,16 @@ _LONGEST = 40
 # Exponents are single digits: the units library would compute 9^9^9 for ever.
 _NAME = r"[A-Za-zµμ°]+(?:\s*(?:\^|\*\*)\s*-?\s*[1-9])?"
 _UNIT = re.compile(rf"\s*(?:1\s*/\s*)?{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*\s*")
-# kg/m3, m/s2, m s-1 and N.m: digits behind lengths and times, a minus before a digit and a point between letters mean one thing.
+# kg/m3, m/s2, m s-1, N.m, N-m and N_m: digits behind lengths and times, a minus before a digit, and a point, a hyphen or an
+# underscore between letters mean one thing.
 _EXPONENT = re.compile(r"\b(mm|cm|dm|m|km|in|inch|ft|s|sec|min)-?[1-4]\b")
 _BEHIND = re.compile(r"(?<=[A-Za-z])(?=-?[1-4])")
-_POINT = re.compile(r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])")
-_RAISED = str.maketrans("\u00b9\u00b2\u00b3\u2074\u207b\u2212\u22c5", "1234--\u00b7")
+_POINT = re.compile(
+    r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])|(?<=[A-Za-z])\s*[-_]\s*(?=[A-Za-z])|(?<=[A-Za-z])\s+x\s+(?=[A-Za-z])"
+)
+_RAISED = str.maketrans(
+    "\u00b9\u00b2\u00b3\u2074\u207b\u2212\u2010\u2011\u22c5\u2022\u2219\u00d7", "1234----\u00b7\u00b7\u00b7\u00b7"
+)
 _HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
 _COMMA = re.compile(r",\s*\d")
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
@@ -100,7 +104,7 @@ def parse_header(text: str) -> Header:
 
 
 def _spelled(unit: str) -> str:
-    """The unit with ``^`` before exponents and ``*`` for a point between units."""
+    """The unit with ``^`` before exponents and ``*`` for a point, a hyphen, an underscore or an x between units."""
     plain = _POINT.sub("*", unit.translate(_RAISED))
     return _EXPONENT.sub(lambda found: _BEHIND.sub("^", found[0]), plain)
 
@@ -112,8 +116,8 @@ def factor(unit: str, dimension: str) -> float:
     Parameters
     ----------
     unit : str
-        For example ``lbf``, ``ft*lbf``, ``kn``, ``deg/s``, ``kg/m^3`` or ``kg/m3``, ``N*m``, ``N.m`` or ``Nm``; ``-`` for a
-        pure number.
+        For example ``lbf``, ``ft*lbf``, ``kn``, ``deg/s``, ``kg/m^3`` or ``kg/m3``, ``N*m``, ``N.m``, ``N-m`` or ``Nm``;
+        ``-`` for a pure number.
     dimension : str
         A key of `SI`.
 

@@ -150,6 +150,8 @@ def _towed_row(
             row = AnswerRow(symbol, own.value, own.u95, "" if own.u95 else "no U95", tow.tow.campaign, published)
             return _judged(row, None)
     status = next((c.status for c in found if c.status is not Status.NO_TABLE), None)
+    if other := next((b for b, symbols in study.by_body.items() if b != beside.body and symbol in symbols), ""):
+        return AnswerRow(symbol, None, None, f"fitted for body {other}", published=published)
     return AnswerRow(symbol, None, None, NO_DATA if status is None else status.replace("_", " "), published=published)
 
 

@@ -75,7 +75,8 @@ class StudyKeys(takes.Declaration):
     title : str
         As the report prints it; the name unless given.
     reference_point : (3,) array
-        [x, y, z] of all moments, m, FRD, from the datum; each campaign's own unless given.
+        [x, y, z] of all moments, m, FRD, from the datum; each campaign's own unless given. The rows of the tables are moved there and
+        fitted.
     datum : str
         Id of the point of the body that the reference point counts from; each campaign's own unless given.
     datum_note : str

@@ -213,6 +213,22 @@ class Study:
         return tuple(c for f in self.fits for c in f.coefficients.coefficients) + self.missing
 
     @property
+    def by_body(self) -> Mapping[str, tuple[str, ...]]:
+        """Wanted coefficients of each body where every one has others, as campaigns of one body with two names have.
+
+        Empty where one body has them all, or two have the same.
+        """
+        valued = [
+            c for c in self.coefficients if c.origin == "fit" and c.value is not None and c.symbol in self.plan.wanted
+        ]
+        bodies = {
+            b: tuple(dict.fromkeys(c.symbol for c in valued if c.body == b))
+            for b in dict.fromkeys(c.body for c in valued)
+        }
+        apart = len(bodies) > 1 and sum(map(len, bodies.values())) == len({c.symbol for c in valued})
+        return {b: s for b, s in bodies.items() if b} if apart else {}
+
+    @property
     def failed(self) -> bool:
         """Whether a finding or a comparison fails, or an export was refused."""
         findings = any(c.severity is Severity.FAIL for c in self.checks)

@@ -54,7 +54,7 @@ _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
 _RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate
 UNNAMED = "NAME:UNIT"
 UNIT_ASKED = ":UNIT"  # degrees and radians a second differ by 57: nothing but a person says which
-SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4"
+SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4; with p=. too, p2p5 as 2.5"
 BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
@@ -86,6 +86,13 @@ class Condition:
         return f"{number} ({', '.join(self.origins)})"
 
 
+def in_a_list(name: str) -> str:
+    """How a list of runs says a setting, in a few words."""
+    dimension = DIMENSIONS[name]
+    unit = "deg" if dimension == "angle" else SI[dimension] or "-"
+    return f"a list of runs has them: --runs list.csv with the columns run,{name} [{unit}]"
+
+
 def condition_of(written: float, unit: str, name: str, origin: str) -> Condition:
     """A number of a setting as its origin writes it."""
     dimension = DIMENSIONS.get(name)
@@ -98,6 +105,7 @@ class _Field:
     name: str
     unit: str
     signs: Mapping[str, str]
+    points: tuple[str, ...]
     scale: float
 
 
@@ -108,7 +116,8 @@ class NamePattern:
 
     ``{NAME:UNIT}`` is a number with a point for its decimals, ``*`` any text, ``{NAME:text}`` a label. Other spellings hold
     only where the pattern has them, behind a further colon: ``{beta:deg:m=-,p=.}`` reads m2p5 as -2.5,
-    ``{beta:deg:P=-,S=+}`` P4 as -4, ``{r:rad/s:x0.01}`` 015 as 0.15.
+    ``{beta:deg:P=-,S=+}`` P4 as -4, ``{r:rad/s:x0.01}`` 015 as 0.15. A letter may be both sign and point,
+    ``{beta:deg:m=-,p=+,p=.}``: before the first digit it is the sign, between digits the point.
 
     Attributes
     ----------
@@ -152,11 +161,12 @@ class NamePattern:
 def _spelt(text: str, spelling: _Field) -> float:
     """A number of a name; letters stand for what the pattern says."""
     plain = text.replace("\u2212", "-")
-    for letters, mark in sorted(spelling.signs.items(), key=lambda s: -len(s[0])):
-        if mark == ".":
-            plain = plain.replace(letters, ".")
-        elif plain.startswith(letters):
-            plain = mark + plain.removeprefix(letters)
+    for letters in sorted(spelling.signs, key=len, reverse=True):
+        if plain.startswith(letters):
+            plain = spelling.signs[letters] + plain.removeprefix(letters)
+            break
+    for letters in sorted(spelling.points, key=len, reverse=True):
+        plain = plain.replace(letters, ".")
     return float(plain) * spelling.scale
 
 
@@ -252,8 +262,6 @@ def _likely(texts: Sequence[str]) -> str:
             continue
         spelt = [f"{sign}={_SIGNS[sign]}" for sign in sorted(signs) if _SIGNS[sign]]
         spelt += ["p=."] * any("p" in number for number in numbers)
-        if len({word.partition("=")[0] for word in spelt}) < len(spelt):
-            return ""  # p cannot be both + and the decimal point
         word = re.search(r"([A-Za-z]*)[^A-Za-z]*$", shared)
         field = _WORDS.get(word[1].casefold() if word else "", UNNAMED)
         if field.endswith(UNIT_ASKED) and field != UNNAMED and (unit := _rate_unit(columns[i + 2])):
@@ -287,6 +295,7 @@ class NoConditionError(InputError):
             proposed += "what is known anyway goes with it: --set axes.frame=CFD --set 'scaling.length=4.3 LOA' ..."
         elif UNIT_ASKED in options:
             proposed = f" If this is what they mean: {options}, with deg/s or rad/s for UNIT: no name says it, and they differ by 57."
+        proposed = proposed or f" Or {in_a_list('beta')}."
         super().__init__(
             f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
             advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",
@@ -306,31 +315,36 @@ def _field(text: str, fail: Callable[..., InputError]) -> _Field:
     if unit == TEXT:
         if not name or spelling:
             raise fail(f"{{{text}}}", "{NAME:text}")
-        return _Field(name, TEXT, {}, 1.0)
+        return _Field(name, TEXT, {}, (), 1.0)
     if name not in DIMENSIONS and name not in COUNTED:
         raise fail(shown(name), f"one of {', '.join(SETTINGS)}, cells, y_plus", f"For a label: {{{name}:text}}.")
     try:
         factor(unit, DIMENSIONS.get(name, "none"))
     except UnitsError as why:
         raise fail(why.found, why.expected, why.advice) from None
-    signs, scale = {}, 1.0
+    signs: dict[str, str] = {}
+    points: list[str] = []
+    scale = 1.0
     for word in filter(None, (w.strip() for w in spelling.split(","))):
         if match := _SPELLING.fullmatch(word):
-            signs[match[1]] = match[2]
+            if match[2] == ".":
+                points.append(match[1])
+            elif signs.setdefault(match[1], match[2]) != match[2]:
+                raise fail(f"{match[1]} as - and as +", "one sign a letter")
         elif (match := _SCALE.fullmatch(word)) and float(match[1]) > 0.0:
             scale = float(match[1])
         else:
             raise fail(shown(word), "spellings such as m=-, p=. or x0.01, with commas between them")
-    return _Field(name, unit, MappingProxyType(signs), scale)
+    return _Field(name, unit, MappingProxyType(signs), tuple(points), scale)
 
 
 def _number_expression(f: _Field) -> str:
     if f.unit == TEXT:
         return "([^/]+?)"
-    marks = [re.escape(s) for s, mark in f.signs.items() if mark != "."]
-    points = "|".join([r"\.", *(re.escape(s) for s, mark in f.signs.items() if mark == ".")])
-    sign = "|".join(["[-+\u2212]", *marks])
-    return f"((?:{sign})?(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{points})[0-9]+))"
+    points = "|".join([r"\.", *map(re.escape, f.points)])
+    first = "|".join([r"\.", *(re.escape(s) for s in f.points if s not in f.signs)])
+    sign = "|".join(["[-+\u2212]", *map(re.escape, f.signs)])
+    return f"((?:{sign})?(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{first})[0-9]+))"
 
 
 def of_files(stated: Mapping[str, Stated]) -> dict[str, Condition]:

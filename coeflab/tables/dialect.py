@@ -119,6 +119,7 @@ _NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1
 
 
 _NO_UNIT = frozenset({"", "-", "–", "—"})
+_BETWEEN_UNITS = re.compile(r"\s*[×•∙⋅‐‑_]\s*|\s+x\s+")  # as N×m, N_m and N x m in brackets
 
 
 def is_unit(text: str) -> bool:
@@ -131,7 +132,7 @@ def name_and_unit(text: str) -> tuple[str, str]:
     clean = " ".join(text.split())
     if m := _BRACKETS.fullmatch(clean):
         return m["name"], m["unit"].strip()
-    if (m := _PARENTHESES.fullmatch(clean)) and is_unit(m["unit"].strip() or "-"):
+    if (m := _PARENTHESES.fullmatch(clean)) and is_unit(_BETWEEN_UNITS.sub("·", m["unit"].strip()) or "-"):
         return m["name"], m["unit"].strip()
     if (m := _BEHIND.fullmatch(clean)) and is_unit(m["unit"]) and m["unit"] not in ("-", "1"):
         return m["name"], m["unit"]

@@ -145,11 +145,7 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
         elif name in still:
             missing = _covered(offer)
             group = Group.COLUMN if offer.whole or missing else Group.OPEN
-            why = (
-                f"{offer.why.partition(';')[0]}{span}"
-                if group is Group.COLUMN
-                else offer.why.replace("; no unit is stated", "; unit?")
-            )
+            why = f"{offer.why.partition(';')[0]}{span}" if group is Group.COLUMN else _unread(raw, offer)
             if offer.note and group is Group.COLUMN:
                 group, why = Group.GRAVE, offer.note
             text = offer.text.replace("coefficient A=?", "coefficient")
@@ -159,8 +155,17 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
                 argument("--map", name, offer.text or OPEN), True,
             )  # fmt: skip
         elif (said := found.mapping.get(name)) is not None and not (said.name == "ignore" and len(raw.columns) > MANY):
-            why = offer.why.partition(";")[0] if offer.certain else "said"
+            by = "accepted" if name in found.accepted else "said"
+            why = offer.why.partition(";")[0] if offer.certain else by
             yield Line(name, str(said), why + span, Group.COLUMN, f'Column "{name}": {said}; {offer.why}.')
+
+
+def _unread(raw: RawTable, offer: Proposal) -> str:
+    """Why a column is open; a unit that nobody knows by the line where it stands."""
+    if offer.unread:
+        place = f"line {raw.header_line}: " if raw.header_line and raw.dialect.get("units") == "in the header" else ""
+        return place + offer.why.partition("; ")[2]
+    return offer.why.replace("; no unit is stated", "; unit?")
 
 
 def _covered(offer: Proposal) -> str:
@@ -169,7 +174,7 @@ def _covered(offer: Proposal) -> str:
         return ""
     if "coefficient" in offer.text:
         return "by coefficients.area" + " and .length" * ("L=?" in offer.text)
-    return "by columns.units" if without_unit(offer.text) else ""
+    return "by columns.units" if without_unit(offer) else ""
 
 
 def _doubtful(doubt: Doubt) -> Line:

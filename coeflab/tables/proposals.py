@@ -26,7 +26,7 @@ from coeflab.tables.column_map import (
     share,
 )
 from coeflab.tables.evidence import TURN
-from coeflab.tables.mapping import MARKS
+from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.words.axes import BODY_AXES
 
@@ -117,6 +117,7 @@ _PRIME = r"([XYZKMN])['\u2032\u2019]?"
 _THOUSAND = re.compile(
     rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
 )
+_BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may be a unit behind a name
 _MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
@@ -136,12 +137,15 @@ class Proposal:
         The format itself fixes it, or the file uses coeflab's own names and a unit.
     note : str
         What a person should read beside it.
+    unread : str
+        The unit that the file writes, where it is none that the column can have.
     """
 
     text: str
     why: str
     certain: bool = False
     note: str = ""
+    unread: str = ""
 
     @property
     def whole(self) -> bool:
@@ -192,7 +196,12 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     said_of = stated or {}
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
     one = _with_unit(column, said, why, certain, by)
-    if one.text.endswith(f"[{OPEN}]") and said_of.get(UNITS_OF) == "SI" and said.dimension not in ("angle", "none"):
+    if (
+        one.text.endswith(f"[{OPEN}]")
+        and not one.unread
+        and said_of.get(UNITS_OF) == "SI"
+        and said.dimension not in ("angle", "none")
+    ):
         return Proposal(
             f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
         )
@@ -324,15 +333,38 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     try:
         whole = read_column_map(f"{name} [{unit}]") if unit else None
     except InputError:
-        return Proposal(f"{name} [{OPEN}]", f"{why}; its unit [{column.unit}] is none of {said.dimension}")
+        return _unread(name, said, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)
         return Proposal(str(whole), by_both, certain)
+    if not unit and said.dimension != "angle" and (m := _BEHIND.search(column.name)):
+        return _unread(name, said, m[1].strip(), why)
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     if said.dimension == "angle" and _whole_degrees(column.values):
         return Proposal(f"{name} [deg]", f"{why}; whole numbers")
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
+
+
+def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
+    """A column whose unit stands in the file and cannot be read: a person says it, and nothing else does."""
+    example = EXAMPLES[said.dimension].replace("*", " ")
+    wanted = f"its unit [{unit}] is none known of {said.dimension}: say such as {name} [{example}]"
+    wanted += f" or {name} [k{example}]" * (example[0] == "N")
+    return Proposal(f"{name} [{OPEN}]", f"{why}; {wanted}", unread=unit)
+
+
+def taken_as(one: Assigned) -> str:
+    """What a unit text that nobody knows was taken for; empty where the file's unit is known, or there is none."""
+    unit = " ".join(one.column.unit.split())
+    if (
+        unit in ("", "-", "1")
+        or one.said.pure
+        or one.said.name in WORDS
+        or _fits(UNITS.get(unit.casefold(), unit), one.said.dimension)
+    ):
+        return ""
+    return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
 
 
 def _whole_degrees(values: Array) -> bool:

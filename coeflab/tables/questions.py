@@ -110,9 +110,11 @@ def questions(
     return tuple(_offered(q, raw, words) for q in out)
 
 
-def without_unit(text: str) -> bool:
-    """Whether a proposal lacks a unit that all columns without one may share; angles are asked one by one."""
-    return text.endswith(f"[{OPEN}]") and read_column_map(text.partition(" [")[0]).dimension not in ("angle", "none")
+def without_unit(offer: Proposal) -> bool:
+    """Whether a column states no unit, so that one for all such columns may give it; angles are asked one by one."""
+    if offer.unread or not offer.text.endswith(f"[{OPEN}]"):
+        return False
+    return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
 
 
 def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator[Question]:
@@ -129,7 +131,7 @@ def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator
             LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
             "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length",
         )  # fmt: skip
-    if any(without_unit(text) for text in texts):
+    if any(map(without_unit, offers)):
         yield Question(
             UNITS_OF, "Unit of the columns that state none: SI is N, N m, m/s, rad/s and m; another one column by column, such as "
             "Fy=Y [kN], and Fy=Y' [-] for a prime", "SI (N, N m, m/s, rad/s) for all; or Fy=Y [kN]",

@@ -29,6 +29,7 @@ from coeflab.tables.conditions import (
     NamePattern,
     NoConditionError,
     condition_of,
+    in_a_list,
     named,
 )
 from coeflab.tables.proposals import named_as
@@ -313,6 +314,6 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
             why = f"The name does not fit {shown(pattern.text)}. {SPELT}. " if pattern and unfit else ""
             out.append(InputError(
                 f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
-                advice=f"{why}Where they are zero, a list of runs says so; or a second --name makes a table of these.",
+                advice=f"{why}Or {in_a_list(names[0])}. Where they are zero, it says so; or a second --name makes a table of these.",
             ))  # fmt: skip
     return out

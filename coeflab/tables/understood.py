@@ -21,7 +21,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import Proposal, proposals
+from coeflab.tables.proposals import Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
@@ -74,6 +74,8 @@ class Understood:
         Rates whose sign the numbers contradict and that no person has judged, and rates about another axis than the forces say.
     about : mapping of str to str
         The long explanation of every key, said ones too.
+    accepted : frozenset of str
+        Columns whose proposal was accepted: nobody named them.
     """
 
     proposals: tuple[Proposal, ...]
@@ -85,6 +87,7 @@ class Understood:
     complaints: tuple[InputError, ...] = ()
     doubts: tuple[Doubt, ...] = ()
     about: Mapping[str, str] = field(default_factory=dict)
+    accepted: frozenset[str] = frozenset()
 
 
 def understood(
@@ -107,10 +110,12 @@ def understood(
     offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
+    accepted: set[str] = set()
     for column, offer in zip(raw.columns, offers, strict=True):
         one = next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
         if one is None and offer.whole and (offer.certain or accept):
             one = read_column_map(offer.text)
+            accepted.add(column.name)
         if one is None:
             still.append((column, offer))
         else:
@@ -132,6 +137,7 @@ def understood(
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
+    shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -147,7 +153,9 @@ def understood(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    return Understood(offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about)
+    return Understood(
+        offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
+    )
 
 
 def _with_frame(raw: RawTable, settings: Settings) -> Settings:

@@ -84,6 +84,38 @@ def test_numbers_stay_while_the_form_changes(drift: Path, tmp_path: Path, monkey
     assert (table.conditions.density, table.conditions.speed, table.scaling.length) == (998.2, 2.0, 4.0)
 
 
+MONITORS = '"run","beta (deg)","Fy Monitor: Fy Monitor (kN)","Moment Z Monitor: Moment Z Monitor {}"\n' + "".join(
+    f"{i},{b},{-0.01 * b},{0.02 * b}\n" for i, b in enumerate((-8, -4, 0, 4, 8))
+)
+
+
+@pytest.mark.parametrize("written", ["(kN-m)", "(kN.m)", "(kNm)", "(kN m)", "(kN_m)", "(kN×m)", "[kN-m]"])
+def test_a_moment_in_kilonewton_metres_is_read_as_its_file_says(tmp_path: Path, written: str) -> None:
+    """However the product is written, and whatever columns.units says of columns that state none."""
+    file = tmp_path / "monitors.csv"
+    file.write_text(MONITORS.format(written))
+    done = invoke("import", file, "--out", tmp_path / "out", "--accept", *sets(columns__units="SI"))
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").forces["N"].tolist() == pytest.approx([160.0, 80.0, 0.0, -80.0, -160.0])  # z up
+
+
+@pytest.mark.parametrize("written", ["(kNxm)", "[kNxm]", "(kN*m*K)"])
+def test_a_unit_that_nobody_knows_is_never_si(tmp_path: Path, written: str) -> None:
+    file = tmp_path / "monitors.csv"
+    file.write_text(MONITORS.format(written))
+    done = invoke("import", file, "--out", tmp_path / "out", "--accept", *sets(columns__units="SI"))
+    assert done.exit_code == 2
+    assert "Y [kN] accepted; -0.08" in flat(done.output)
+    (column,) = left_open(done)
+    unit = written[1:-1]
+    assert f"line 1: its unit [{unit}] is none known of moment: say such as N [N m] or N [kN m]" in flat(done.output)
+    assert not (tmp_path / "out").exists()
+    by_hand = (*sets(columns__units="SI"), "--map", f"{column}=N [kN m]")
+    done = invoke("import", file, "--out", tmp_path / "out", "--accept", *by_hand)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").forces["N"].tolist() == pytest.approx([160.0, 80.0, 0.0, -80.0, -160.0])  # z up
+
+
 @pytest.mark.parametrize(("answer", "sign"), [("-r' [-]", -1.0), ("r' [-]", 1.0)])
 def test_a_rate_that_the_numbers_contradict_is_open(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, sign: float

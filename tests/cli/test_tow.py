@@ -93,12 +93,19 @@ def test_a_dry_run_says_what_it_will_take_and_leaves_nothing(tmp_path: Path, env
     assert done.stdout.startswith(
         "spheroid: 6 conditions on 1 mesh by planted 1, about 3 min on 2 cores, up to\n400 MB."
     )
+    assert "\n1 m/s, 998 kg/m^3, Re 1.2e6.\n" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "  mesh/medium_upper                             50k  100 MB   5 s\n" in done.stdout
     assert "  yaw+0.1            r' 0.1     z<0   medium    50k  200 MB  60 s\n" in done.stdout
     assert "Zw' = Yv', Mw' = -Nv'" in flat(done.stdout)
     assert done.stdout.endswith("Next: coeflab tow tow_spheroid --matrix tank.toml --out runs/spheroid\n")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["tank.toml"]
+
+
+def test_a_dry_run_without_a_tank_file_names_its_defaults(tmp_path: Path, environment: dict[str, str]) -> None:
+    dry = run(tmp_path, environment, "suboff_bare_hull", "--solver", "estimate", "--dry-run")
+    assert dry.returncode == 0, dry.stderr
+    assert "\n2 m/s, 998.2 kg/m^3, Re 8.5e6 (defaults; --matrix tank.toml changes them).\n" in dry.stdout
 
 
 def test_a_missing_solver_says_what_to_install(tmp_path: Path, environment: dict[str, str]) -> None:

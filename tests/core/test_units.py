@@ -56,6 +56,20 @@ EXACT = [
     ("deg.s⁻¹", "rate", math.pi / 180.0),
     ("N.m", "moment", 1.0),
     ("kN.m", "moment", 1e3),
+    *[
+        (f"kN{between}m", "moment", 1e3)
+        for between in ("", " ", "-", " - ", "_", "*", "·", "⋅", "•", "∙", "×", " x ", "\u2010", "\u2011")
+    ],
+    *[(f"N{between}m", "moment", 1.0) for between in (" ", "-", "_", "*", "×")],
+    ("MNm", "moment", 1e6),
+    ("MN-m", "moment", 1e6),
+    ("Nmm", "moment", 1e-3),
+    ("N-mm", "moment", 1e-3),
+    ("lbf-ft", "moment", 0.3048 * 4.4482216152605),
+    ("lbf.ft", "moment", 0.3048 * 4.4482216152605),
+    ("lbf-in", "moment", 0.0254 * 4.4482216152605),
+    ("in-lbf", "moment", 0.0254 * 4.4482216152605),
+    ("kgf-m", "moment", 9.80665),
     ("kg.m2", "inertia", 1.0),
 ]
 
@@ -70,7 +84,7 @@ def test_factors(unit: str, dimension: str, expected: float) -> None:
     [
         ("-", "angle"), ("", "angle"), ("deg", "none"), ("rad", "none"), ("1/s", "rate"), ("rev", "none"),
         ("N*m/rad", "moment"), ("N/rad", "force"), ("rad*m/s", "speed"), ("sr", "angle"), ("rad^2", "angle"),
-        ("kn", "force"), ("kN", "speed"), ("degC", "length"), ("N", "moment"), ("dB", "none"), ("m**0", "none"), ("m0", "none"), ("N2", "force"), ("m-", "length"), ("m9", "volume"),
+        ("kn", "force"), ("kN", "speed"), ("degC", "length"), ("N", "moment"), ("dB", "none"), ("m**0", "none"), ("m0", "none"), ("N2", "force"), ("m-", "length"), ("kN-s", "moment"), ("kNxm", "moment"), ("N--m", "moment"), ("m9", "volume"),
     ],
 )  # fmt: skip
 def test_refused(unit: str, dimension: str) -> None:

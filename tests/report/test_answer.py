@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.cli.show import plain_lines
+from coeflab.core.table import Severity
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table, study_summary
@@ -19,6 +20,7 @@ from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, s
 from coeflab.report.figures.panel import SIZE
 from coeflab.report.figures.svg import text_width
 from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.study.checks import coverage
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
@@ -153,6 +155,35 @@ def test_why_there_is_no_value():
     made = answer(small_study(FEW), drawn=False)
     assert [r.status for r in made.rows] == ["too few points", "too few points", "no data"]
     assert "too few points" in made.sentence
+
+
+def test_campaigns_of_one_hull_under_two_bodies_are_no_lack_of_data():
+    """Each body has what the other lacks: mostly two imports, which write the names of their folders."""
+    study = small_study(FULL)
+    (fit,) = study.fits
+    first, second = (
+        replace(
+            fit, campaign=name, body=name, sweeps=(),
+            coefficients=replace(
+                fit.coefficients, body=name,
+                coefficients=tuple(replace(c, campaign=name, body=name) for c in fit.coefficients.coefficients if c.symbol in own),
+            ),
+        )
+        for name, own in (("drift", ("Yv",)), ("attack", ("Nv",)))
+    )  # fmt: skip
+    two = replace(study, fits=(first, second), missing=())
+    assert set(two.by_body) == {"drift", "attack"}
+    rows = {r.symbol: r.status for r in answer(two).rows if r.value is None}
+    of_other = {s for s in two.by_body["attack"] if s in rows}
+    assert of_other
+    assert {rows[s] for s in of_other} == {"fitted for body attack"}
+    (warned,) = coverage._bodies(two)
+    assert warned.severity is Severity.WARN
+    assert "give its campaigns one campaign.body" in warned.comment
+    one = replace(two, fits=(first, replace(second, body="drift", coefficients=replace(second.coefficients, body="drift",
+        coefficients=tuple(replace(c, body="drift") for c in second.coefficients.coefficients)))))  # fmt: skip
+    assert not one.by_body
+    assert not study.by_body
 
 
 def test_a_rejected_form_has_a_value_and_no_interval():

@@ -345,6 +345,12 @@ def test_toml_lists_need_units(tmp_path: Path, value: str) -> None:
         ("b{beta:deg:p=-}", "bp4", {"beta": -4.0}),
         ("b{beta:deg:p=.}", "b4p5", {"beta": 4.5}),
         ("b{beta:deg:m=-,p=.}", "bm0p25", {"beta": -0.25}),
+        ("b{beta:deg:m=-,p=+,p=.}", "bm2p5", {"beta": -2.5}),
+        ("b{beta:deg:m=-,p=+,p=.}", "bp2p5", {"beta": 2.5}),
+        ("b{beta:deg:m=-,p=+,p=.}", "bp10", {"beta": 10.0}),
+        ("b{beta:deg:p=.,m=-,p=+}", "b10", {"beta": 10.0}),
+        ("b{beta:deg:m=-,p=+,p=.}", "bmp5", None),
+        ("b{beta:deg:p=-,p=+}", "bp5", None),
         ("b{beta:deg:port=-,stbd=+}", "bstbd6", {"beta": 6.0}),
         ("b{beta:deg:_=.}", "b4", None),
         ("r{r:rad/s:x0.01}", "r015", {"r": 0.15}),
@@ -359,7 +365,7 @@ def test_toml_lists_need_units(tmp_path: Path, value: str) -> None:
     ],
 )
 def test_names(pattern: str, name: str, expected: dict[str, Any] | None) -> None:
-    if pattern in ("{*}", "b{beta:deg:_=.}"):
+    if pattern in ("{*}", "b{beta:deg:_=.}", "b{beta:deg:p=-,p=+}"):
         with pytest.raises(InputError):
             name_pattern(pattern)
         return
@@ -405,13 +411,14 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
         collect(tmp_path, names="b{beta:deg}_r{r:rad/s}")
     assert "no beta and r for odd" in str(caught.value)
     assert 'does not fit "b{beta:deg}_r{r:rad/s}"' in str(caught.value)
+    assert "--runs list.csv with the columns run,beta [deg]" in str(caught.value)
 
 
 @pytest.mark.parametrize(("names", "pattern"), [
     ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:UNIT}"),
     ("bm4p5 b4 b0", "b{beta:deg:m=-,p=.}"), ("all/aoa_n2.csv all/aoa_2.csv", "aoa_{alpha:deg:n=-}"), ("run7_b4 run7_b8", "run7_b{beta:deg}"),
     ("case1 case2", "case{NAME:UNIT}"), ("b4_b8 b6_b8 b6_b9", "b{beta:deg}_b{NAME:UNIT}"), ("fine_4 coarse_4", ""), ("b4", ""), ("x y", ""),
-    ("bp4p5 bm4", ""),
+    ("bp4p5 bm4", "b{beta:deg:m=-,p=+,p=.}"), ("alpha_m2p5 alpha_p10 alpha_0", "alpha_{alpha:deg:m=-,p=+,p=.}"),
 ])  # fmt: skip
 def test_the_pattern_that_names_seem_to_have(names: str, pattern: str) -> None:
     assert likely_patterns(names.split()) == ((pattern,) if pattern else ())

@@ -16,6 +16,7 @@ from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.formats.export import lost_by_all
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.report.sections.conventions import conventions_section
 from coeflab.study.checks import data_gate, sizes, symmetry
 from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
@@ -227,6 +228,41 @@ def test_a_turn_within_the_length_of_the_body_is_warned_of() -> None:
     assert not found(r)
     (text,) = found(57.3 * r)
     assert "r'; largest |r'| = 63: a circle of 0.016 lengths in radius; Is r in deg/s declared as rad/s" in text
+
+
+def test_moments_a_thousand_times_too_small_for_their_forces_are_warned_of() -> None:
+    """kN m declared as N m; a moment that nobody measured is none."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+
+    def found(factor: float) -> list[str]:
+        changed = replace(table, forces={**table.forces, "N": factor * table.forces["N"]})
+        return [f"{c.statistic}; {c.comment}" for c in sizes.check(replace(own, tables=(changed,)))]
+
+    assert not found(1.0)
+    assert not found(0.1)
+    assert not found(0.0)
+    (text,) = found(0.001)
+    assert text.startswith("largest |N'| = 0.0004 of the largest |Y'|; Are moments in kN m declared as N m")
+
+
+def test_a_moved_reference_point_is_fitted_anew_and_said() -> None:
+    """Rows moved and fitted against slopes moved: not the same number, but within U95."""
+    own = study("suboff_roddy_3", "slope_at_origin")
+    (table,) = own.tables
+    dx = 0.05 * table.scaling.length
+    planned = PlannedTable(shipped("cfd_data") / "suboff_roddy_3", ("slope_at_origin",), {})
+    there = table.reference_point + np.array([dx, 0.0, 0.0])
+    moved = run(Plan(name="s", title="", tables=(planned,), wanted=(), reference_point=there))
+    first, second = ({c.symbol: c for c in one.coefficients if c.value is not None} for one in (own, moved))
+    assert second["Yv"].value == first["Yv"].value
+    by_hand = first["Nv"].value - 0.05 * first["Yv"].value
+    assert second["Nv"].value != by_hand
+    assert abs(second["Nv"].value - by_hand) < min(first["Nv"].u95, second["Nv"].u95)
+    said = [
+        any("moved there and then fitted" in t for t in conventions_section(one).paragraphs) for one in (own, moved)
+    ]
+    assert said == [False, True]
 
 
 def test_numerical_zeros_are_no_findings() -> None:

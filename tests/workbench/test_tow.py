@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,7 +15,9 @@ from coeflab.cli import show
 from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report.tables import tow as tables
+from coeflab.study.towed import TowedRow
 from coeflab.tank.folder import CAMPAIGN, PLAN, has_begun, read_plan
 from coeflab.tank.jobs import EARLIER, Job, JobState, only_one, outstanding
 from coeflab.tank.states import states_of
@@ -367,3 +370,21 @@ def test_no_tow_in_the_folder(tmp_path: Path) -> None:
     (tmp_path / PLAN).write_text(json.dumps({"kind": "coeflab tow 9"}))
     with pytest.raises(InputError, match="coeflab tow 9"):
         room.opened(tmp_path)
+
+
+def test_estimates_do_not_speak_like_runs() -> None:
+    """Nothing converged, and a value whose interval contains zero says so."""
+    one = Coefficient("Yv", -0.0066, 0.0086, Status.ESTIMATE, origin="estimate")
+    rows = tuple(
+        TowedRow(s, replace(one, symbol=s, value=value), None, "", "", (None,), verdict=None)
+        for s, value in (("Yv", -0.0066), ("Nv", -0.0143))
+    )
+    assert tables.is_estimated(rows)
+    assert tables.outcome((None,) * 13, tables.is_estimated(rows)) == "13 conditions estimated, none run."  # type: ignore[arg-type]
+    tank = SimpleNamespace(
+        title="t", reference_point=(0.0, 0.0, 0.0), datum=SimpleNamespace(id="nose"), scaling="LOA 1 m"
+    )
+    said = {row[0]: row[3] for row in tables.six(tank, rows).rows}  # type: ignore[arg-type]
+    assert said == {"Yv'": "estimate; sign open", "Nv'": "estimate"}
+    ran = (replace(rows[0], coefficient=replace(one, status=Status.OK, origin="fit")), rows[1])
+    assert not tables.is_estimated(ran)

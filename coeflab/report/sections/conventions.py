@@ -233,6 +233,7 @@ CONTROLS = (
     "A control angle keeps the sign of its table. Example: in Roddy's tests of SUBOFF (1990, Table 4) a positive rudder gives Y to "
     "starboard (Ydr' = 0.005929), a positive stern plane gives Z up (Zds' = -0.005603)."
 )
+MOVED = "The rows of the tables are moved there and then fitted: slopes that are moved after a fit about another point differ a little."
 POTENTIAL = (
     "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
     "simulator that adds C_A(nu) nu must not count them twice."
@@ -290,7 +291,8 @@ def _reference_points(study: Study) -> str:
         at = f"({x:.5g}, {y:.5g}, {z:.5g}) m from {f.coefficients.datum}"
         places.setdefault(at, []).append(f.campaign)
     if len(places) == 1:
-        return f"Moments and velocities refer to the point {next(iter(places))}, in the axes above."
+        moved = "" if study.plan.reference_point is None else f" {MOVED}"
+        return f"Moments and velocities refer to the point {next(iter(places))}, in the axes above.{moved}"
     each = "; ".join(f"{', '.join(dict.fromkeys(names))}: {at}" for at, names in places.items())
     return f"Moments and velocities refer to these points, in the axes above. {each}." if each else ""
 

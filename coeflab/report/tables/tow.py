@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from coeflab.study.towed import TowedRow
 
 NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
+SIGN_OPEN = "sign open"
 MUCH = 0.05  # of the smallest force of a sweep, that a straight run has where symmetry says zero
 _ZERO = ((PORT_STARBOARD, Kind.DRIFT, "YN"), (UP_DOWN, Kind.ATTACK, "ZM"))
 LEAST = 1e-4  # of a thousandth of a primed unit
@@ -197,7 +198,8 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
             cells.append((primed(r.symbol), r.missing, "", "" if unfitted else shortened(r.why, LONGEST)))
             continue
         status = "" if r.coefficient.status is Status.OK else r.coefficient.status.replace("_", " ")
-        said = "; ".join(filter(None, (status, r.why)))
+        is_open = r.value is not None and r.u95 is not None and abs(r.value) <= r.u95 and SIGN_OPEN not in status
+        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, r.why)))
         cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(said, LONGEST)))
     about = ", ".join(f"{x:.4g}" for x in tank.reference_point)
     notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
@@ -205,11 +207,26 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
     return Table(shortened(tank.title, 79), ("", "value", "U95", ""), tuple(cells), tuple(notes), frozenset({0, 3}))
 
 
+def water(tank: Tank, by_default: bool = False) -> str:
+    """Speed, density and Reynolds number, and where they come from if nobody said them."""
+    at = tank.conditions
+    reynolds = at.reynolds_on(tank.scaling.length)
+    number = "" if not reynolds else f", Re {reynolds:.1e}".replace("e+0", "e").replace("e+", "e")
+    defaults = " (defaults; --matrix tank.toml changes them)" * by_default
+    return f"{at.speed:.4g} m/s, {at.density:.5g} kg/m^3{number}{defaults}."
+
+
+def is_estimated(rows: Sequence[TowedRow]) -> bool:
+    """Whether all values are estimates from the shape: nothing was run."""
+    known = [r.coefficient for r in rows if r.coefficient is not None]
+    return bool(known) and all(c.origin == "estimate" for c in known)
+
+
 def covers(rows: Sequence[TowedRow]) -> str:
     """What U95 is of, and what it leaves out; empty where no derivative has one."""
     if not any(r.u95 is not None for r in rows):
         return ""
-    if all(r.coefficient is None or r.coefficient.origin == "estimate" for r in rows):
+    if is_estimated(rows):
         return "U95: 95 %, the scatter and the spread of the methods of estimates. No measurement and no CFD."
     said = "U95: 95 %, of the fit and the scatter of the runs about it."
     studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
@@ -249,8 +266,10 @@ def symmetry_checks(tank: Tank, runs: Sequence[TowedRun]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def outcome(runs: Sequence[TowedRun]) -> str:
-    """How many conditions converged, and what became of the others."""
+def outcome(runs: Sequence[TowedRun], estimated: bool = False) -> str:
+    """How many conditions converged, and what became of the others; of estimates, which never ran, how many there are."""
+    if estimated:
+        return f"{len(runs)} condition{'s' * (len(runs) != 1)} estimated, none run."
     bad = [r.status for r in runs if not r.counts]
     parts = [f"{len(runs) - len(bad)} of {len(runs)} conditions converged"]
     return ", ".join([*parts, *(f"{bad.count(s)} {s}" for s in dict.fromkeys(bad))]) + "."

@@ -154,9 +154,27 @@ def _moment_of_the_other_plane(t: ForceTable) -> Check | None:
     return None
 
 
+def _bodies(study: Study) -> list[Check]:
+    """Campaigns whose bodies share no coefficient: mostly tests of one body under two names."""
+    found = "; ".join(f"{', '.join(map(primed, symbols))}: {body}" for body, symbols in study.by_body.items())
+    if not found:
+        return []
+    return [
+        Check(
+            "coverage",
+            " and ".join(study.by_body),
+            Severity.WARN,
+            found,
+            "coefficients of one body",
+            "If these are one body, give its campaigns one campaign.body: an import writes the folder's name.",
+        )
+    ]
+
+
 def check(study: Study) -> Sequence[Check]:
     """Findings on every sweep, and on every table whose only moment is that of the other plane."""
     out = [c for t in study.tables if (c := _moment_of_the_other_plane(t)) is not None]
+    out += _bodies(study)
     for f in study.fits:
         groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:

@@ -32,6 +32,7 @@ LEVEL, SHARED = 0.02, 0.005
 AHEAD = 0.02  # of the speed
 SAME = 0.006  # rad or primed: settings that count as one, 0.34 degrees
 ZEROS = 1e-9  # of the largest primed force or moment: readings below it are numerical zeros
+OPPOSITE = 0.05  # of what is expected: a reading so near to its opposite has the other sign
 LARGEST_SWEEP = 200
 SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("q", "ZM"), "p": ("p", "K"),
           "dr": ("dr", "YNK"), "ds": ("ds", "ZM"), "db": ("db", "ZM")}  # fmt: skip
@@ -220,8 +221,9 @@ def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
     expected = _si(table, component, row, float(cell.seen.expected[cell.at]))
     scatter = _si(table, component, row, float(cell.seen.scatter[cell.at]))
     unit = "N m" if component in MOMENTS else "N"
-    found = number(float(table.forces[component][row]), 4)
-    return f"{component} = {found} {unit}, expected {number(expected, 4)} ± {number(scatter, 2)} {unit}"
+    value = float(table.forces[component][row])
+    text = f"{component} = {number(value, 4)} {unit}, expected {number(expected, 4)} ± {number(scatter, 2)} {unit}"
+    return text + ": sign?" * (abs(value + expected) <= max(scatter, OPPOSITE * abs(expected)) < abs(expected))
 
 
 def _without(x: Array, y: Array, se: Array | None, at: NDArray[np.bool_]) -> origin_slope.OriginSlope:
@@ -339,7 +341,7 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
         _where(table, row),
         Severity.WARN,
         "; ".join([*said.cells, *said.values]),
-        f"probability of such a deviation above {LEVEL:g}/{readings}"
+        f"a deviation with a chance above {LEVEL:g}/{readings} if the row is right"
         if said.cells
         else "no row moves a value by its U95",
         " ".join([*words, ADVICE if said.cells else INFLUENTIAL]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -14,7 +14,9 @@ from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 
-summary = "rates, primed slopes and X0' between friction of a slender body and a bluff plate of side L"
+summary = (
+    "rates, levers of forces, primed slopes and X0' between friction of a slender body and a bluff plate of side L"
+)
 citations = ("ittc1957", "schlichting1979", "hoerner1965", "jones1946")
 
 LARGEST = {"X0": 1.2, **dict.fromkeys(("Yv", "Zw"), 2.0), **dict.fromkeys(("Nv", "Mw", "Yr", "Zq", "Nr", "Mq"), 1.0)}
@@ -22,6 +24,9 @@ SLENDER = 20.0  # lengths of a body over its diameter: torpedoes and gliders hav
 WATER = 0.8e-6  # m^2/s, at 30 deg C: the thinnest that tests are run in, where the campaign states none
 OF_FRICTION = {"X0": 1.0, "Yv": 0.5, "Zw": 0.5}
 TIGHTEST = 2.0  # r' = L/R: the centre of the circle lies within the body's own length
+LEAST_LEVER = (
+    0.002  # largest moment of a sweep over its largest force and the length; shipped campaigns have 0.005 and more
+)
 NOBODYS = ("1 m", "unit length")  # lengths that are no body's
 
 
@@ -47,9 +52,13 @@ def check(study: Study) -> Sequence[Check]:
     Too large is beyond what a square plate of side L gives: broadside its drag (Hoerner, 1.17), edge on the lift slope pi/2 of
     aspect ratio 1 (Jones) with friction and separation on top, rounded up to 2; moments and rates have half of L as their
     lever. Too small is less than friction of the most slender body, with U95 to spare: a side velocity turns at least half of
-    the drag into a side force. Moments have no smallest size, as tail fins can balance them.
+    the drag into a side force. Slopes of moments have no smallest size, as tail fins can balance them; but the point where the force
+    acts moves along the body over a sweep, so that the largest moment of all rows has one.
     """
-    out = [c for table in study.tables for c in _rates(table, study.plan.scaling or table.scaling)]
+    out = []
+    for table in study.tables:
+        scaling = study.plan.scaling or table.scaling
+        out += [*_rates(table, scaling), *_levers(table, scaling)]
     for campaign, table in {t.campaign: t for t in study.tables}.items():
         scaling = study.plan.scaling or table.scaling
         if any(name in scaling.length_name for name in NOBODYS):
@@ -85,6 +94,22 @@ def _rates(table: ForceTable, scaling: Scaling) -> list[Check]:
                 f"Is {rate} in deg/s declared as rad/s (57 times too large), or the speed {table.conditions.speed:g} m/s too low?",
             ))  # fmt: skip
     return out
+
+
+def _levers(table: ForceTable, scaling: Scaling) -> Iterator[Check]:
+    """Moments a thousand times too small for the forces beside them: kN m declared as N m."""
+    for force, moment, moves in (("Y", "N", "vr"), ("Z", "M", "wq")):
+        if not {force, moment} <= table.forces.keys() or not set(moves) & set(table.varies):
+            continue
+        rows = table.sound(force) & table.sound(moment)
+        f, m = (np.abs(table.primed_force(c, scaling.length))[rows] for c in (force, moment))
+        lever = float(m.max() / f.max()) if m.size > 2 and f.max() > 0.0 else np.inf
+        if 0.0 < lever < LEAST_LEVER:
+            yield Check(
+                "sizes", f"{table.name} {moment}'", Severity.WARN,
+                f"largest |{moment}'| = {lever:.1g} of the largest |{force}'|", f"at least {LEAST_LEVER:g} of it",
+                f"Are moments in kN m declared as N m, or {scaling.length_name} = {scaling.length:g} m in mm?",
+            )  # fmt: skip
 
 
 def _at_least(c: Coefficient) -> float:
