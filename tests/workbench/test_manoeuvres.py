@@ -98,7 +98,7 @@ def test_a_turn_that_nothing_limits_is_said_to_be_undetermined() -> None:
     (section,) = manoeuvre_sections(replace(small_study(FULL), manoeuvres=made_up))
     (turn,) = section.subsections
     status = {row[0]: row[-2] for row in turn.tables[0].rows}
-    assert status["steady turning diameter"] == "not determined"
+    assert status["steady turning diameter"] == "no value"
     assert len(turn.figures) == 2
     assert len(turn.subsections[0].figures) >= 1
     assert turn.subsections[0].appendix
