@@ -14,7 +14,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
 from coeflab.study.study import Study
-from coeflab.study.validation import validations
+from coeflab.study.validation import by_measured_number, validations
 from coeflab.vehicle.reference import Reference, Relation
 
 MOST_LETTERS, MOST_NAMED = 240, 4
@@ -121,14 +121,16 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
 
 def _independent(study: Study) -> str:
     """How many computed coefficients agree with those measured on the same body; empty where none is compared."""
-    found = [v for v in validations(study, study.budgets) if v.within is not None]
-    if not found:
+    numbers = by_measured_number(validations(study, study.budgets))
+    if not numbers:
         return ""
+    found = [v for one in numbers for v in one]
     bodies = listed([b.replace("_", " ") for b in dict.fromkeys(v.body for v in found)])
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    beyond = f"; beyond U_V: {', '.join(outside)}" if outside else ""
-    inside = sum(bool(v.within) for v in found)
-    return f"Independent: {inside} of {len(found)} coefficients from CFD agree within U_V with the test of the same body ({bodies}){beyond}."
+    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of it)" for v in found if v.weak))
+    said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
+    inside = sum(all(v.within for v in one) for one in numbers)
+    return f"Independent: CFD meets {inside} of {len(numbers)} numbers measured on the same body ({bodies}) within U_V{said}."
 
 
 def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:

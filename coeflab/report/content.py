@@ -354,7 +354,7 @@ def _beyond_without_verdict(study: Study) -> list[str]:
     for tow in towed(study):
         reasons: dict[str, list[str]] = {}
         for r in tow.rows:
-            if r.verdict is None and r.validation is not None and r.validation.within is False:
+            if r.verdict is None and r.validation is not None and r.validation.beyond:
                 reasons.setdefault(r.why_none, []).append(primed(r.symbol))
         out += [
             f"Also beyond U_V, but not counted: {listed(symbols)} of {tow.tow.campaign}, as {why}."

@@ -30,6 +30,7 @@ from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.study import Study
 from coeflab.study.towed import AS_PRINTED, STATES, Towed
+from coeflab.study.validation import in_millions
 from coeflab.tables.force_table import Exclusion, ForceTable
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
@@ -278,7 +279,8 @@ def own_tow(found: Towed) -> Table:
     for r in found.rows:
         said.setdefault(r.why, []).append(primed(r.symbol))
     absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
-    where = f"Campaign {found.tow.campaign}{absent}." if found.tow.campaign else ""
+    run_at = "" if found.reynolds is None else f", Re {in_millions(found.reynolds)}"
+    where = f"Campaign {found.tow.campaign}{absent}{run_at}." if found.tow.campaign else ""
     every = len(found.rows) > 1 and len(said) == 1
     lacking = {r.why for r in found.rows if r.missing}
     reasons = [
@@ -301,7 +303,7 @@ def tow_against(found: Towed) -> Table:
         v = r.validation
         if v is None:
             continue
-        verdict = AGAINST[r.verdict]
+        verdict = f"weak: U_V is {v.share} of D" if r.verdict and v.weak else AGAINST[r.verdict]
         rows.append(
             (
                 primed(r.symbol), with_u95(v.computed, r.u95)[0], with_u95(v.measured, v.u_measured)[0],
@@ -323,6 +325,8 @@ def tow_against(found: Towed) -> Table:
     notes = [f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}." for test, symbols in tests.items()]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     judged = [r.validation for r in found.rows if r.validation is not None]
+    known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
+    notes += [f"Re {in_millions(s)} of the CFD, {in_millions(d)} of {test}." for test, (s, d) in known if s and d]
     notes += sentences_on_open((u for v in judged for u in v.lacking), computed=True, what="U_V leaves out, of the CFD")
     notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
     headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")

@@ -185,7 +185,7 @@ def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str
     rest = [n for n in left if n not in fixed]
     read = [n.removeprefix("error of ") for n in rest if n in READ]
     others = [n for n in rest if n not in READ]
-    said = [f"errors of {listed(read)}"] * bool(read) + others
+    said = [*([f"errors of {listed(read)}"] if read else []), *others]
     out = [f"{what}: {'; '.join(said)}."] if said else []
     known = [n for n in fixed if n != COUPLED]
     return [*out, f"Set in CFD, so without errors of readings: {listed(known)}."] if known else out
@@ -353,20 +353,27 @@ def validation(found: Sequence[Validation]) -> Table:
 
 
 def predictions(found: Sequence[Validation]) -> Table:
-    """Comparison error of every computed coefficient that has a verdict, in digits that go with U_V."""
+    """Comparison error of every computed coefficient, those with a verdict first, in digits that go with U_V."""
     rows = tuple(
         (
             primed(v.symbol), v.simulation, v.experiment, with_u95(v.computed, v.u_validation)[0], with_u95(v.measured, v.u_validation)[0],
-            *with_u95(v.error, v.u_validation), "no modelling error shown" if v.within else "beyond U_V",
+            *with_u95(v.error, v.u_validation), _verdict(v),
         )
-        for v in found
-        if v.within is not None
+        for v in sorted(found, key=lambda v: v.within is None)
     )  # fmt: skip
     headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     notes = (
         "Computed and measured on the same body, independently of each other; D is our fit to the points of the test.",
+        "No verdict without the numerical error of a grid study, nor on drag where the Reynolds numbers differ (Verdict).",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
+
+
+def _verdict(v: Validation) -> str:
+    """In words; a weak one with what makes it so."""
+    if v.within is None:
+        return "no verdict"
+    return f"weak: U_V is {v.share} of D" if v.weak else "no modelling error shown" if v.within else "beyond U_V"
 
 
 def derived(found: Sequence[Derived]) -> Table:
