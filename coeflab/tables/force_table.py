@@ -128,6 +128,8 @@ class ForceTable:
         Name of the table whose rows these are, turned by that symmetry; empty for rows that were run.
     primed : frozenset of str
         Components that the file has as primes by ``scaling``.
+    assumed : tuple of str
+        Angles whose sign was inferred from the sign of the slope, alpha or beta.
     """
 
     name: str
@@ -159,6 +161,7 @@ class ForceTable:
     symmetry: tuple[str, ...] = ()
     by_symmetry: str = ""
     primed: frozenset[str] = frozenset()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):

@@ -242,7 +242,8 @@ def test_a_row_that_the_slope_leaves_out_is_said_to_be_left_out_in_the_unit_of_t
     plain = table_of(v, {"Y": y})
     (in_newtons,) = warnings((plain,))
     (in_primes,) = warnings((replace(plain, primed=frozenset({"Y"})),))
-    assert in_newtons.statistic.startswith("Y = ") and " N, expected " in in_newtons.statistic
+    assert in_newtons.statistic.startswith("Y = ")
+    assert " N, expected " in in_newtons.statistic
     cell, value = in_primes.statistic.split("; ")
     own = float(plain.primed_force("Y", plain.scaling.length)[10])
     assert cell.startswith(f"Y' = {own:.4g}".rstrip("0"))

@@ -36,6 +36,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
 AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
+ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 WIDE = 0.25  # of the published value: a wider U95 passes what a reader would call a difference
 WEAK = f"U95 and the source's uncertainty, root sum of squares, exceed {100.0 * WIDE:.0f} % of the published value"
@@ -51,7 +52,10 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
         Only the coefficients of one campaign.
     """
     chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
-    return noun_tables.coefficients(chosen, covers=covers(study, chosen))
+    made = noun_tables.coefficients(chosen, covers=covers(study, chosen))
+    assumed = {(t.campaign, a): None for t in study.tables for a in t.assumed if campaign in (None, t.campaign)}
+    said = tuple(f"{c}: the sign of {a} is assumed, so that {ASSUMED[a]}' < 0; no source states it." for c, a in assumed)
+    return Table(made.title, made.headers, made.rows, (*said, *made.notes), made.left)
 
 
 # What a table of coefficients does without where a line is too narrow, the first one first.
