@@ -9,6 +9,7 @@ from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.glide_polar import munk_in_words
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import RIG
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
@@ -64,7 +65,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
-    out += filter(None, (_not_in_u95(study, rows), _independent(study)))
+    out += filter(None, (_not_in_u95(study, rows), *_as_stated(study, rows), _independent(study)))
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
@@ -117,6 +118,18 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     more = f" and {len(names) - MOST_NAMED + 1} more" if len(names) > MOST_NAMED else ""
     shown = names[: MOST_NAMED - 1] if more else names
     return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more}, see Coefficients."
+
+
+def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
+    """What sources of tests state of their uncertainty, where U95 leaves rig and balance out; a sentence each."""
+    mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
+    without = {
+        b.campaign for b in study.budgets if RIG in b.unassessed and (b.campaign, b.symbol.removesuffix("'")) in mine
+    }
+    said = dict.fromkeys(
+        t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
+    )
+    return tuple(f"U95 is without rig and balance; the source states {text.removesuffix('.')}." for text in said)
 
 
 def _independent(study: Study) -> str:

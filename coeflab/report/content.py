@@ -25,8 +25,8 @@ from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.coefficient import Status
-from coeflab.law.symbols import derivative, primed
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.symbols import derivative, primed, read_factors
 from coeflab.report.acceptance import headline_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
@@ -398,7 +398,9 @@ def verdict(study: Study) -> Section:
 
 
 def _harvest(study: Study) -> str:
-    found = [c for c in study.coefficients if c.value is not None]
+    every = [c for c in study.coefficients if c.value is not None]
+    copied = {(f.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
+    found = [c for c in every if (c.campaign, c.symbol) not in copied]
     bounded = sum(c.u95 is not None for c in found)
     campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
     if not campaigns:
@@ -413,7 +415,20 @@ def _harvest(study: Study) -> str:
     if not found:
         return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
-    return f"Found: {_counted(len(found), 'coefficient')}, {uncertain}, from {source}"
+    each = f"Found: {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
+    alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
+    each += f" U95 of {alone} is scatter alone." * bool(alone)
+    copies = len(every) - len(found)
+    return each + f" {copies} more {'is a copy' if copies == 1 else 'are copies'} by symmetry." * bool(copies)
+
+
+def _by_kind(found: Sequence[Coefficient]) -> str:
+    """How many are forces at rest, slopes, and terms of higher degree."""
+    degrees = [len(read_factors(c.symbol.removesuffix("'")[1:]) or ()) for c in found]
+    counts = (degrees.count(1), degrees.count(0), sum(d > 1 for d in degrees))
+    return ", ".join(
+        f"{n} {name}" for n, name in zip(counts, ("linear", "at rest", "of higher degree"), strict=True) if n
+    )
 
 
 def _without_value(study: Study) -> list[str]:

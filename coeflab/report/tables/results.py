@@ -54,7 +54,9 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
     made = noun_tables.coefficients(chosen, covers=covers(study, chosen))
     assumed = {(t.campaign, a): None for t in study.tables for a in t.assumed if campaign in (None, t.campaign)}
-    said = tuple(f"{c}: the sign of {a} is assumed, so that {ASSUMED[a]}' < 0; no source states it." for c, a in assumed)
+    said = tuple(
+        f"{c}: the sign of {a} is assumed, so that {ASSUMED[a]}' < 0; no source states it." for c, a in assumed
+    )
     return Table(made.title, made.headers, made.rows, (*said, *made.notes), made.left)
 
 
