@@ -221,6 +221,7 @@ def tow(found: Towed) -> dict[str, Any]:
         "name": found.tow.name,
         "body": found.body,
         "campaign": found.tow.campaign or None,
+        "reynolds": found.reynolds,
         "rows": [
             {
                 "symbol": primed(r.symbol),

@@ -153,7 +153,7 @@ def answered(found: Answer) -> None:
 def _tows(study: Study) -> None:
     """Of every body that was towed the coefficients, and its comparison error; of the others that they were not."""
     from coeflab.core.wording import listed
-    from coeflab.report.tables import results as tables
+    from coeflab.report.tables import own_cfd
     from coeflab.study.towed import towed
 
     absent = []
@@ -161,8 +161,8 @@ def _tows(study: Study) -> None:
         if not tow.tow.campaign:
             absent.append(f"{tow.tow.name} ({listed(tow.tow.absent)})")
             continue
-        show.table(tables.own_tow(tow))
-        show.table(tables.tow_against(tow))
+        show.table(own_cfd.own_tow(tow))
+        show.table(own_cfd.tow_against(tow))
     if absent:
         show.sentence(f"Not towed yet: {listed(absent)}.")
 

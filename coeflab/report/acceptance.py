@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from coeflab.core.table import ABSENT, Table, html_by
 from coeflab.core.types import brief, in_angles
+from coeflab.core.wording import listed
+from coeflab.law.symbols import primed
 from coeflab.study.study import Study
-from coeflab.study.validation import printed_indices, validations
+from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
 
 if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile
@@ -233,21 +235,49 @@ def held(acceptance: Acceptance) -> Held:
 def held_of_study(study: Study) -> Held:
     """The same of a plan: computed against measured coefficients are predicted, published evaluations of its data recomputed.
 
-    The numbers of other bodies have no verdict and do not count.
+    A measured number that several computations meet counts once. The numbers of other bodies have no verdict and do not count.
     """
-    predicted = [v.within for v in validations(study, study.budgets) if v.within is not None]
+    predicted = _predicted(study)
     printed = [c.passed for c in study.comparisons if c.passed is not None]
     printed += [i.holds for i in printed_indices(study)]
     found = {Basis.PREDICTED: predicted, Basis.PRINTED: printed}
     return {b: (sum(found.get(b, ())), len(found.get(b, ()))) for b in Basis}
 
 
-KINDS = ("predictions by CFD", "re-fits of the authors' data", "recomputed stability indices")
+def _predicted(study: Study) -> list[bool]:
+    """Of every measured number that CFD predicts with a verdict, whether all computations of it lie within U_V."""
+    return [all(v.within for v in one) for one in by_measured_number(validations(study, study.budgets))]
+
+
+def on_predictions(study: Study) -> tuple[str, ...]:
+    """How many comparisons stand behind the predicted numbers, which are weak, and which have no verdict; sentences."""
+    found = validations(study, study.budgets)
+    judged = [v for v in found if v.within is not None]
+    numbers = by_measured_number(found)
+    out = []
+    if len(judged) > len(numbers):
+        out.append(
+            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured numbers; a number counts once, and holds where every "
+            "computation of it does."
+        )
+    if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
+        out.append(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: {listed(weak)}.")
+    none: dict[tuple[str, str], list[str]] = {}
+    for v in found:
+        if v.within is None:
+            none.setdefault((v.why_none, v.simulation), []).append(primed(v.symbol))
+    if none:
+        each = "; ".join(f"{', '.join(s)} of {campaign}: {why}" for (why, campaign), s in none.items())
+        out.append(f"Computed and measured, without a verdict: {each}.")
+    return tuple(out)
+
+
+KINDS = ("measured numbers predicted by CFD", "re-fits of the authors' data", "recomputed stability indices")
 
 
 def headline_of_study(study: Study) -> tuple[str, ...]:
-    """How many numbers of a plan hold, kind by kind, in one sentence; empty without any."""
-    predicted = [bool(v.within) for v in validations(study, study.budgets) if v.within is not None]
+    """How many numbers of a plan hold, kind by kind, and what stands behind the predicted ones; empty without any."""
+    predicted = _predicted(study)
     again = [bool(c.passed) for c in study.comparisons if c.passed is not None]
     recomputed = [i.holds for i in printed_indices(study)]
     kinds = [(name, found) for name, found in zip(KINDS, (predicted, again, recomputed), strict=True) if found]
@@ -255,7 +285,7 @@ def headline_of_study(study: Study) -> tuple[str, ...]:
         return ()
     good, count = (sum(map(f, (found for _, found in kinds))) for f in (sum, len))
     each = ", ".join(f"{sum(found)} of {len(found)} {name}" for name, found in kinds)
-    return (f"{good} of the {count} compared numbers lie within their tolerance: {each}.",)
+    return (f"{good} of the {count} compared numbers lie within their tolerance: {each}.", *on_predictions(study))
 
 
 def headline(numbers: Held) -> tuple[str, ...]:

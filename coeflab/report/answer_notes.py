@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.glide_polar import munk_in_words
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import RIG
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
-from coeflab.study.validation import validations
+from coeflab.study.validation import by_measured_number, validations
 from coeflab.vehicle.reference import Reference, Relation
 
 MOST_LETTERS, MOST_NAMED = 240, 4
@@ -66,7 +68,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
-    out += filter(None, (_not_in_u95(study, rows), _independent(study)))
+    out += filter(None, (_not_in_u95(study, rows), *_as_stated(study, rows), _independent(study)))
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
@@ -118,19 +120,37 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more}, see Coefficients."
 
 
+def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
+    """What sources of tests state of their uncertainty, where U95 leaves rig and balance out; a sentence each."""
+    mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
+    without = {
+        b.campaign for b in study.budgets if RIG in b.unassessed and (b.campaign, b.symbol.removesuffix("'")) in mine
+    }
+    said = dict.fromkeys(
+        t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
+    )
+    return tuple(f"U95 is without rig and balance; the source states {text.removesuffix('.')}." for text in said)
+
+
 def _independent(study: Study) -> str:
     """How many computed coefficients agree with those measured on the same body; empty where none is compared."""
-    found = [v for v in validations(study, study.budgets) if v.within is not None]
-    if not found:
+    numbers = by_measured_number(validations(study, study.budgets))
+    if not numbers:
         return ""
+    found = [v for one in numbers for v in one]
     bodies = listed(
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    inside, weak = (sum(map(bool, kind)) for kind in ([v.within for v in found], [v.is_weak for v in found]))
-    weakly = f", {weak} of them weakly" if weak else ""
-    beyond = f"; beyond it {', '.join(outside)}" if outside else ""
-    return f"Independent: {inside} of {len(found)} coefficients from CFD lie within U_V of the test of the same body ({bodies}){weakly}{beyond}."
+    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of it)" for v in found if v.weak))
+    said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
+    inside = sum(all(v.within for v in one) for one in numbers)
+    return f"Independent: CFD meets {inside} of {len(numbers)} numbers measured on the same body ({bodies}) within U_V{said}."
+
+
+def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
+    """Whether a fit of another body has a value of a wanted coefficient."""
+    return any(c.value is not None and c.symbol == r.symbol for c in fit.coefficients.coefficients for r in rows)
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

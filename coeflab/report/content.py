@@ -25,8 +25,8 @@ from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.coefficient import Status
-from coeflab.law.symbols import derivative, primed
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.symbols import derivative, primed, read_factors
 from coeflab.report.acceptance import headline_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
@@ -336,8 +336,6 @@ def _re_analysis(study: Study) -> list[str]:
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     predicted = [v for v in validations(study, study.budgets) if v.within is not None]
     out += [*headline_of_study(study), *WHAT_COUNTS, TWO_KINDS[not predicted]]
-    if weak := [f"{primed(v.symbol)} of {v.simulation}" for v in predicted if v.is_weak]:
-        out.append(f"Weak predictions, U_V above {share_text(WIDE)} of the measured value: {listed(weak)}.")
     missed = [v for v in predicted if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
@@ -354,7 +352,7 @@ def _beyond_without_verdict(study: Study) -> list[str]:
     for tow in towed(study):
         reasons: dict[str, list[str]] = {}
         for r in tow.rows:
-            if r.verdict is None and r.validation is not None and r.validation.within is False:
+            if r.verdict is None and r.validation is not None and r.validation.beyond:
                 reasons.setdefault(r.why_none, []).append(primed(r.symbol))
         out += [
             f"Also beyond U_V, but not counted: {listed(symbols)} of {tow.tow.campaign}, as {why}."
@@ -398,7 +396,9 @@ def verdict(study: Study) -> Section:
 
 
 def _harvest(study: Study) -> str:
-    found = [c for c in study.coefficients if c.value is not None]
+    every = [c for c in study.coefficients if c.value is not None]
+    copied = {(f.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
+    found = [c for c in every if (c.campaign, c.symbol) not in copied]
     bounded = sum(c.u95 is not None for c in found)
     campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
     if not campaigns:
@@ -413,7 +413,20 @@ def _harvest(study: Study) -> str:
     if not found:
         return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
-    return f"Found: {_counted(len(found), 'coefficient')}, {uncertain}, from {source}"
+    each = f"Found: {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
+    alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
+    each += f" U95 of {alone} is scatter alone." * bool(alone)
+    copies = len(every) - len(found)
+    return each + f" {copies} more {'is a copy' if copies == 1 else 'are copies'} by symmetry." * bool(copies)
+
+
+def _by_kind(found: Sequence[Coefficient]) -> str:
+    """How many are forces at rest, slopes, and terms of higher degree."""
+    degrees = [len(read_factors(c.symbol.removesuffix("'")[1:]) or ()) for c in found]
+    counts = (degrees.count(1), degrees.count(0), sum(d > 1 for d in degrees))
+    return ", ".join(
+        f"{n} {name}" for n, name in zip(counts, ("linear", "at rest", "of higher degree"), strict=True) if n
+    )
 
 
 def _without_value(study: Study) -> list[str]:

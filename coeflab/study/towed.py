@@ -1,7 +1,8 @@
 """Own tows beside published columns: every wanted coefficient of each towed body, a missing one with its reason.
 
 A verdict by ASME V&V 20 needs one body and one method on both sides: tests of the very body that was towed, at steady angles.
-Against another body, or derivatives from an oscillation, E and U_V are given and no verdict.
+Against another body, or derivatives from an oscillation, E and U_V are given and no verdict; nor is there one on a tow
+without a grid study, whose numerical error is not known.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.study import PlannedTow, Study
-from coeflab.study.validation import Validation, validation
+from coeflab.study.validation import Validation, reynolds_of, validation
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.reference import Reference
@@ -97,6 +98,8 @@ class Towed:
         One a wanted coefficient.
     turned : tuple of str
         Which of its tables are no runs but others turned by symmetry, in sentences.
+    reynolds : float or None
+        On the length of the primes; None where the campaign does not tell, or there is none.
     """
 
     tow: PlannedTow
@@ -104,6 +107,7 @@ class Towed:
     columns: tuple[str, ...]
     rows: tuple[TowedRow, ...]
     turned: tuple[str, ...] = ()
+    reynolds: float | None = None
 
 
 def towed(study: Study) -> tuple[Towed, ...]:
@@ -118,7 +122,9 @@ def _towed(study: Study, tow: PlannedTow) -> Towed:
     fits = tuple(f for f in study.fits if f.campaign == tow.campaign)
     body = fits[0].body if fits else tow.body
     rows = tuple(_row(study, tow, symbol, fits, columns, tests) for symbol in study.plan.wanted)
-    return Towed(tow, body, tuple(c.name for c in columns), rows, _turned(_tables(study, tow.campaign)))
+    length = fits[0].coefficients.scaling.length if fits else None
+    reynolds = None if length is None else reynolds_of(study, tow.campaign, length)
+    return Towed(tow, body, tuple(c.name for c in columns), rows, _turned(_tables(study, tow.campaign)), reynolds)
 
 
 def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
@@ -165,7 +171,8 @@ def _row(
     if made is None:
         lacking = "no budget" if budget is None else "no test of it" if tests else ""
         return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking)
-    found, none = made
+    found, other = made
+    none = "; ".join(filter(None, (other, found.why_none)))
     return TowedRow(symbol, own, u_grid, "", why, published, found, None if none else found.within, none)
 
 
@@ -218,8 +225,9 @@ def _against(
             if measured is None or theirs is None or theirs.datum != ours.datum:
                 continue
             if np.allclose(theirs.reference_point, ours.reference_point, atol=1e-6):
-                made = validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling))
-                return made, other or ("" if made.u_measured is not None else "the test has no U95")
+                length = ours.scaling.length
+                reynolds = (reynolds_of(study, budget.campaign, length), reynolds_of(study, campaign, length))
+                return validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling), reynolds), other
         stated = _literature(r, own.symbol)
         if stated is not None and _published(study, fits, r, own.symbol, ours.scaling) is not None:
             value, share, method = stated

@@ -2,6 +2,8 @@
 
 ASME V&V 20-2009, section 1-5; ITTC 7.5-03-01-01: E = S - D, U_V^2 = U_D^2 + U_SN^2 + U_input^2. When |E| lies within
 U_V, a modelling error cannot be told from the uncertainties; otherwise E is about the modelling error, known to U_V.
+
+There is no verdict where U_V lacks the numerical error of the grid, nor on a force of friction at another Reynolds number.
 """
 
 from __future__ import annotations
@@ -11,11 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.types import brief
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.symbols import derivative
 from coeflab.study.study import Study
-from coeflab.tables.force_table import STUDIES
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
 
 
@@ -82,10 +86,16 @@ def _half_a_digit(printed: str) -> float:
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
+def in_millions(reynolds: float) -> str:
+    """A Reynolds number as ``8.49e6``."""
+    return f"{1e-6 * reynolds:.3g}e6"
+
+
 NUMERICAL = ("random", "grid", STUDIES["domain"], STUDIES["iterations"])
 MODEL = STUDIES["turbulence"]
 REDUCTION = ("model form", "random and model form")
 WIDE = 0.25  # of the measured or published value: a wider uncertainty passes what a reader would call a difference
+FRICTION = 0.05  # of the friction line between two Reynolds numbers: more than drag is compared to
 
 
 @brief
@@ -108,6 +118,8 @@ class Validation:
         Inputs of the computation.
     lacking, lacking_measured : tuple of str
         What U_V does not hold of the computation and of the experiment.
+    reynolds : tuple of 2 floats or None
+        Reynolds numbers of computation and experiment on one length; None where a campaign does not tell.
     """
 
     symbol: str
@@ -122,6 +134,7 @@ class Validation:
     u_input: float | None
     lacking: tuple[str, ...]
     lacking_measured: tuple[str, ...]
+    reynolds: tuple[float | None, float | None] = (None, None)
 
     @property
     def error(self) -> float:
@@ -138,24 +151,58 @@ class Validation:
         )
 
     @property
-    def within(self) -> bool | None:
-        """Whether the error lies within U_V; None where there is no U_V."""
-        return None if self.u_validation is None else abs(self.error) < self.u_validation
+    def beyond(self) -> bool:
+        """Whether the error is larger than U_V as far as that is known, verdict or not."""
+        return self.u_validation is not None and abs(self.error) >= self.u_validation
 
     @property
-    def is_weak(self) -> bool:
-        """Whether the error lies within a U_V so wide that a value far from the measured one would do so, too."""
-        return bool(self.within) and (self.u_validation or 0.0) > WIDE * abs(self.measured)
+    def why_none(self) -> str:
+        """Why there is no verdict; empty where there is one."""
+        grid = next((name for name in self.lacking if name.partition(" ")[0] == "grid"), "")
+        reasons = (
+            "the test has no U95" if self.u_measured is None else "",
+            "" if not grid else "no grid study" if grid == "grid" else f"grid {grid.removeprefix('grid ').strip('()')}",
+            self._friction(),
+        )
+        return ", ".join(filter(None, reasons))
+
+    def _friction(self) -> str:
+        """Why drag has no verdict at these Reynolds numbers; empty for other coefficients and where it has one."""
+        if self.symbol[:1] != "X" or set(derivative(self.symbol).factors) - {"u"}:
+            return ""
+        computed, measured = self.reynolds
+        if computed is None or measured is None:
+            return "Re of both sides not known"
+        ratio = friction_line(computed) / friction_line(measured) - 1.0
+        if abs(ratio) <= FRICTION:
+            return ""
+        return f"friction differs by {100.0 * abs(ratio):.0f} % between Re {in_millions(computed)} and {in_millions(measured)} (ITTC 1957)"
+
+    @property
+    def within(self) -> bool | None:
+        """The verdict: whether the error lies within U_V; None where there is none."""
+        return None if self.why_none else not self.beyond
+
+    @property
+    def share(self) -> str:
+        """U_V over the measured value, in words for tables."""
+        u_v = self.u_validation
+        return "" if u_v is None or not self.measured else f"{100.0 * u_v / abs(self.measured):.0f} %"
+
+    @property
+    def weak(self) -> bool:
+        """Whether the error lies within a U_V of more than a quarter of the measured value."""
+        return self.within is True and (self.u_validation or 0.0) > WIDE * abs(self.measured)
 
     @property
     def statement(self) -> str:
         """The verdict in words."""
-        if self.u_validation is None:
-            return "no verdict: the measurement has no U95"
-        if self.within:
+        if self.why_none:
+            text = f"no verdict: {self.why_none}"
+        elif self.within:
             text = "|E| < U_V: no modelling error can be shown at this level of uncertainty"
         else:
-            low, high = self.error - self.u_validation, self.error + self.u_validation
+            low, high = (self.error + sign * (self.u_validation or 0.0) for sign in (-1.0, 1.0))
             text = f"|E| > U_V: modelling error, or parts that U_V lacks, between {low:.3g} and {high:.3g}"
         for side, names in (("computation", self.lacking), ("experiment", self.lacking_measured)):
             text += f"; not in U_V, {side}: {', '.join(names)}" if names else ""
@@ -172,12 +219,32 @@ def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]
                 continue
             if not _alike(sets[s.campaign], sets[d.campaign]):
                 continue
-            out.append(validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling)))
+            length = sets[s.campaign].scaling.length
+            reynolds = (reynolds_of(study, s.campaign, length), reynolds_of(study, d.campaign, length))
+            out.append(validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling), reynolds))
     return tuple(out)
 
 
-def validation(s: Budget, d: Budget, ratio: float = 1.0) -> Validation:
-    """S against D; ``ratio`` brings D to the length that S is primed by."""
+def by_measured_number(found: Sequence[Validation]) -> tuple[tuple[Validation, ...], ...]:
+    """Comparisons with a verdict, those of one measured number together; it counts once, and holds where every one does."""
+    groups: dict[tuple[str, str], list[Validation]] = {}
+    for v in found:
+        if v.within is not None:
+            groups.setdefault((v.experiment, v.symbol), []).append(v)
+    return tuple(map(tuple, groups.values()))
+
+
+def reynolds_of(study: Study, campaign: str, length: float) -> float | None:
+    """Median over the rows of a campaign, on that length; the number that its source states where the viscosity is not known."""
+    tables: list[ForceTable] = [t for t in study.tables if t.campaign == campaign]
+    rows = [r for t in tables if (r := t.reynolds(length)) is not None]
+    return float(np.median(np.concatenate(rows))) if rows else None
+
+
+def validation(
+    s: Budget, d: Budget, ratio: float = 1.0, reynolds: tuple[float | None, float | None] = (None, None)
+) -> Validation:
+    """S against D; ``ratio`` brings D to the length that S is primed by; Reynolds numbers of both as in `Validation`."""
     return Validation(
         symbol=s.symbol,
         body=s.body,
@@ -191,6 +258,7 @@ def validation(s: Budget, d: Budget, ratio: float = 1.0) -> Validation:
         u_input=s.input,
         lacking=(*s.unassessed, *([] if s.part(MODEL) is None else [MODEL])),
         lacking_measured=d.unassessed,
+        reynolds=reynolds,
     )
 
 

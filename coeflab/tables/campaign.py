@@ -303,6 +303,8 @@ class CampaignAxes(DatumKeys):
         FRD, FLU, CFD (x aft, y starboard, z up), or where x, y and z point.
     alpha, beta : str
         Which sign the angle has, as a formula: v = +U sin(beta) or v = -U sin(beta), w = +U sin(alpha) or w = -U sin(alpha).
+    assumed : tuple of str
+        Angles, alpha and beta, whose sign nobody stated: it was inferred from Yv' < 0 or Zw' < 0, which then prove nothing.
     reference_point : (3,) array
         Of moments and rates, [x, y, z], m, FRD, from the datum.
     """
@@ -310,6 +312,7 @@ class CampaignAxes(DatumKeys):
     frame: Frame
     alpha: takes.Text | None = None
     beta: takes.Text | None = None
+    assumed: takes.Texts = ()
     reference_point: takes.Point
 
 
@@ -433,6 +436,7 @@ class Campaign:
     lines: tuple[int | None, ...] = ()
     planar_motion: PlanarMotionKeys | None = None
     symmetry: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("signs", "columns", "options"):
@@ -485,4 +489,5 @@ def read_campaign(path: Path) -> Campaign:
         lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
         planar_motion=file.planar_motion,
         symmetry=head.symmetry,
+        assumed=axes.assumed,
     )

@@ -20,6 +20,7 @@ OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment
 PLANES = {"pitch": (("alpha", "w", "q"), "M"), "yaw": (("beta", "v", "r"), "N")}  # motions of the body, moment
 OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
+SLENDER = "a slender body has"  # in what infers a sign from the force that should follow from it
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 
 
@@ -139,7 +140,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         across, turned_by = ("side", 1.0) if component == "Y" else ("lift", -1.0)
         if across in data and angle in angles and (sign := trend(turned_by * data[across], data, angle)):
             same = "the same sign" if sign * turned_by > 0 else "opposite signs"
-            out.append(Evidence(f"{across} and {angle} have {same}, and a slender body has {component}{flow}' < 0",
+            out.append(Evidence(f"{across} and {angle} have {same}, and {SLENDER} {component}{flow}' < 0",
                                 f"axes.{angle}", f"{flow} = {'-' if sign > 0 else '+'}U sin({angle})"))  # fmt: skip
             continue
         force = _frd(data, component, frame) if frame else data.get(component)
@@ -154,7 +155,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         else:
             of = "" if frame.name == "FRD" else f" to {side}"
             said = f"{component}{of} and {angle}" + have.removeprefix(f"{component} and {angle}")
-            out.append(Evidence(f"{said}, and a slender body has {component}{flow}' < 0", f"axes.{angle}", as_pointed))
+            out.append(Evidence(f"{said}, and {SLENDER} {component}{flow}' < 0", f"axes.{angle}", as_pointed))
     for component, rate in (("Y", "v"), ("Z", "w"), ("K", "p"), ("M", "q"), ("N", "r")):
         if component in data and rate in data and (sign := trend(data[component], data, rate)):
             if sign < 0:

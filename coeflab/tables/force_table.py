@@ -126,6 +126,10 @@ class ForceTable:
         What the body is declared to be exactly: port-starboard, up-down, fourfold.
     by_symmetry : str
         Name of the table whose rows these are, turned by that symmetry; empty for rows that were run.
+    primed : frozenset of str
+        Components that the file has as primes by ``scaling``.
+    assumed : tuple of str
+        Angles whose sign was inferred from the sign of the slope, alpha or beta.
     """
 
     name: str
@@ -156,6 +160,8 @@ class ForceTable:
     variants: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     by_symmetry: str = ""
+    primed: frozenset[str] = frozenset()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):

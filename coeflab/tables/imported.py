@@ -24,6 +24,7 @@ from coeflab.law.symbols import CONTROL_COLUMNS
 from coeflab.tables.campaign import FILE, CampaignFile, read_campaign
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import BETWEEN
+from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
@@ -107,6 +108,9 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         + "."
     )
     comments.pop("source.how_obtained", None)
+    if assumed := [a for a in ("alpha", "beta") if f"axes.{a}" in common and SLENDER in common[f"axes.{a}"].origin]:
+        sections["axes"]["assumed"] = assumed
+        comments["axes.assumed"] = "a sign inferred from the slope: delete this once it is known from the source"
     sections.pop("table")
     made, declared = dict[str, bytes](), list[tuple[dict[str, Any], dict[str, str]]]()
     for t in tables:

@@ -164,10 +164,10 @@ def _of_axes(
             shown = (
                 shown if name == "beta" or one == two else f"{one} if z is {'down' if ahead >= 0 else 'up'}, else {two}"
             )
-            short = f"so that {'Yv' if name == 'beta' else 'Zw'}' < 0"
+            short = f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0"
         yield Question(
             f"axes.{name}", text, f"+ or -: {' or '.join(ANGLE_SIGNS[name])}", found.value if found else "",
-            found.text if found else "", f"so that {'Yv' if name == 'beta' else 'Zw'}' < 0" if found else short, shown, grave=True,
+            found.text if found else "", f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0" if found else short, shown, grave=True,
         )  # fmt: skip
 
 

@@ -227,6 +227,8 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         arm_point=table.arm_point,
         symmetry=campaign.symmetry,
         by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",
+        assumed=campaign.assumed,
+        primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
     return made.about(campaign.reference_point)
 

@@ -19,6 +19,7 @@ from coeflab.law.transforms import skew
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SAME = 1e-9
+APART = 0.1  # of a stated entry: more than sources state for it
 MEASURED, COMPUTED, NONE = "measured", "computed", "none"
 STATED = "stated"  # method of an added mass that was read from somebody's model
 ACCELERATIONS = (MEASURED, COMPUTED)
@@ -214,7 +215,25 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
                 f"{primed(name)} and {primed(mirror)} of the file, {value:.4g} and {other:.4g} {unit} of added mass, should be equal: "
                 f"their mean, {(value + other) / 2.0:.4g} {unit}, is used for both"
             )
+            across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
+            if (size := float(np.sqrt(abs(np.prod(list(across)))))) > 0.0:
+                said[-1] += (
+                    f"; they differ by {100.0 * abs(value - other) / size:.2g} % of the root of their diagonal entries"
+                )
     return out, tuple(said)
+
+
+def against_computed(parameters: ParameterFile) -> str:
+    """Diagonal entries that the computed added mass and the file's derivatives give differently, in one sentence; else empty."""
+    computed, stated = _computed(parameters), stated_accelerations(parameters)
+    if computed is None or parameters.added_mass is None:
+        return ""
+    apart = [
+        f"{primed(name)} {100.0 * (computed[i, i] / value - 1.0):+.0f} %"
+        for (i, j), (name, value) in stated.items()
+        if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
+    ]
+    return f"computed{_method(parameters.added_mass)} against the file's values: {', '.join(apart)}" if apart else ""
 
 
 def _no_inertia(parameters: ParameterFile, matrix: Array) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -46,7 +48,7 @@ def test_one_line_answers_all_and_an_empty_one_accepts(
     assert done.exit_code == 0, done.output
     assert done.output.count("explains") == 2  # prompts
     second = done.output.split("explains")[1]
-    assert ">  6  axes.beta             v = -U sin(beta)        so that Yv' < 0" in second  # by the axes, and marked
+    assert ">  6  axes.beta             v = -U sin(beta)        assumed: Yv' < 0" in second  # by the axes, and marked
     table = table_of(tmp_path / "out")
     assert table.forces["Y"].tolist()[:2] == [-29.4, -11.8]
     assert (table.reference_point.tolist(), str(table.datum)) == ([-2.0, 0.0, 0.0], "nose")
@@ -430,3 +432,26 @@ def test_a_point_ahead_of_the_nose_is_said_in_the_form_and_by_the_checks(
     assert beyond_ends("tail", 5.0, 4.0) == "1.00 m ahead of the nose; aft is negative"
     assert (beyond_ends("nose", -9.0), beyond_ends("midship", 9.0)) == ("", "")
     assert beyond_ends("nose", 0.2) == "0.20 m ahead of the nose; aft is negative"
+
+
+def test_a_sign_inferred_from_the_slope_is_assumed_and_proves_nothing(
+    tmp_path: Path, coeflab: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
+    """Y and beta with the same sign: accepted, the sign of beta is labelled; said by a person, it is not."""
+    rows = [f"{b},{0.026 * np.sin(np.radians(b)) + 1e-6 * (-1) ** b:.7f}" for b in range(-12, 13, 3)]
+    (tmp_path / "drift.csv").write_text("\n".join(["beta (deg),Y'", *rows]) + "\n")
+    known = [
+        "--set",
+        "axes.frame=FRD",
+        "--set",
+        "axes.reference_point=-2.0 from nose",
+        "--set",
+        "scaling.length=4.26 LBP",
+    ]
+    for folder, said in (("inferred", []), ("stated", ["--set", "axes.beta=-"])):
+        done = coeflab("import", "drift.csv", "--out", folder, *known, *said, "--accept")
+        assert done.returncode == 0, done.stderr
+        assert ('assumed = ["beta"]' in (tmp_path / folder / "campaign.toml").read_text()) is (not said)
+        shown = flat(coeflab("fit", folder, "--wide").stdout)
+        assert ("Not independent: the sign of beta was inferred from it." in shown) is (not said)
+        assert ("the sign of beta is assumed" in shown) is (not said)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -16,14 +17,15 @@ from coeflab.formats.export import LOSSLESS, Export
 from coeflab.formats.gazebo.law import read_gz_link
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
+from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.sections import parameter_file as export_section
-from coeflab.report.tables.formats import forces, in_short
+from coeflab.report.tables.formats import forces, in_short, parts
 from coeflab.study.study import Study
-from coeflab.vehicle.inertia import with_accelerations
+from coeflab.vehicle.inertia import water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export
 from tests.formats.massed import with_mass
@@ -222,3 +224,23 @@ def test_the_choice_is_named_in_every_file() -> None:
         assert b"accelerations computed, the added mass of body of tow by panel" in b"".join(
             written(file, target, "computed").files.values()
         ), target
+
+
+def test_two_splits_say_that_they_are_two() -> None:
+    """Nv' of the torpedo by the matrix of the file, and by the Yvdot' that the export integrates; the total is one."""
+    plain = accelerating()
+    hull = plain.added_mass
+    assert hull is not None
+    each = tuple(
+        replace(c, potential=potential_part(c.symbol, hull, plain.scaling, hull.density)) for c in plain.coefficients
+    )
+    file = plain.model_copy(update={"coefficients": each})
+    booked, written = parts(file), parts(file, water_inertia(file))
+    by_file, by_export = ({row[0]: row[1:4] for row in table.rows}["Nv'"] for table in (booked, written))
+    assert by_file[0] == by_export[0]
+    assert by_file[1:] != by_export[1:]
+    assert any("the parameter file books other potential parts" in note for note in written.notes)
+    assert any("take the acceleration derivatives of the file first" in note for note in booked.notes)
+    computed = parts(file, water_inertia(file, "computed"))
+    assert computed.rows == booked.rows
+    assert not any("books other potential parts" in note for note in computed.notes)

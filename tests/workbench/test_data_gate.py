@@ -16,8 +16,9 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, number
 from coeflab.core.types import Array
+from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.study.checks.data_gate import findings
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
@@ -233,3 +234,38 @@ if __name__ == "__main__":
     for name, c in failed:
         sys.stdout.write(f"{name} | {c.statistic} | {c.comment}\n")
     sys.stdout.write(f"{len(failed)} of {sys.argv[1]} {Counter(n.split()[0] for n, _ in failed)}\n")
+
+
+def test_a_row_that_the_slope_leaves_out_is_said_to_be_left_out_in_the_unit_of_the_table() -> None:
+    """A sign at 6 degrees: primes where the file has primes, and U95 on both sides of the comparison."""
+    v = np.sin(np.radians(np.arange(-14.0, 14.1, 2.0)))
+    y = -0.026 * v - 0.06 * v * np.abs(v) + 2e-5 * np.random.default_rng(3).standard_normal(len(v))
+    y[10] *= -1.0
+    plain = table_of(v, {"Y": y})
+    (in_newtons,) = warnings((plain,))
+    (in_primes,) = warnings((replace(plain, primed=frozenset({"Y"})),))
+    assert in_newtons.statistic.startswith("Y = ")
+    assert " N, expected " in in_newtons.statistic
+    cell, value = in_primes.statistic.split("; ")
+    own = float(plain.primed_force("Y", plain.scaling.length)[10])
+    assert cell.startswith(f"Y' = {own:.4g}".rstrip("0"))
+    assert " N" not in cell
+    found = estimate(v, y)
+    assert not found.used[10]
+    assert found.u95_with_all > 2.0 * found.u95
+    assert value == (
+        f"Yv' = {number(found.with_all, 3)} ± {number(found.u95_with_all, 2)} with the row, "
+        f"{number(found.value, 3)} ± {number(found.u95, 2)} without it"
+    )
+    assert in_primes.comment == (
+        "Left out of Yv'. Compare point 11 with its source; other forms and fits use it unless the cell is named under uncertain."
+    )
+
+
+def test_a_named_point_stands_beside_its_line() -> None:
+    drift, arm = demo()
+    wrong = with_cell(drift, "Y", 7, 1.5)
+    named = replace(wrong, labels=tuple(f"run {i}" for i in range(len(wrong))))
+    (found,) = warnings((named, arm))
+    assert found.subject == "my_campaign/drift.csv line 10"
+    assert "Compare point run 7 with its source" in found.comment

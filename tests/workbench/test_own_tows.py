@@ -12,7 +12,8 @@ from coeflab.cli import as_json, show
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.report.sections.campaign import tow_sections
-from coeflab.report.tables.results import by_campaign, own_tow, tow_against
+from coeflab.report.tables.own_cfd import own_tow, tow_against
+from coeflab.report.tables.results import by_campaign
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.study.towed import NOT_RUN, NOT_TOWED, OPEN, Towed, towed

@@ -53,6 +53,8 @@ class OriginSlope:
         Slope with every row, wrong or not.
     shares : dict
         Parts of the secant to the largest |x|: linear, v|v|, cubic, smooth remainder; they add up to one.
+    with_all_u95 : float
+        Of ``with_all`` where rows are left out, else NaN.
     """
 
     value: float
@@ -73,6 +75,12 @@ class OriginSlope:
     design: Design | None
     y: Array
     weights: Array
+    with_all_u95: float = float("nan")
+
+    @property
+    def u95_with_all(self) -> float:
+        """95 % half-width with every row, wrong or not."""
+        return self.u95 if np.isnan(self.with_all_u95) else self.with_all_u95
 
 
 def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
@@ -145,6 +153,7 @@ def _estimate(
     used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
     left_out: list[int] = []
+    all_u95 = float("nan")
     while True:
         kept = np.flatnonzero(used)
         if len(np.unique(x[kept])) < 3 or not np.any(x):
@@ -164,7 +173,8 @@ def _estimate(
         if wrong[worst] <= REMOVE or len(left_out) >= max(1, len(x) // 6) or len(kept) <= FEWEST:
             break
         if not left_out:
-            with_all = float(estimate_many(design, y[kept], stated, deletions=False).value[0])
+            every = estimate_many(design, y[kept], stated, deletions=False)
+            with_all, all_u95 = float(every.value[0]), float(every.u95[0]) * (np.sqrt(2.0) if mirrored else 1.0)
         used[worst] = False
         left_out.append(worst)
     value, widen = float(many.value[0]), np.sqrt(2.0) if mirrored else 1.0
@@ -185,6 +195,7 @@ def _estimate(
         value, lower, upper, u95, widen * float(many.sd[0]), status, reason, notes,
         float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
         _shares(design, y[kept], many.weights[0]), design, y[kept], many.weights[0],
+        all_u95,
     )  # fmt: skip
 
 

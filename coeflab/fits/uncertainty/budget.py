@@ -172,9 +172,10 @@ def _of_inputs(
 
 DRAWS, SEED = 2000, 1  # 2.5 % tails of 50 draws each: half-widths to about 3 %
 TELLING = 0.05  # of the largest force: the relative grid error of a smaller one says nothing
+RIG = "rig interference and blockage"
 ALWAYS_OPEN = {
     "cfd": ("turbulence model", "domain and boundary conditions"),
-    "experiment": ("rig interference and blockage",),
+    "experiment": (RIG,),
     "literature": ("whatever the source left out",),
     "synthetic": (),
     "estimate": ("scatter of the methods of estimates",),

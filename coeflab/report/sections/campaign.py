@@ -35,6 +35,7 @@ from coeflab.report.sections.coefficients import in_one_line, zeros
 from coeflab.report.sections.oscillations import oscillation_sections
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
+from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
@@ -319,8 +320,8 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)
-    each = (t for one in with_values for t in (tables.own_tow(one), tables.tow_against(one)))
-    rest = _filled(tuple(tables.own_tow(one) for one in found if one not in with_values))
+    each = (t for one in with_values for t in (own_cfd.own_tow(one), own_cfd.tow_against(one)))
+    rest = _filled(tuple(own_cfd.own_tow(one) for one in found if one not in with_values))
     more = (Section("no-tow", "Not towed", tables=rest, appendix=True),) if rest else ()
     return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)
 

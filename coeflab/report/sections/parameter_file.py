@@ -34,6 +34,7 @@ from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
+from coeflab.vehicle.inertia import against_computed
 from coeflab.vehicle.law_at_points import SMALL
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
@@ -401,7 +402,19 @@ def export_sections(study: Study) -> tuple[Section, ...]:
         if made.loss is not None
     )
     refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
-    return (Section("exports", "Exports", (*EXPORTED, *refused), (summary(study),), subsections=each),)
+    text = (*EXPORTED, *refused, *added_masses(study))
+    return (Section("exports", "Exports", text, (summary(study),), subsections=each),)
+
+
+def added_masses(study: Study) -> tuple[str, ...]:
+    """Of every parameter file that is exported, where its added mass rests on a mean or differs from the computed one."""
+    waters = {made.parameters: made.loss.water for made in study.exports if made.loss is not None}
+    files = {p.name: p for p in study.parameter_files.values()}
+    each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
+    said = {name: "; ".join(filter(None, words)) for name, words in each.items()}
+    return tuple(
+        f"Added mass of {name}, for roots, motions and exports: {words}." for name, words in said.items() if words
+    )
 
 
 def _tables(target: str, loss: Loss) -> tuple[Table, ...]:

@@ -21,7 +21,7 @@ from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.inertia import WaterInertia
+from coeflab.vehicle.inertia import MEASURED, WaterInertia, stated_accelerations
 from coeflab.vehicle.law_at_points import LawAtPoints
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
 from coeflab.vehicle.second_order import ROUNDING, products_once
@@ -178,6 +178,12 @@ def parts(parameters: ParameterFile, water: WaterInertia | None = None) -> Table
     if hull is not None:
         by = f"the added mass of {hull.body}, method {hull.method}"
         notes.append(f"potential part by {by if water is None else f'the added mass in use; {water.source}'}")
+        if water is not None and water.used == MEASURED:
+            notes.append(f"the parameter file books other potential parts, by {by} alone; the totals are the same")
+        elif water is None and stated_accelerations(parameters):
+            notes.append(
+                "motions and exports take the acceleration derivatives of the file first, and subtract what these give"
+            )
         if hull.body != parameters.body:
             notes.append(f"not of one body: the coefficients are those of {parameters.body}")
     headers = ("", "total", "potential", "viscous", "origin")

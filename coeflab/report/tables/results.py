@@ -27,15 +27,14 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
-from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.study import Study
-from coeflab.study.towed import AS_PRINTED, STATES, Towed
+from coeflab.study.towed import STATES
 from coeflab.study.validation import WIDE
 from coeflab.tables.force_table import Exclusion, ForceTable
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
-AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
+ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 WEAK = f"U95 and the source's uncertainty, root sum of squares, exceed {100.0 * WIDE:.0f} % of the published value"
 
@@ -50,7 +49,12 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
         Only the coefficients of one campaign.
     """
     chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
-    return noun_tables.coefficients(chosen, covers=covers(study, chosen))
+    made = noun_tables.coefficients(chosen, covers=covers(study, chosen))
+    assumed = {(t.campaign, a): None for t in study.tables for a in t.assumed if campaign in (None, t.campaign)}
+    said = tuple(
+        f"{c}: the sign of {a} is assumed, so that {ASSUMED[a]}' < 0; no source states it." for c, a in assumed
+    )
+    return Table(made.title, made.headers, made.rows, (*said, *made.notes), made.left)
 
 
 # What a table of coefficients does without where a line is too narrow, the first one first.
@@ -267,74 +271,6 @@ def _span(values: Array) -> str:
     """A number of three digits, or the smallest and the largest."""
     low, high = (f"{float(x):.3g}" for x in (np.nanmin(values), np.nanmax(values)))
     return low if low == high else f"{low} .. {high}"
-
-
-def own_tow(found: Towed) -> Table:
-    """The wanted coefficients of a towed body beside the published columns, what is missing with its reason; 80 columns."""
-    rows = []
-    for r in found.rows:
-        value, u95 = (NO_VALUE, ABSENT) if r.missing else with_u95(r.value, r.u95)
-        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(as_printed, r.published)))
-    said: dict[str, list[str]] = {}
-    for r in found.rows:
-        said.setdefault(r.why, []).append(primed(r.symbol))
-    absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
-    where = f"Campaign {found.tow.campaign}{absent}." if found.tow.campaign else ""
-    every = len(found.rows) > 1 and len(said) == 1
-    lacking = {r.why for r in found.rows if r.missing}
-    reasons = [
-        f"{'All' if every else ', '.join(symbols)}: {'no value, ' * (why in lacking)}{why}."
-        for why, symbols in said.items()
-        if why
-    ]
-    assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
-    grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
-    notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
-    columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
-    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
-    return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
-
-
-def tow_against(found: Towed) -> Table:
-    """Comparison error of a tow against validation uncertainty, ASME V&V 20; no rows without an experiment. 80 columns."""
-    rows = []
-    for r in found.rows:
-        v = r.validation
-        if v is None:
-            continue
-        verdict = AGAINST[r.verdict]
-        rows.append(
-            (
-                primed(r.symbol), with_u95(v.computed, r.u95)[0], with_u95(v.measured, v.u_measured)[0],
-                *with_u95(v.error, v.u_validation), verdict,
-            )
-        )  # fmt: skip
-    none: dict[str, list[str]] = {}
-    tests: dict[str, list[str]] = {}
-    printed: dict[str, list[str]] = {}
-    for r in found.rows:
-        none.setdefault(r.why_none, []).append(primed(r.symbol))
-        if r.validation is None:
-            continue
-        test = r.validation.experiment
-        tests.setdefault(test, []).append(primed(r.symbol))
-        value = next((p for p in r.published if p is not None), None)
-        if value is not None and not test.endswith(AS_PRINTED):
-            printed.setdefault(test, []).append(as_printed(value))
-    notes = [f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}." for test, symbols in tests.items()]
-    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
-    judged = [r.validation for r in found.rows if r.validation is not None]
-    notes += sentences_on_open((u for v in judged for u in v.lacking), computed=True, what="U_V leaves out, of the CFD")
-    notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
-    headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
-    return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
-
-
-def _test(test: str, printed: Sequence[str]) -> str:
-    """Where the measured side of a tow comes from, with the printed values beside our fit."""
-    if test.endswith(AS_PRINTED):
-        return test
-    return f"our fit to the points of {test}" + (f" (printed: {', '.join(printed)})" if printed else "")
 
 
 def by_campaign(study: Study) -> Table:

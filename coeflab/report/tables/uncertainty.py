@@ -358,21 +358,28 @@ def _beside(value: float, half: float | None) -> str:
 
 
 def predictions(found: Sequence[Validation]) -> Table:
-    """Comparison error of every computed coefficient that has a verdict, in digits that go with U_V."""
+    """Comparison error of every computed coefficient, those with a verdict first, in digits that go with U_V."""
     rows = tuple(
         (
             primed(v.symbol), v.simulation, v.experiment, _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
-            *with_u95(v.error, v.u_validation), f"no modelling error shown{', weak' * v.is_weak}" if v.within else "beyond U_V",
+            *with_u95(v.error, v.u_validation), _verdict(v),
         )
-        for v in found
-        if v.within is not None
+        for v in sorted(found, key=lambda v: v.within is None)
     )  # fmt: skip
     headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
-    weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.is_weak for v in found) else ""
+    weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
     notes = (
         f"Computed and measured on the same body, independently of each other; D is our fit to the points of the test.{weak}",
+        "No verdict without the numerical error of a grid study, nor on drag where the Reynolds numbers differ (Verdict).",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
+
+
+def _verdict(v: Validation) -> str:
+    """In words; a weak one with what makes it so."""
+    if v.within is None:
+        return "no verdict"
+    return f"weak: U_V is {v.share} of D" if v.weak else "no modelling error shown" if v.within else "beyond U_V"
 
 
 def derived(found: Sequence[Derived]) -> Table:

@@ -66,6 +66,8 @@ class _Row:
     components: list[str] = field(default_factory=list)
     values: list[str] = field(default_factory=list)
     comments: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    used: list[str] = field(default_factory=list)
 
 
 def _levels(x: Array) -> NDArray[np.intp]:
@@ -212,6 +214,12 @@ def _where(table: ForceTable, row: int) -> str:
     return f"{table.name} line {table.lines[row]}" if table.lines else f"{table.name} {table.labels[row]}"
 
 
+def _named(table: ForceTable, row: int) -> str:
+    """The row by the name of its point, which the user's own file has, too; else plainly."""
+    named = table.lines and table.labels[row] != f"line {table.lines[row]}"
+    return f"point {table.labels[row]}" if named else "the row"
+
+
 def _si(table: ForceTable, component: str, row: int, primed_value: float) -> float:
     unit = 1.0 / table.primed_force(component, table.scaling.length, np.ones(len(table)))[row]
     return float(primed_value * unit)
@@ -220,6 +228,10 @@ def _si(table: ForceTable, component: str, row: int, primed_value: float) -> flo
 def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
     expected = _si(table, component, row, float(cell.seen.expected[cell.at]))
     scatter = _si(table, component, row, float(cell.seen.scatter[cell.at]))
+    if component in table.primed:
+        own = float(table.primed_force(component, table.scaling.length)[row])
+        at, around = float(cell.seen.expected[cell.at]), float(cell.seen.scatter[cell.at])
+        return f"{component}' = {number(own, 4)}, expected {number(at, 4)} ± {number(around, 2)}"
     unit = "N m" if component in MOMENTS else "N"
     value = float(table.forces[component][row])
     text = f"{component} = {number(value, 4)} {unit}, expected {number(expected, 4)} ± {number(scatter, 2)} {unit}"
@@ -307,13 +319,14 @@ def _slopes(
                 continue
             said = rows.setdefault(row, _Row())
             said.values.append(
-                f"{primed(symbol)} = {number(found.with_all, 3)} with the row, {_value(without.value, without.u95)} without it"
+                f"{primed(symbol)} = {_value(found.with_all, found.u95_with_all)} with the row, "
+                f"{_value(without.value, without.u95)} without it"
             )
+            (said.used if found.used[at] else said.left_out).append(primed(symbol))
             if decides and not failed and not left_out:
                 said.comments.append(f"The row decides {primed(symbol)}: U95 of all rows is {number(found.u95, 2)}.")
             elif left_out and not failed:
                 said.components.append(component)
-                said.comments.append(f"{primed(symbol)} leaves it out.")
 
 
 def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: float, rows: dict[int, _Row]) -> None:
@@ -336,6 +349,9 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
 
 def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
     words = [*said.comments, *([] if said.values else ["No derivative at the origin uses it."])]
+    if said.left_out:
+        words.insert(0, f"Left out of {listed(said.left_out)}{f', used by {listed(said.used)}' if said.used else ''}.")
+    advice = (LEFT_OUT if said.left_out and not said.used else ADVICE).replace("the row", _named(table, row))
     return Check(
         "data_gate",
         _where(table, row),
@@ -344,7 +360,7 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
         f"a deviation with a chance above {LEVEL:g}/{readings} if the row is right"
         if said.cells
         else "no row moves a value by its U95",
-        " ".join([*words, ADVICE if said.cells else INFLUENTIAL]),
+        " ".join([*words, advice if said.cells or said.left_out else INFLUENTIAL]),
     )
 
 
@@ -356,7 +372,7 @@ def _together(table: ForceTable, tables: Sequence[ForceTable], length: float, ro
         if failed.any() and np.isfinite(found.value):
             without = _without(x, y, se, failed)
             values.append(
-                f"{primed(symbol)} = {number(found.with_all, 3)} with these rows, "
+                f"{primed(symbol)} = {_value(found.with_all, found.u95_with_all)} with these rows, "
                 f"{_value(without.value, without.u95)} without them"
             )
     components = listed([c for c in table.forces if any(c in said.components for said in rows.values())])
@@ -373,6 +389,7 @@ def _some(where: Sequence[str]) -> str:
 
 
 ADVICE = "Compare the row with its source; name the cell under uncertain to leave it out."
+LEFT_OUT = "Compare the row with its source; other forms and fits use it unless the cell is named under uncertain."
 INFLUENTIAL = "Repeat the run."
 
 

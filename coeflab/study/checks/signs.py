@@ -23,18 +23,34 @@ NEGATIVE = {
     "Mq": "pitch moment opposes pitch rate",
     "X0": "drag points aft",
 } | {f"{c}{m}dot": "water moves with the body" for c, m in zip(COMPONENTS, MOTIONS, strict=True)}
+SYMBOLS = {"alpha": "Zw", "beta": "Yv"}  # whose sign an angle was inferred from
 TWINS = (("Nvdot", "Yrdot"), ("Mwdot", "Zqdot"))
 
 
 def check(study: Study) -> Sequence[Check]:
     """One finding per coefficient whose sign is known, and per pair of acceleration derivatives that ought to be equal."""
-    out = [f for c in study.coefficients if (f := _signed(c.campaign, c, "")) is not None]
+    assumed = {(t.campaign, SYMBOLS[a]): a for t in study.tables for a in t.assumed}
+    out = []
+    for c in study.coefficients:
+        angle = assumed.get((c.campaign or "", c.symbol.removesuffix("'")))
+        found = _signed(c.campaign, c, "") if angle is None else _inferred(c, angle)
+        out += [] if found is None else [found]
     for name, file in study.parameter_files.items():
         for stated in (c for c in file.coefficients if c.origin == "literature"):
             found = _signed(name, stated, f"Stated in {stated.estimator}. ")
             out += [] if found is None else [found]
         out += _twins(name, file)
     return out
+
+
+def _inferred(c: Coefficient, angle: str) -> Check | None:
+    """A sign that was used to find that of the angle proves nothing."""
+    if c.value is None:
+        return None
+    return Check(
+        "signs", f"{c.campaign} {primed(c.symbol)}", Severity.NOTE, f"{primed(c.symbol)} = {c.value:.3g}", "below zero",
+        f"Not independent: the sign of {angle} was inferred from it. State it from the source, and delete assumed under [axes].",
+    )  # fmt: skip
 
 
 def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:

@@ -1,0 +1,86 @@
+"""Own CFD runs of a body: its wanted coefficients beside published columns, and against the test after ASME V&V 20."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
+from coeflab.core.wording import listed
+from coeflab.law.symbols import primed
+from coeflab.report.tables.results import NO_VALUE
+from coeflab.report.tables.uncertainty import sentences_on_open
+from coeflab.study.towed import AS_PRINTED, Towed
+from coeflab.study.validation import in_millions
+
+AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
+
+
+def own_tow(found: Towed) -> Table:
+    """The wanted coefficients of a towed body beside the published columns, what is missing with its reason; 80 columns."""
+    rows = []
+    for r in found.rows:
+        value, u95 = (NO_VALUE, ABSENT) if r.missing else with_u95(r.value, r.u95)
+        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(as_printed, r.published)))
+    said: dict[str, list[str]] = {}
+    for r in found.rows:
+        said.setdefault(r.why, []).append(primed(r.symbol))
+    absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
+    run_at = "" if found.reynolds is None else f", Re {in_millions(found.reynolds)}"
+    where = f"Campaign {found.tow.campaign}{absent}{run_at}." if found.tow.campaign else ""
+    every = len(found.rows) > 1 and len(said) == 1
+    lacking = {r.why for r in found.rows if r.missing}
+    reasons = [
+        f"{'All' if every else ', '.join(symbols)}: {'no value, ' * (why in lacking)}{why}."
+        for why, symbols in said.items()
+        if why
+    ]
+    assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
+    grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
+    notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
+    columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
+    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
+    return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
+
+
+def tow_against(found: Towed) -> Table:
+    """Comparison error of a tow against validation uncertainty, ASME V&V 20; no rows without an experiment. 80 columns."""
+    rows = []
+    for r in found.rows:
+        v = r.validation
+        if v is None:
+            continue
+        verdict = f"weak: U_V is {v.share} of D" if r.verdict and v.weak else AGAINST[r.verdict]
+        rows.append(
+            (
+                primed(r.symbol), with_u95(v.computed, r.u95)[0], with_u95(v.measured, v.u_measured)[0],
+                *with_u95(v.error, v.u_validation), verdict,
+            )
+        )  # fmt: skip
+    none: dict[str, list[str]] = {}
+    tests: dict[str, list[str]] = {}
+    printed: dict[str, list[str]] = {}
+    for r in found.rows:
+        none.setdefault(r.why_none, []).append(primed(r.symbol))
+        if r.validation is None:
+            continue
+        test = r.validation.experiment
+        tests.setdefault(test, []).append(primed(r.symbol))
+        value = next((p for p in r.published if p is not None), None)
+        if value is not None and not test.endswith(AS_PRINTED):
+            printed.setdefault(test, []).append(as_printed(value))
+    notes = [f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}." for test, symbols in tests.items()]
+    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
+    judged = [r.validation for r in found.rows if r.validation is not None]
+    known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
+    notes += [f"Re {in_millions(s)} of the CFD, {in_millions(d)} of {test}." for test, (s, d) in known if s and d]
+    notes += sentences_on_open((u for v in judged for u in v.lacking), computed=True, what="U_V leaves out, of the CFD")
+    notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
+    headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
+    return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
+
+
+def _test(test: str, printed: Sequence[str]) -> str:
+    """Where the measured side of a tow comes from, with the printed values beside our fit."""
+    if test.endswith(AS_PRINTED):
+        return test
+    return f"our fit to the points of {test}" + (f" (printed: {', '.join(printed)})" if printed else "")

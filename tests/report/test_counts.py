@@ -1,0 +1,41 @@
+"""What the report counts as found, and what it says of rig and balance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from coeflab.core.provenance import Source
+from coeflab.fits.uncertainty.budget import RIG
+from coeflab.report.answer import answer
+from coeflab.report.content import verdict
+from tests.report.studies import FULL, budgets, small_study
+
+STATED = "static derivatives 4-5 %"
+
+
+def harvest(study) -> str:
+    return next(p for p in verdict(study).paragraphs if p.startswith("Found: "))
+
+
+def test_copies_by_symmetry_do_not_count_and_kinds_are_named():
+    study = small_study(FULL)
+    found = [c for c in study.coefficients if c.value is not None]
+    plain = harvest(study)
+    assert plain.startswith(f"Found: {len(found)} coefficients (")
+    assert "linear" in plain
+    assert "copies" not in plain
+    fit = study.fits[0]
+    turned = tuple(replace(s, by_symmetry="tow/other") if s.symbol == "Nv" else s for s in fit.sweeps)
+    copied = harvest(replace(study, fits=(replace(fit, sweeps=turned), *study.fits[1:])))
+    assert copied.startswith("Found: 1 coefficient (")
+    assert copied.endswith("1 more is a copy by symmetry.")
+
+
+def test_the_first_page_says_what_the_source_states_where_rig_and_balance_are_left_out():
+    study = small_study(FULL)
+    tables = tuple(replace(t, source=Source("t", kind="experiment", stated_uncertainty=STATED)) for t in study.tables)
+    found = tuple(replace(b, unassessed=(*b.unassessed, RIG)) for b in budgets(study))
+    wanted = f"U95 is without rig and balance; the source states {STATED}."
+    assert wanted in answer(replace(study, tables=tables, budgets=found)).notes
+    assert not any("rig and balance" in n for n in answer(replace(study, tables=tables, budgets=budgets(study))).notes)
+    assert not any("rig and balance" in n for n in answer(replace(study, budgets=found)).notes)
