@@ -44,6 +44,24 @@ def test_the_rule(value: float, u95: float | None, found: bool) -> None:
     assert moved_by_the_rest(replace(one, target="x2")) is None
 
 
+def test_a_move_below_a_tenth_is_a_note_and_a_copy_by_symmetry_says_nothing() -> None:
+    study = small_study(FULL)
+    fit = study.fits[0]
+
+    def found(by_symmetry: str, shorter: float) -> list[Severity]:
+        sweeps = tuple(
+            replace(s, value=WHOLE, u95=U95, sensitivity=(Sensitivity(CAP, shorter, 0.001),), by_symmetry=by_symmetry)
+            if s.symbol == "Yv"
+            else replace(s, sensitivity=())
+            for s in fit.sweeps
+        )
+        return [c.severity for c in check(replace(study, fits=(replace(fit, sweeps=sweeps),)))]
+
+    assert found("", -0.0340) == [Severity.WARN]
+    assert found("", -0.0320) == [Severity.NOTE]
+    assert found("tow/other", -0.0340) == []
+
+
 @pytest.fixture(scope="module")
 def bare_hull(tmp_path_factory: pytest.TempPathFactory) -> Study:
     plan = tmp_path_factory.mktemp("bare") / "plan.toml"

@@ -20,6 +20,7 @@ citations = ("ittc_uncertainty",)
 
 # Half as much again: more points at larger settings leave U95 of a curve that the shorter sweep shows, too, as it is or smaller.
 WIDER = 1.5
+MOVED = 0.1  # of the value: a smaller move is a note
 
 
 def check(study: Study) -> Sequence[Check]:
@@ -28,7 +29,8 @@ def check(study: Study) -> Sequence[Check]:
     for fit in study.fits:
         for sweep in fit.sweeps:
             c = fit.coefficients[sweep.symbol]
-            shorter = None if c.value is None or c.u95 is None else moved_by_the_rest(sweep)
+            without = c.value is None or c.u95 is None or bool(sweep.by_symmetry)  # a copy says nothing of its own
+            shorter = None if without else moved_by_the_rest(sweep)
             if shorter is not None:
                 out.append(_as_check(fit.campaign, sweep, shorter))
     return out
@@ -52,10 +54,12 @@ def moved_by_the_rest(sweep: Sweep) -> Sensitivity | None:
 
 
 def _as_check(campaign: str, sweep: Sweep, shorter: Sensitivity) -> Check:
+    apart = abs((sweep.value or 0.0) - (shorter.value or 0.0))
+    severity = Severity.WARN if apart > MOVED * abs(sweep.value or 0.0) else Severity.NOTE
     name, at = primed(sweep.symbol), _setting(sweep, shorter.cap)
     reach = _setting(sweep, float(np.max(np.abs(sweep.x))))
     return Check(
-        "largest_setting", f"{campaign} {name}", Severity.WARN,
+        "largest_setting", f"{campaign} {name}", severity,
         f"{name} = {plus_minus(sweep.value, sweep.u95)} to {reach}, {plus_minus(shorter.value, shorter.u95)} to {at}",
         f"settings beyond {at} leave {name} within its U95 there, and U95 below {WIDER:g} times that",
         "The curve changes beyond the shorter range: more settings move the slope and widen U95. The value in use is of the whole "
