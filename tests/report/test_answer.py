@@ -390,12 +390,16 @@ def test_suboff(suboff: Study):
         "authors' data, 3 of 3 recomputed stability indices."
     )
     assert said[3].startswith("Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull")
-    assert said[4].startswith("Computed and measured, without a verdict: X0' of suboff_cfd_barehull: grid study divergent")
+    assert said[4].startswith(
+        "Computed and measured, without a verdict: X0' of suboff_cfd_barehull: grid study divergent"
+    )
     assert said[5].startswith("Prediction: a coefficient from CFD against the one measured")
     assert said[6].startswith("Only the predictions are independent evidence.")
     assert said[7].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
     assert "This does not fail the study" in said[7]
-    assert said[8].startswith("Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method")
+    assert said[8].startswith(
+        "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method"
+    )
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
