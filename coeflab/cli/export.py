@@ -35,6 +35,7 @@ def command(
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.wording import file_stem
+    from coeflab.formats.export import Kind
     from coeflab.report.tables import formats as loss_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.plausibility import plausibility
@@ -70,7 +71,7 @@ def command(
             f"a target that loses part of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
             "a target that holds everything" if strict else "--accept-loss, to write the rest",
             file=file,
-            advice="" if parameters.added_mass else WITH_MASS,
+            advice=WITH_MASS if any(x.kind is Kind.MISSING and "added mass" in x.what for x in loss.lost) else "",
         )
     folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")
     paths = [folder / name for name in sorted(made.files)]

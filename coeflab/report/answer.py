@@ -278,7 +278,12 @@ def _stability(study: Study) -> Chip:
     """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
     every = [index for p in study.parameter_files.values() for index in stability(p)]
     if not every:
-        return Chip("Stability", "no value: no index", Severity.NOTE, "stability" if study.parameter_files else "")
+        return Chip(
+            "Stability",
+            "no value: derivatives or mass missing",
+            Severity.NOTE,
+            "stability" if study.parameter_files else "",
+        )
     first = [index for index in every if index.subject == every[0].subject]
     d: Derived = min(first, key=lambda index: index.name != "G_h")
     said = sense(d).removesuffix(ALONE).partition(" at ")[0]

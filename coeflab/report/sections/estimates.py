@@ -281,7 +281,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         status = "" if value is not None else "no estimate"
         rows.append(AnswerRow(symbol, value, u95, status, "estimates", anchor="coefficients"))
     indices = stability(parameters)
-    held = _stability(indices[0]) if indices else "no value: no index"
+    held = _stability(indices[0]) if indices else "no value: derivatives or mass missing"
     turn = interval_in_words(shape.carried, parameters.conditions.speed)
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
