@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.glide_polar import munk_in_words
-from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import RIG
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
@@ -68,7 +67,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
-    out += filter(None, (_not_in_u95(study, rows), *_as_stated(study, rows), _independent(study)))
+    out += filter(None, (_not_in_u95(study, rows), _independent(study)))
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
@@ -99,12 +98,12 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
         )  # fmt: skip
         if method:
             methods.setdefault(method, []).append(primed(row.symbol))
-    each = "".join(f"; {', '.join(s)} from their {m} tests, not held here" for m, s in methods.items())
-    return f"{column.name}: the authors' values from the same points, the only verdict{each}."
+    each = "".join(f"; {', '.join(s)} by {m}, not held here" for m, s in methods.items())
+    return f"{column.name}: the authors' values, same points{each}."
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
-    """What no U95 of the rows holds, the first of it by name; empty where every one holds all."""
+    """What no U95 of the rows holds, the first of it by name, and what the source states; empty where every one holds all."""
     mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol.removesuffix("'")) in mine]
     fixed = SET if all(b.kind == "cfd" for b in budgets) else ()
@@ -113,15 +112,17 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
         for n in dict.fromkeys(n for b in budgets for n in b.unassessed)
         if n not in fixed and all(n in b.unassessed for b in budgets)
     ]
+    stated = _as_stated(study, rows)
     if not names:
-        return ""
+        return f"U95 is without rig and balance; {stated}." if stated else ""
     more = f" and {len(names) - MOST_NAMED + 1} more" if len(names) > MOST_NAMED else ""
     shown = names[: MOST_NAMED - 1] if more else names
-    return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more}, see Coefficients."
+    said = f"; {stated}" if stated else ""
+    return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more} (Coefficients){said}."
 
 
-def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
-    """What sources of tests state of their uncertainty, where U95 leaves rig and balance out; a sentence each."""
+def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
+    """What sources of tests state of their uncertainty, where U95 leaves rig and balance out; empty where nothing."""
     mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
     without = {
         b.campaign for b in study.budgets if RIG in b.unassessed and (b.campaign, b.symbol.removesuffix("'")) in mine
@@ -129,7 +130,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return tuple(f"U95 is without rig and balance; the source states {text.removesuffix('.')}." for text in said)
+    return "; ".join(f"the source states {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -146,11 +147,6 @@ def _independent(study: Study) -> str:
     said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
     inside = sum(all(v.within for v in one) for one in numbers)
     return f"Independent: CFD meets {inside} of {len(numbers)} numbers measured on the same body ({bodies}) within U_V{said}."
-
-
-def _gives(fit: FitResult, rows: Sequence[AnswerRow]) -> bool:
-    """Whether a fit of another body has a value of a wanted coefficient."""
-    return any(c.value is not None and c.symbol == r.symbol for c in fit.coefficients.coefficients for r in rows)
 
 
 def _readings(first: Scaling, other: Scaling) -> str:
