@@ -19,6 +19,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.slope_at_origin import fit
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, with_budget
 from coeflab.fits.uncertainty.grid_convergence import Convergence, gravest, grid_studies
+from coeflab.law.symbols import derivative
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
@@ -266,7 +267,7 @@ def parameters(values: dict[str, tuple[float, float]], mass: bool = True) -> Par
             "conditions": {"density": 1000.0, "speed": 1.5},
             "mass": {"mass": 72.0, "mass_moment": 0.0, "mass_prime": 0.018, "mass_moment_prime": 0.0} if mass else None,
             "coefficients": [
-                {"symbol": s, "value": v, "u95": u, "unit": "1", "value_si": None, "unit_si": "N", "status": "ok",
+                {"symbol": s, "value": v, "u95": u, "unit": "1", "value_si": None, "unit_si": derivative(s.removesuffix("'")).unit, "status": "ok",
                  "origin": "fit", "parts": {}, "campaign": "tow"}
                 for s, (v, u) in values.items()
             ],

@@ -23,7 +23,7 @@ def parameter_file(
         prime = value / ((0.5 * DENSITY) ** half * SPEED**speed * LENGTH**length)
         coefficients.append(
             {
-                "symbol": symbol + "'", "value": prime, "u95": None, "unit": "1", "value_si": value, "unit_si": "SI",
+                "symbol": symbol + "'", "value": prime, "u95": None, "unit": "1", "value_si": value, "unit_si": derivative(symbol).unit,
                 "status": "stated", "origin": "literature", "parts": {}, "law": "motion",
             }
         )  # fmt: skip
