@@ -172,7 +172,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
 
 def _is_open(c: Coefficient) -> bool:
     """Whether the data leave the sign of a value open."""
-    return c.value is not None and c.u95 is not None and abs(c.value) <= c.u95
+    return c.value is not None and c.u95 is not None and bool(abs(c.value) <= c.u95)
 
 
 def _of_some(name: str, budgets: Sequence[Budget]) -> str:

@@ -235,7 +235,8 @@ def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
     unit = "N m" if component in MOMENTS else "N"
     value = float(table.forces[component][row])
     text = f"{component} = {number(value, 4)} {unit}, expected {number(expected, 4)} ± {number(scatter, 2)} {unit}"
-    return text + ": sign?" * (abs(value + expected) <= max(scatter, OPPOSITE * abs(expected)) < abs(expected))
+    opposite = abs(value + expected) <= max(scatter, OPPOSITE * abs(expected)) < abs(expected)
+    return text + ": sign?" if opposite else text
 
 
 def _without(x: Array, y: Array, se: Array | None, at: NDArray[np.bool_]) -> origin_slope.OriginSlope:
