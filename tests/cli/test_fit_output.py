@@ -97,7 +97,7 @@ def test_the_next_runs_are_named_for_people_and_programs(coeflab: Run) -> None:
     assert [line.split()[0] for line in table[1:7:2]] == ["Yv'", "Nv'", "Kv'"]
     assert all(" deg " in line for line in table[1:7])
     found = json.loads(coeflab("fit", "suboff_roddy_3", "--next", "2", "--json").stdout)
-    assert "noise" in found["u95_of_slopes_covers"]
+    assert "scatter" in found["u95_of_slopes_covers"]
     by = {c["symbol"]: c for c in found["coefficients"]}
     for n in found["next"]:
         assert n["u95_now"] == by[n["symbol"]]["u95"]
