@@ -98,7 +98,7 @@ def values(found: FitResult) -> dict[str, tuple[float | None, float | None]]:
 
 class _Study:
     def __init__(self, *fits: FitResult) -> None:
-        self.fits, self.tables = fits, ()
+        self.fits, self.tables, self.by_body = fits, (), {}
 
 
 def sides(found: FitResult) -> list[Check]:

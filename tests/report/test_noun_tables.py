@@ -62,7 +62,7 @@ def nouns():
     return {
         "study": (study, "<Study small: ", "<svg"),
         "answer": (answer(study), "<Answer ", "<svg"),
-        "coefficient": (fit.coefficients["Yv"], "<Coefficient Yv' = -0.02981 +- 0.00013 (0.5 %), ", "<svg"),
+        "coefficient": (fit.coefficients["Yv"], "<Coefficient Yv' = -0.02981 +- 0.00013 (0.4 %), ", "<svg"),
         "set": (fit.coefficients, "<CoefficientSet body of ", "<svg"),
         "fit": (fit, "<FitResult slope_at_origin of ", "<svg"),
         "models": (result, "<FitResult polynomial of suboff_roddy_2: 1 models", "<svg"),

@@ -553,10 +553,12 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
         "b16, row: excluded, crashed, no number in the source",
         f"b20, Y: excluded, too short, {marked}",
     )
-    assert unused([table]) == "Points left out: b12 drifting; b16 crashed; b20 (Y) too short."
-    several = "b12 of runs, b12 of runs drifting; b16 of runs, b16 of runs crashed; b20 of runs (Y), b20 of runs (Y) too short"
-    assert unused([table] * 2) == f"Points left out: {several}."
-    assert unused([table.with_uncertain_cells()]) == "Points left out: b16 crashed."
+    assert (
+        unused([table]) == "Readings left out (point, components): b12: still drifting; b16: crashed; b20 Y: too short."
+    )
+    several = "b12 of runs, b12 of runs: still drifting; b16 of runs, b16 of runs: crashed; b20 of runs Y, b20 of runs Y: too short"
+    assert unused([table] * 2) == f"Readings left out (point, components): {several}."
+    assert unused([table.with_uncertain_cells()]) == "Points left out: b16: crashed."
     assert table.usable["Y"].tolist() == kept.tolist()
     assert np.all(table.errors["Y"][kept] > 0.0)
     assert any("b12 (" in n for n in table.notes)

@@ -141,7 +141,11 @@ def test_a_plan_with_flipped_literature_fails(tmp_path: Path) -> None:
     )
     study = run(read_plan(tmp_path / "plan.toml"))
     assert study.failed
-    assert {(c.subject, c.severity.value) for c in doubts(study)} == {("p Yr'", "warn"), ("p Nr'", "fail")}
+    assert {(c.subject, c.severity.value) for c in doubts(study)} == {("p Nr'", "fail")}
+    grave = {(c.name, c.subject) for c in study.checks if c.severity is Severity.FAIL}
+    assert {("signs", "p Nr'"), ("printed_index", "Roddy configuration 3 G_h")} <= grave
+    # U95 of Yv' leaves open whether Yr' acts aft: the printed index, not its place, tells of it.
+    assert f"{study.parameter_files['p'].coefficient('Yv')!r}".startswith("<Coefficient Yv' = -0.0038 +- 0.0031")
     (index,) = (c for c in study.checks if c.name == "stability" and c.subject == "p G_h")
     assert "stable" not in index.statistic
     assert "Nr' - xG'm' is not negative: it drives the motion instead of damping it" in index.comment

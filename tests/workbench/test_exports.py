@@ -121,7 +121,7 @@ def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> 
     """X and K of the appended hull at 18 degrees, where both turn; no component fails."""
     found = [c for c in suboff.checks if c.name == "law at points"]
     assert [c.subject for c in found if c.severity is Severity.FAIL] == []
-    warned = {c.subject: c.comment for c in found if c.severity is Severity.WARN}
+    warned = {c.subject: c.statistic for c in found if c.severity is Severity.WARN}
     assert set(warned) == {f"suboff_fully_appended {c} suboff_roddy_2/table.csv" for c in "XK"}
     assert all(said.startswith("At points 80, 81, outside") for said in warned.values())
     # "worst 10 %, expected ... 5 %" read as a failure: the bound is 11 %.

@@ -25,6 +25,7 @@ from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.formats.export import Loss
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.symbols import derivative
 from coeflab.motion.simulation import simulate
 from coeflab.report.answer import answer
 from coeflab.report.content import document
@@ -309,7 +310,7 @@ def fitted(base: ParameterFile, keep: dict[str, tuple[str, float]], **more: obje
     for c in content["coefficients"]:
         if c["symbol"] in keep:
             symbol, value = keep[c["symbol"]]
-            rows.append({**c, "symbol": symbol, "value": value, "u95": 0.001, "status": "ok", "origin": "fit",
+            rows.append({**c, "symbol": symbol, "unit_si": derivative(symbol).unit, "value": value, "u95": 0.001, "status": "ok", "origin": "fit",
                          "campaign": "tow", "value_si": None, "potential": None})  # fmt: skip
     content |= {"name": "tow", "coefficients": rows, "covariance": {"symbols": [], "matrix": []}, "added_mass": None}
     return ParameterFile.model_validate_json(json.dumps(content | more))

@@ -360,7 +360,7 @@ def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
 
 
 def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
-    """Its figures and two drawings; what was assumed and the other drawings in the appendix."""
+    """Its figures and two drawings; in the appendix what was assumed, the other drawings, and figures without any value."""
     name = made.manoeuvre.name.replace("_", " ")
     title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
     text = []
@@ -373,14 +373,19 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
     length = made.vehicle.length
     drawn = motion_figures(made.trajectory.until(made.determined), anchor, length, title)
     shown = tuple(f for f in drawn if f.anchor.removeprefix(f"{anchor}-") in SHOWN) or drawn[:2]
+    table = (figure_table(made.figures, title, length),)
+    is_empty = bool(text) and all(f.value is None for f in made.figures)
+    if is_empty:
+        text.append(f"No value: {listed([f.name for f in made.figures])}.")
     more = Section(
         f"{anchor}-more",
         "Assumed and found",
         tuple(f"{s[:1].upper()}{s[1:]}." for s in made.statements),
+        table if is_empty else (),
         figures=tuple(f for f in drawn if f not in shown),
         appendix=True,
     )
-    return Section(anchor, title, tuple(text), (figure_table(made.figures, title, length),), shown, (more,))
+    return Section(anchor, title, tuple(text), () if is_empty else table, shown, (more,))
 
 
 EXPORTED = (
