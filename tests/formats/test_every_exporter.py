@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import cast
 
 import numpy as np
 import pytest
 
-from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.export import covered_grid
+from coeflab.core.types import Array
+from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
+from coeflab.formats.export import DEFLECTED, covered_grid
+from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
-from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.force_law import force_law, steered_terms
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export
 from tests.formats.files import HOSTILE, slopes_alone
@@ -96,6 +99,22 @@ def test_the_same_bytes_twice(suboff: Study, target: str, body: str) -> None:
     assert dict(plugin(target).render(again)) == dict(plugin(target).render(given))
 
 
+def both_forces(target: str, given: ParameterFile, files: Mapping[str, bytes], nu: Array) -> tuple[Array, Array]:
+    """The target's and the file's; where the target holds controls, each state again with each of them to either side."""
+    to, turned = plugin(target), steered_terms(given)
+    names = [n for n in CONTROLS if any(n in t.variables for t in turned)]
+    if not names or not isinstance(to, SteeredExporter):
+        return to.force(files, nu), force_law(given).force(nu)
+    rows = [np.zeros(3)]
+    for n in names:
+        data = [abs(x) for c in given.offered if c.variable == n for x in (c.low, c.high)]
+        side = np.eye(3)[CONTROLS.index(n)] * max(data, default=DEFLECTED)
+        rows += [-side, side]
+    states, controls = np.tile(nu, (len(rows), 1)), np.repeat(rows, len(nu), axis=0)
+    ours = force_law(given).force(states) + ForceLaw(turned, np.zeros((6, 6, 6))).force(states, controls)
+    return to.steered_force(files, states, controls), ours
+
+
 @each_target
 @each_body
 def test_the_loss_report_is_there_and_true(suboff: Study, target: str, body: str) -> None:
@@ -106,15 +125,16 @@ def test_the_loss_report_is_there_and_true(suboff: Study, target: str, body: str
     assert loss is not None
     nu, grid = covered_grid(given)
     files = {n: c for n, c in made.files.items() if not n.endswith(".loss.txt")}
-    apart = np.abs(plugin(target).force(files, nu) - force_law(given).force(nu))
+    theirs, ours = both_forces(target, given, files, nu)
+    apart = np.abs(theirs - ours)
     np.testing.assert_allclose(loss.worst, apart.max(axis=0), rtol=1e-12)
     np.testing.assert_allclose(loss.rms, np.sqrt((apart**2).mean(axis=0)), rtol=1e-12)
-    whole = np.abs(force_law(given).force(nu)).max(axis=0)
+    whole = np.abs(ours).max(axis=0)
     close = bool(np.all(apart.max(axis=0)[whole > 1e-6] <= 1e-9 * whole[whole > 1e-6]))
     assert loss.lossless == (close and not loss.not_held and not loss.lost)
     text = made.files[f"{body}.{target}.loss.txt"].decode()
     assert grid in text
-    for said in (*loss.not_held, *map(str, loss.lost), *loss.changes):
+    for said in (*loss.not_held, *map(str, loss.lost), *loss.changes, *loss.controls):
         assert said in text
     assert loss.changes
     assert ("This export is not lossless" in text) != loss.lossless

@@ -19,10 +19,12 @@ BLUEROV = (DATA / "bluerov2_heavy.yml").read_text(encoding="utf-8")
 BLUEROV_M = (DATA / "bluerov2_heavy.m").read_text(encoding="utf-8")
 KNOWN = ["lauv.urdf.xacro", "rexrov.urdf", "tethys_like.sdf", "nps_auv2.m", "bluerov2_heavy.m", "bluerov2_heavy.yml",
          "torpedo_imperial.m"]  # fmt: skip
+# The made-up glider's numbers: the plugin's reversed C_A makes dN/dv +81 where an ideal fluid has -121, and dY/dr +5 for -5,
+# beside a side force of 2 N/(m/s), whose lever would then be 100 m; see the test of what goes with it.
 # Healey and Lienard print Mvp' with the sign of Yrdot'; by Kirchhoff's equations it is -Yrdot'.
 FORMAT = {"<quadratic_damping>", "<disable_coriolis>"}
 WELL_KNOWN = {"rexrov.urdf": {"M_A Zr and Nw"}, "lauv.urdf.xacro": {"<quadratic_damping>"},
-              "tethys_like.sdf": {"<disable_coriolis>"},
+              "tethys_like.sdf": {"<disable_coriolis>", "Nv'", "Yur'"},
               "nps_auv2.m": {"Mvp'"}}  # fmt: skip
 
 
@@ -42,6 +44,12 @@ def only(folder: Path, text: str, severity: Severity) -> Check:
 def test_known_vehicles_raise_no_other_finding(name: str, tmp_path: Path) -> None:
     told = {c.subject for c in found(tmp_path, (DATA / name).read_text(encoding="utf-8"))}
     assert told == WELL_KNOWN.get(name, set())
+
+
+def test_what_the_reversed_coriolis_of_a_glider_does_goes_with_it(tmp_path: Path) -> None:
+    off = GLIDER.replace("<yDotV>", "<disable_coriolis>true</disable_coriolis><yDotV>")
+    assert {c.subject for c in found(tmp_path, off)} == {"Nv'"}
+    assert found(tmp_path, off.replace("<nVabsU>-40</nVabsU>", "")) == []
 
 
 FLIPPED = {
@@ -131,9 +139,11 @@ def test_yaw_damping_per_degree(tmp_path: Path) -> None:
 
 def test_planes_of_different_axes(tmp_path: Path) -> None:
     text = LAUV.replace("0 0 3.1 0 -9.7 0", "0 0 -3.1 0 -9.7 0").replace("0 0 -23 0 -11.5 0", "0 0 -23 0 11.5 0")
-    check = only(tmp_path, text, Severity.WARN)
-    assert check.subject == "Nv and Mw; Yr and Zq"
-    assert check.statistic == "-3.1 and -3.1; 11.5 and 11.5"
+    pair, place = (c for c in found(tmp_path, text) if c.subject not in FORMAT)
+    assert (pair.subject, pair.severity) == ("Nv and Mw; Yr and Zq", Severity.WARN)
+    assert pair.statistic == "-3.1 and -3.1; 11.5 and 11.5"
+    assert (place.subject, place.severity) == ("Zq'", Severity.WARN)  # the plane that was turned, by its own signs
+    assert place.rule == "aft of the centre, as that of drift"
 
 
 def test_a_vehicle_upside_down(tmp_path: Path) -> None:

@@ -123,7 +123,7 @@ def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> 
     assert [c.subject for c in found if c.severity is Severity.FAIL] == []
     warned = {c.subject: c.statistic for c in found if c.severity is Severity.WARN}
     assert set(warned) == {f"suboff_fully_appended {c} suboff_roddy_2/table.csv" for c in "XK"}
-    assert all(said.startswith("At points 80, 81, outside") for said in warned.values())
+    assert all(said.startswith("points 80, 81, outside the range of the law") for said in warned.values())
     # "worst 10 %, expected ... 5 %" read as a failure: the bound is 11 %.
     rule = next(c.rule for c in found if c.subject == "suboff_fully_appended X suboff_roddy_2/table.csv")
     assert rule == "every point within 11 % of the largest force: 3 times the scatter of repeated runs + 5 %"
