@@ -116,6 +116,7 @@ def _safe() -> bool:
 
 
 FEW = 8
+MANY = 20  # input files, whose list is in the appendix alone
 
 
 def document(study: Study, *, full: bool = True) -> Document:
@@ -561,11 +562,19 @@ def _checks(study: Study) -> Section:
 
 
 def _provenance(study: Study) -> Section:
+    """What went in: a short list of files here, a long one in the appendix."""
+    inputs = filled(tables.provenance(study))
+    files = sum(len(t.rows) for t in inputs)
     text = ["The files below are identified by the sha256 of their bytes."]
+    if files > MANY:
+        text = [f"{files} files went in, identified by the sha256 of their bytes; --full lists them."]
     settings = dict.fromkeys(
         f"Settings of the fit {f.fit}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
         for f in study.fits
         if f.settings
     )
     text += settings
-    return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))
+    if files > MANY:
+        whole = Section("inputs", "All inputs", tables=inputs, appendix=True)
+        return Section("provenance", "Provenance", tuple(text), subsections=(whole,))
+    return Section("provenance", "Provenance", tuple(text), inputs)

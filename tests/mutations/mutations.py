@@ -599,10 +599,12 @@ def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], V
 
 
 def _printed_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
-    """Roddy's values, those of each configuration and kind."""
+    """Roddy's values and indices, those of each configuration and kind; a value with an illegible digit is not read at all."""
     path = shipped("cfd_data") / "suboff" / "published.toml"
     for line in path.read_text(encoding="utf-8").splitlines()[LITERATURE:]:
-        for symbol, printed in re.findall(r'(\w+) = "(-?[\d.]+)"', line) if line.startswith("values") else ():
+        for symbol, printed in (
+            re.findall(r'(\w+) = "(-?[\d.]+)"', line) if line.startswith(("values", "indices")) else ()
+        ):
             changed = repr(round(float(printed) * factor, 9))
             yield f"{symbol} = {printed}", published((f'{symbol} = "{printed}"', f'{symbol} = "{changed}"'))
 

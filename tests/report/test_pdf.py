@@ -311,7 +311,7 @@ def test_the_core_of_the_validation_has_twelve_pages(suboff):
     coefficients = next(s for s in whole.sections if s.anchor == "coefficients")
     zero = [n for t in coefficients.tables for n in t.notes if n.startswith("Zero by symmetry")]
     assert zero == [
-        "Zero by symmetry, and zero within U95: Kv', Kr', Kv|v|' and Kvvv'; |value| + U95 is at most 1.8e-06."
+        "Zero by symmetry, and zero within U95: Kv', Kr', Kv|v|' and Kvvv'; |value| + U95 is at most 1.9e-06."
     ]
 
 

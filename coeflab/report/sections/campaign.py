@@ -46,6 +46,7 @@ from coeflab.vehicle.derived import centre_of_pressure, stability
 from coeflab.vehicle.reference import Relation
 
 LONGEST = 80
+AS_BEFORE = "Data, sources and the table of all coefficients stand in the section of the first fit of this campaign."
 
 
 def filled(*several: Table) -> tuple[Table, ...]:
@@ -79,7 +80,8 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     title = mine[0].title if len(fit.campaigns) == 1 and mine else f"Jointly: {fit.campaign}"
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
-    text = [line for t in mine for line in _about(t)]
+    again = _first_of(study, fit) is not fit
+    text = [AS_BEFORE] if again else [line for t in mine for line in _about(t)]
     zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
     alone = [s for s in fit.sweeps if s.symbol not in {c.symbol for c in zero} and not s.by_symmetry]
     if any(t.campaign == fit.campaign for t in study.plan.tows):
@@ -94,7 +96,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         place,
         title,
         tuple(text),
-        filled(tables.coefficients(study, fit.campaign), joint_tables.campaigns((fit,))),
+        filled(*(() if again else (tables.coefficients(study, fit.campaign),)), joint_tables.campaigns((fit,))),
         tuple(
             incidence_figure(t, rate, study.body, anchor(f"{place} {t.name} {rate}", taken))
             for t in mine
@@ -116,6 +118,11 @@ def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient
     return (
         f"In the table only, by symmetry from other points or not among those wanted: {listed(left)}." if left else ""
     )
+
+
+def _first_of(study: Study, fit: FitResult) -> FitResult:
+    """The first fit of the same campaign, whose section describes the data and has the table of all coefficients."""
+    return next(f for f in study.fits if f.campaign == fit.campaign)
 
 
 def _shown_before(study: Study, fit: FitResult) -> bool:
@@ -188,12 +195,6 @@ def _caveats(sweep: Sweep) -> list[str]:
         low, high = (with_u95(f(s.value for s in shorter if s.value is not None), sweep.u95)[0] for f in (min, max))
         moved = f"stays at {low}" if low == high else f"lies between {low} and {high}"
         out.append(f"Had the sweep ended sooner, as in the table by largest setting, the value {moved}.")
-    if sweep.left_out:
-        reasons: dict[str, list[str]] = {}
-        for p in sweep.left_out:
-            reasons.setdefault(p.reason, []).append(p.label)
-        each = "; ".join(f"{', '.join(labels)} ({why})" for why, labels in reasons.items())
-        out.append(f"Left out: {each}.")
     return out
 
 
