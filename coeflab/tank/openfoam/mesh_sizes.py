@@ -234,7 +234,7 @@ def mirrored_axes(body: TowedBody, half: Half) -> tuple[int, ...]:
     body : TowedBody
     half : Half
     """
-    if not any(chord < body.length for chord in body.chord.values()):
+    if not any(chord < 0.999 * body.length for chord in body.chord.values()):  # a hull's differs from it by rounding
         return ()
     cut = None if half is Half.WHOLE else SYMMETRY_AXIS[half]
     return tuple(axis for axis in (1, 2) if body.mirrors[axis] and axis != cut)
