@@ -27,6 +27,7 @@ class Basis(StrEnum):
 
     PREDICTED = "predicted"
     PRINTED = "printed and recomputed"
+    REVISED = "revised"
     CALIBRATION = "calibration"
     CONSISTENCY = "consistency"
 
@@ -39,6 +40,7 @@ class Basis(StrEnum):
 BASES: dict[Basis, str] = {
     Basis.PREDICTED: "published, and not used to make our model",
     Basis.PRINTED: "published, and computed here from other published numbers",
+    Basis.REVISED: "published, not used in a constant, but our methods were revised after a comparison with them",
     Basis.CALIBRATION: "our model was fitted to these numbers, so agreement proves nothing",
     Basis.CONSISTENCY: "not published: computed here in a second way, or by theory",
 }

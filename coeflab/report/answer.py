@@ -386,7 +386,8 @@ def _of_publication(found: Acceptance) -> Answer:
     good, count, valid = _held(found)
     some = f"{count - good} of {count} numbers outside the tolerance"
     said = f"all {count} numbers within the tolerance" if good == count else some
-    none = "none of them is validation: calibration and consistency only"
+    others = [b for b, (_, n) in held(found).items() if n and not b.validates]
+    none = f"none of them is validation: {listed(others)} only"
     by = ", or ".join(b for b, (_, n) in held(found).items() if n and b.validates)
     said += (
         f"; {f'all {count}' if valid == count else f'{valid} of the {count}'} are validation: {by}"

@@ -106,11 +106,16 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     """What no U95 of the rows holds, the first of it by name, and what the source states; empty where every one holds all."""
     mine = {(r.source, r.symbol) for r in rows if r.u95 is not None}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol.removesuffix("'")) in mine]
-    fixed = SET if all(b.kind == "cfd" for b in budgets) else ()
-    names = [
-        n.removeprefix("error of ")
-        for n in dict.fromkeys(n for b in budgets for n in b.unassessed)
-        if n not in fixed and all(n in b.unassessed for b in budgets)
+    lacking: dict[str, set[str]] = {}
+    for b in budgets:
+        for name in (n for n in b.unassessed if n not in (SET if b.kind == "cfd" else ())):
+            lacking.setdefault(name.removeprefix("error of "), set()).add(b.symbol.removesuffix("'"))
+    whole = {b.symbol.removesuffix("'") for b in budgets}
+    names = [n for n, of in lacking.items() if of == whole]
+    names += [
+        f"{n} ({listed([primed(r.symbol) for r in rows if r.symbol in of])})"
+        for n, of in lacking.items()
+        if of != whole
     ]
     stated = _as_stated(study, rows)
     if not names:

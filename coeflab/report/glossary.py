@@ -130,8 +130,9 @@ TERMS: tuple[Term, ...] = (
     Term("E = S - D", "Comparison error: computation S minus test D. Where |E| < U_V no modelling error can be shown.", ("asme_vv20",), (),
          "validation.md"),
     Term("basis", "Where the number comes from that ours is compared with. Predicted: published, and not used to make our model. Printed and "
-         "recomputed: published, and computed here from other published numbers. Calibration: our model was fitted to it. Consistency: "
-         "computed here in a second way, or by theory. Only the first two are validation.", (), ("printed and recomputed",), "validation.md", False),
+         "recomputed: published, and computed here from other published numbers. Revised: our methods were revised after a comparison with "
+         "it. Calibration: our model was fitted to it. Consistency: computed here in a second way, or by theory. Only the first two are "
+         "validation.", (), ("printed and recomputed",), "validation.md", False),
     # Potential flow
     Term("added mass", "Inertia of the water that an accelerated body moves: the 6x6 matrix M_A, symmetric. Acceleration derivatives "
          "are its negatives: Xudot = -m_x, Yvdot = -m_y.", ("newman1977", "fossen2011"), ("added-mass matrix",)),

@@ -369,7 +369,7 @@ def secant(model: FittedModel, symbol: str) -> Secant:
     return Secant(symbol, variable, model.named(symbol)[0], value, factor * deviation, reach)
 
 
-def _meets(coefficients: dict[int, float], value: float, limit: float) -> float | None:
+def _meets(coefficients: Mapping[int, float], value: float, limit: float) -> float | None:
     """Smallest positive x up to ``limit`` with sum b_n x^(n-1) = value."""
     highest = max(coefficients)
     polynomial = [coefficients.get(n, 0.0) for n in range(highest, 0, -1)]
@@ -399,9 +399,25 @@ def explain(model: FittedModel, symbol: str, reference: float, origin: str) -> E
         The sentence says so when the range does not explain the difference, and that the amplitude of the other test
         is unknown here.
     """
-    here = secant(model, symbol)
-    variable, powers = _powers(model, symbol)
+    _, powers = _powers(model, symbol)
     coefficients = {n: float(model.fit.coefficients[i]) for n, i in powers.items()}
+    return explained(secant(model, symbol), coefficients, reference, origin)
+
+
+def explained(here: Secant, coefficients: Mapping[int, float], reference: float, origin: str) -> Explanation:
+    """Say over which range the secant of an odd curve would equal a value from elsewhere.
+
+    Parameters
+    ----------
+    here : Secant
+    coefficients : mapping of int to float
+        Power n, odd in the motion: its coefficient.
+    reference : float
+        The primed value from elsewhere, on the same length and reference point.
+    origin : str
+        What that value is, for example ``Roddy (1990), PMM``.
+    """
+    variable = here.variable
     harmonic = {n: b * 2.0 * gamma(n / 2 + 1) / (sqrt(pi) * gamma((n + 3) / 2)) for n, b in coefficients.items()}
     limit = FARTHEST * here.reach
     equal_at, harmonic_at = _meets(coefficients, reference, limit), _meets(harmonic, reference, limit)

@@ -152,6 +152,7 @@ def table(found: tuple[Row, ...]) -> Table:
         f"{sum(r.inside for r in counted)} of {len(counted)} inside the U95 of the estimate, median U95 {100 * np.median([r.width for r in counted]):.0f} %.",
         f"Main derivatives: median |error| {100 * np.median(np.abs(errors)):.0f} %, mean signed error {100 * np.mean(errors):+.0f} %, "
         f"worst {primed(worst.symbol)} of configuration {worst.configuration}, {100 * (worst.ratio - 1.0):+.0f} %.",
+        "Revised once: the first version had 9 of 15 inside, and which was known (docs/estimates.md). No blind prediction.",
         goals(found),
         "Configuration 3: bare hull; 2 and 1: hull, sail, four planes, ring wing 1. copy: alike by symmetry, counts once.",
     )
@@ -187,7 +188,7 @@ def acceptance() -> Acceptance:
     derivatives = tuple(
         Compared(
             f"configuration {r.configuration}", primed(r.symbol), "1", r.measured, r.value, float(r.found.u95 or 0.0),
-            Basis.PREDICTED,
+            Basis.REVISED,
         )
         for r in counted
     )  # fmt: skip
@@ -197,8 +198,8 @@ def acceptance() -> Acceptance:
         "Estimates from the shape against SUBOFF tests",
         (
             ComparedTable("derivatives", "Derivatives, allowed: U95 of the estimate", derivatives, source, (
-                "No share or constant uses an error on SUBOFF. The methods were revised once knowing a first comparison, 9 of 15 "
-                "inside (docs/estimates.md): no blind prediction.",)),
+                "No share or constant uses an error on SUBOFF. The first version had 9 of 15 inside; the methods were revised once "
+                "knowing which (docs/estimates.md): no blind prediction, so none counts as validation.",)),
         ),
         (),
         (*table(found).notes, *_beside()),

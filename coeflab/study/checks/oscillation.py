@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from scipy import stats
+
 from coeflab.core.table import Check, Severity
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.rows.regression import Rows, model_of
-from coeflab.fits.rows.sweeps import explain
+from coeflab.fits.rows.sweeps import Secant, explained
 from coeflab.law.symbols import primed
-from coeflab.law.terms import parse_suffix
 from coeflab.study.study import Study
 from coeflab.vehicle.reference import PublishedValue, Reference
 
@@ -21,17 +21,21 @@ RATES = ("p", "q", "r")
 FEWEST = 5
 
 
-def _law(sweep: Sweep) -> FittedModel:
-    """Slope with x|x| or x^3, whichever has the lower AICc."""
-    rows = Rows({sweep.variable: sweep.x}, sweep.y, None, sweep.labels, sweep.component, (sweep.table,), sweep.campaign,
-                sweep.body)  # fmt: skip
-    v = sweep.variable
-    fitted = []
-    for high in (f"{v}|{v}|", v * 3):
-        suffixes = ("0", v, high)
-        symbols = tuple(sweep.component + s for s in suffixes)
-        fitted.append(model_of(rows, tuple(parse_suffix(s) for s in suffixes), symbols, f"{v} + {high}"))
-    return min(fitted, key=lambda m: m.fit.aicc)
+def _tied(sweep: Sweep, slope: float) -> tuple[Secant, dict[int, float]]:
+    """The recommended slope and the one of x|x| and x^3 that fits the rest better, as powers of x, and their secant."""
+    x, y = sweep.x[sweep.used], sweep.y[sweep.used]
+    offset = np.ones_like(x) if np.any(x < 0.0) and np.any(x > 0.0) else np.zeros_like(x)
+    reach, freedom = float(np.max(np.abs(x))), len(x) - 1 - int(offset[0])
+    found = []
+    for power in (2, 3):
+        columns = np.column_stack([np.sign(x) * np.abs(x) ** power, offset])
+        solved = np.linalg.lstsq(columns, y - slope * x)[0]
+        rest = y - slope * x - columns @ solved
+        found.append((float(rest @ rest), power, float(solved[0]), float(np.linalg.pinv(columns.T @ columns)[0, 0])))
+    scatter, power, high, variance = min(found)
+    half = float(stats.t.ppf(0.975, freedom)) * np.sqrt(variance * scatter / freedom) * reach ** (power - 1)
+    here = Secant(sweep.symbol, sweep.variable, slope, slope + high * reach ** (power - 1), float(half), reach)
+    return here, {1: slope, power: high}
 
 
 def _published(study: Study, sweep: Sweep) -> list[tuple[Reference, str, PublishedValue]]:
@@ -46,9 +50,11 @@ def _published(study: Study, sweep: Sweep) -> list[tuple[Reference, str, Publish
     ]
 
 
-def _said(fit: FitResult, sweep: Sweep, reference: Reference, method: str, published: PublishedValue) -> Check:
+def _said(
+    fit: FitResult, sweep: Sweep, slope: float, reference: Reference, method: str, published: PublishedValue
+) -> Check:
     value = (published.value or 0.0) * reference.scaling.ratio(sweep.symbol, fit.coefficients.scaling)
-    found = explain(_law(sweep), sweep.symbol, value, f"{method} ({reference.name})")
+    found = explained(*_tied(sweep, slope), value, f"{method} ({reference.name})")
     s = found.secant
     return Check(
         "oscillation",
@@ -63,9 +69,9 @@ def _said(fit: FitResult, sweep: Sweep, reference: Reference, method: str, publi
 def check(study: Study) -> Sequence[Check]:
     """One note per rotary derivative that a sweep gives and an oscillation test of the same body published."""
     return [
-        _said(fit, sweep, *published)
+        _said(fit, sweep, sweep.value, *published)
         for fit in study.fits
         for sweep in fit.sweeps
-        if sweep.variable in RATES and sweep.parity == "odd" and len(sweep.x) >= FEWEST
+        if sweep.variable in RATES and sweep.parity == "odd" and sweep.value is not None and sweep.used.sum() >= FEWEST
         for published in _published(study, sweep)
     ]
