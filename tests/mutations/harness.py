@@ -345,12 +345,12 @@ class Suboff:
     folder : Path
         For copies.
     gated : dict
-        What the gate for data found in tables as they are, by campaign and length.
+        What the gate for data found in tables as they are, by their names and the length.
     """
 
     study: Study
     folder: Path
-    gated: dict[tuple[str, float], Any] = field(default_factory=dict)
+    gated: dict[tuple[tuple[str, ...], float], Any] = field(default_factory=dict)
 
     def verdicts(self, study: Study | None = None) -> Verdicts:
         """Of comparisons with published slopes, of printed indices, and of checks."""
@@ -429,7 +429,7 @@ class Suboff:
         def through_gate(tables: Any, length: float) -> Any:
             if not all(_alike(t, known.get(t.name)) for t in tables):
                 return gate(tables, length)
-            key = (tables[0].campaign, length)
+            key = (tuple(t.name for t in tables), length)
             if key not in self.gated:
                 self.gated[key] = gate(tables, length)
             return self.gated[key]
