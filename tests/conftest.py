@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Generator, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import settings
 
 from coeflab.core.files import shipped
+from coeflab.published import validation
 from coeflab.report.content import document
 from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS
@@ -21,6 +23,7 @@ from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables, run
+from tests.cli.forked import Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
 
 # How long an example takes says how busy the machine is, not whether it is right.
@@ -104,6 +107,14 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
 
 
 @pytest.fixture(scope="session")
+def forks() -> Iterator[Forks]:
+    """Processes of ``coeflab`` that need not import it again."""
+    forks = Forks()
+    yield forks
+    forks.close()
+
+
+@pytest.fixture(scope="session")
 def suboff() -> Study:
     """The SUBOFF study, run once."""
     return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
@@ -119,6 +130,12 @@ def suboff_document(suboff: Study) -> Document:
 def suboff_page(suboff_document: Document) -> bytes:
     """Its report as a page."""
     return REPORTERS.load("html").render(suboff_document)["report.html"]
+
+
+@pytest.fixture(scope="session")
+def publication() -> Callable[[str], Any]:
+    """A publication as it comes out, by the name of its validation, computed once."""
+    return cache(validation)
 
 
 def _missing(why: str) -> None:

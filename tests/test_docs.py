@@ -25,13 +25,6 @@ SHOWN = [p.name for p in sorted(DOCS.glob("*.md")) if next(PAGES["commands"](p.r
 FENCE = re.compile(r"^```\w*[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
-@pytest.fixture(scope="module")
-def forks() -> Iterator[Forks]:
-    forks = Forks()
-    yield forks
-    forks.close()
-
-
 def typed() -> Iterator[tuple[str, list[str]]]:
     """Every command of every page and of the README, with or without what it prints."""
     for page in (ROOT / "README.md", *sorted(DOCS.glob("*.md"))):

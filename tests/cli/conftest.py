@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -17,14 +17,6 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 def flat(printed: str) -> str:
     """What is printed, wherever its lines are folded."""
     return " ".join(printed.split())
-
-
-@pytest.fixture(scope="session")
-def forks() -> Iterator[Forks]:
-    """Processes of ``coeflab`` that need not import it again."""
-    forks = Forks()
-    yield forks
-    forks.close()
 
 
 @pytest.fixture

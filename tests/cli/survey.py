@@ -21,7 +21,8 @@ ROOT = Path(__file__).parents[2]
 HUUV = str(ROOT / "cfd_data" / "huuv" / "huuv.parameters.json")
 FILE = "reports/suboff/suboff_fully_appended.parameters.json"  # after ``validate suboff``
 _ESCAPE = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07)")
-# What is text for machines is not among them: schema, table, --json.
+# What is text for machines is not among them: schema, table, --json. The widths of `validate suboff` and `added-mass suboff_bare_hull` are
+# looked at where test_commands and test_added_mass run them.
 QUICK = (
     "new mine",
     "fit --fit surface --help-options",
@@ -47,7 +48,6 @@ SLOW = (
     "validate huuv",
     "validate flyingfish",
     "validate thauv",
-    "validate suboff",
     "run mine/plan.toml",
     "report tank --to html",
     "fit suboff_roddy_2",
@@ -71,7 +71,6 @@ SLOW = (
     "inspect huuv_mesh",
     "compare FILE FILE",
     "compare FILE HUUV",
-    "added-mass suboff_bare_hull",
     "added-mass huuv",
     "simplify huuv_mesh --out simple",
     "params check FILE",

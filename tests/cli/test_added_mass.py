@@ -12,14 +12,17 @@ import pytest
 import trimesh
 
 from tests.cli.conftest import flat
+from tests.cli.survey import too_long
 
 Run = Callable[..., CompletedProcess[str]]
 
 
+@pytest.mark.slow
 def test_suboff_shows_the_gap(coeflab: Run) -> None:
     done = coeflab("added-mass", "suboff_bare_hull")
     assert done.returncode == 0
     assert done.stderr == ""
+    assert too_long(done.stdout) == []
     for words in ("5.9883", "5.9195", "0.699211", "+28.4 to +28.5 %", "+36.1 to +36.2 %", "+30.4 %", "-0.01327?"):
         assert words in flat(done.stdout)
     assert "primed by LBP 4.26086 m" in flat(done.stdout)
@@ -29,6 +32,7 @@ def test_suboff_shows_the_gap(coeflab: Run) -> None:
     assert done.stdout.count("semidefinite") == 1
 
 
+@pytest.mark.slow
 def test_json_holds_matrices(coeflab: Run) -> None:
     done = coeflab("added-mass", "huuv", "--json", "--density", "1025")
     found = json.loads(done.stdout)

@@ -13,6 +13,7 @@ import trimesh
 
 from coeflab.law.coefficient import COVERS
 from tests.cli.conftest import COEFLAB, Run, flat
+from tests.cli.survey import too_long
 
 SIX = {"Yv'", "Nv'", "Zw'", "Mw'", "Yr'", "Nr'"}
 CONTRACT = {
@@ -44,12 +45,14 @@ def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
     return folder, first, files(folder), run("--json")
 
 
+@pytest.mark.slow
 def test_validation_prints_the_verdict(validated: Validated) -> None:
     folder, done, _, again = validated
     content = json.loads(again.stdout)
     judged = [c["passed"] for c in content["comparisons"] if c["passed"] is not None]
     assert done.returncode == (0 if all(judged) else 1), done.stderr
     assert done.stderr == ""
+    assert too_long(done.stdout) == []
     assert all(judged)
     assert "SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95" in flat(
         done.stdout
@@ -65,6 +68,7 @@ def test_validation_prints_the_verdict(validated: Validated) -> None:
         assert {f"{place}.{ending}", f"{place}.{target}.loss.txt"} <= written
 
 
+@pytest.mark.slow
 def test_a_second_run_changes_no_byte(validated: Validated) -> None:
     folder, _, before, again = validated
     assert again.returncode == validated[1].returncode
@@ -72,6 +76,7 @@ def test_a_second_run_changes_no_byte(validated: Validated) -> None:
     assert files(folder) == before
 
 
+@pytest.mark.slow
 def test_json_is_one_object_that_keeps_the_contract(
     validated: Validated,
 ) -> None:

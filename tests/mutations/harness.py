@@ -14,9 +14,9 @@ import math
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
@@ -49,6 +49,7 @@ from coeflab.published.thauv.in_space import FlownSpiral
 from coeflab.published.urv import acceptance as urv
 from coeflab.published.urv import tasks as urv_tasks
 from coeflab.report.acceptance import Compared, ComparedTable
+from coeflab.study.checks import data_gate
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.study.validation import printed_indices
@@ -321,6 +322,19 @@ def validate_urv(controlled: bool = False) -> Verdicts:
 # ---- SUBOFF --------------------------------------------------------------------------------------------------------
 
 
+def _alike(a: Any, b: Any) -> bool:
+    """Whether two tables, or what they hold, are equal to the last bit."""
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, np.ndarray):
+        return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    if isinstance(a, Mapping):
+        return a.keys() == b.keys() and all(_alike(a[k], b[k]) for k in a)
+    if is_dataclass(a):
+        return all(_alike(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
+    return bool(a == b)
+
+
 @dataclass(frozen=True)
 class Suboff:
     """The study as it is, and the way to run it with something changed.
@@ -330,10 +344,13 @@ class Suboff:
     study : Study
     folder : Path
         For copies.
+    gated : dict
+        What the gate for data found in tables as they are, by their names and the length.
     """
 
     study: Study
     folder: Path
+    gated: dict[tuple[tuple[str, ...], float], Any] = field(default_factory=dict)
 
     def verdicts(self, study: Study | None = None) -> Verdicts:
         """Of comparisons with published slopes, of printed indices, and of checks."""
@@ -382,8 +399,8 @@ class Suboff:
         return self._run(plan)
 
     def _run(self, plan: Any) -> Study:
-        """Fits of tables that are as before, and the added mass of the hulls, are those of the study."""
-        fitted, hulls_of = vars(workbench)["_fitted"], vars(workbench)["hulls_of"]
+        """Fits of tables that are as before, what the gate finds in them, and the added mass of the hulls are not made anew."""
+        fitted, hulls_of, gate = vars(workbench)["_fitted"], vars(workbench)["hulls_of"], data_gate.findings
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
@@ -409,7 +426,16 @@ class Suboff:
                     return f, tuple(b for b in self.study.budgets if b.campaign == f.campaign)
             return fitted(name, tables, scaling, options, earlier)
 
-        with exchanged(fitted, memo), exchanged(hulls_of, lambda *_: self.study.hulls):
+        def through_gate(tables: Any, length: float) -> Any:
+            if not all(_alike(t, known.get(t.name)) for t in tables):
+                return gate(tables, length)
+            key = (tuple(t.name for t in tables), length)
+            if key not in self.gated:
+                self.gated[key] = gate(tables, length)
+            return self.gated[key]
+
+        hulls = self.study.hulls
+        with exchanged(fitted, memo), exchanged(hulls_of, lambda *_: hulls), exchanged(gate, through_gate):
             return workbench.run(plan)
 
 

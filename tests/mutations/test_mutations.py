@@ -48,6 +48,7 @@ def base(study: Suboff):
     return cache(lambda name: unchanged(name, study))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_every_mutation_is_noticed_or_moves_nothing_that_is_compared(
     name: str, study: Suboff, base: Callable[[str], Verdicts]
@@ -73,6 +74,7 @@ def test_unchanged_everything_holds(name: str, base: Callable[[str], Verdicts]) 
     assert [key for key, (severity, _) in found.checks.items() if severity is Severity.FAIL] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signs", [(YR,), (NR,), (YR, NR)])
 def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, str], ...], study: Suboff) -> None:
     checks = published(*signs)(study).checks

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -24,8 +25,8 @@ SLOW = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def found() -> Acceptance:
-    return acceptance()
+def found(publication: Callable[[str], Acceptance]) -> Acceptance:
+    return publication("huuv")
 
 
 @SLOW

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -10,14 +11,13 @@ import pytest
 from coeflab.cli import as_json, show
 from coeflab.core.provenance import WORKS
 from coeflab.motion.trim.operating_point import Outcome
-from coeflab.published.flyingfish.acceptance import acceptance
 from coeflab.published.flyingfish.model import calibrated, read_flyingfish, trim
 from coeflab.report.acceptance import Acceptance, ComparedTable
 
 
 @pytest.fixture(scope="module")
-def made() -> Acceptance:
-    return acceptance()
+def made(publication: Callable[[str], Acceptance]) -> Acceptance:
+    return publication("flyingfish")
 
 
 def table(made: Acceptance, key: str) -> ComparedTable:

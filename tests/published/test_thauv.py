@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def thauv() -> Acceptance:
-    return acceptance()
+def thauv(publication: Callable[[str], Acceptance]) -> Acceptance:
+    return publication("thauv")
 
 
 def _table(thauv: Acceptance, key: str) -> ComparedTable:

@@ -10,7 +10,6 @@ import pytest
 from coeflab.core.errors import OutputError
 from coeflab.core.table import Severity, Table
 from coeflab.core.version import VERSION
-from coeflab.published import validation
 from coeflab.published.documents import report_of
 from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, Section
@@ -347,9 +346,11 @@ def on_paper(whole):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["huuv", "flyingfish", "thauv"])
-def test_publications_are_printed(name):
-    found = validation(name)
-    made = opened(report_of(found).document)
+def test_publications_are_printed(name, publication):
+    found = publication(name)
+    core = report_of(found).document
+    content = pdf.render(core)["report.pdf"]
+    made = pymupdf.open(stream=content, filetype="pdf")
     assert flaws(made) == []
     assert len(made) <= 12
     whole = report_of(found, full=True).document
@@ -359,4 +360,4 @@ def test_publications_are_printed(name):
     short = opened(report_of(found, short=True).document)
     assert len(short) == 1
     assert flaws(short) == []
-    assert pdf.render(replace(whole, title="Another"))["report.pdf"] != pdf.render(whole)["report.pdf"]
+    assert pdf.render(replace(core, title="Another"))["report.pdf"] != content

@@ -25,9 +25,11 @@ MAKER = maker()
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MAKER.STUDIES)
-def test_a_rebuild_gives_the_committed_bytes(name, request, monkeypatch):
-    if name == "suboff":  # what studied("suboff") computes, once for all tests
-        monkeypatch.setattr(MAKER, "studied", lambda _: request.getfixturevalue("suboff"))
+def test_a_rebuild_gives_the_committed_bytes(name, request, publication, monkeypatch):
+    def studied(name):  # computed once for all tests
+        return request.getfixturevalue("suboff") if name == "suboff" else publication(name)
+
+    monkeypatch.setattr(MAKER, "studied", studied)
     made = MAKER.made(name)
     assert {f"{name}/summary.{form}" for form in ("html", "pdf", "png")} <= set(made)
     stale = [path for path, content in made.items() if (GALLERY / path).read_bytes() != content]
