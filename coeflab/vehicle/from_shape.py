@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from coeflab.core.wording import listed
 from coeflab.estimates import Estimates
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
+from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import (
@@ -244,7 +246,7 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     """
     point = np.array(parameters.reference_point.point)
     update: dict[str, object] = {
-        "thrusters": tuple(_thruster(t, point) for t in body.thrusters),
+        "thrusters": tuple(_thruster(t, point, parameters.conditions) for t in body.thrusters),
         "surfaces": _surfaces(body.controls),
     }
     if configuration.volume and configuration.centre_of_buoyancy is not None:
@@ -253,8 +255,9 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     return parameters.model_copy(update=update)
 
 
-def _thruster(t: Thruster, point: Array) -> ParameterThruster:
-    pairs = list(zip(t.curve[:-1], t.curve[1:], strict=True))
+def _thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
+    points = t.thrusts(at.speed, at.density)
+    pairs = list(pairwise(points))
     segments = []
     for (low, start), (high, end) in pairs:
         slope = (end - start) / (high - low)
@@ -262,6 +265,22 @@ def _thruster(t: Thruster, point: Array) -> ParameterThruster:
     curve = ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
     return ParameterThruster(name=t.name, position=place, direction=axis, curve=curve)
+
+
+def by_series(body: Body, speed: float) -> tuple[str, ...]:
+    """Whose thrust the open-water series gives, one line each.
+
+    Parameters
+    ----------
+    body : Body
+    speed : float
+        m/s.
+    """
+    return tuple(
+        f"thrust of {t.name}: estimate, Wageningen B-series at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
+        for t in body.thrusters
+        if t.curve is None
+    )
 
 
 def _surfaces(controls: Sequence[Control]) -> tuple[ParameterSurface, ...]:

@@ -34,7 +34,7 @@ from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
-from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
+from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
 from coeflab.workbench.exports import exports_of, parameter_files_rendered
@@ -121,6 +121,7 @@ def from_shape(
     said.extend(_drift_limit(vehicle))
     standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
     said.extend([standing.words] if standing is not None else [])
+    said.extend(by_series(heavy.body, conditions.speed))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     carried, why = _carried(vehicle, moves, progress)
