@@ -113,6 +113,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     else:
         _refuse_absurd(body, mass, displaced)
         said.append(_buoyed(mass, displaced, density))
+        said += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
     if centre is None and own is not None and (own.centre is not None or own.mass_moment):
@@ -195,6 +196,17 @@ def _buoyed(mass: float, displaced: float, density: float) -> str:
     if over > 0.0:
         return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
     return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
+
+
+def _of_other_water(body: Body, density: float) -> list[str]:
+    """That ballast and flooded rooms of the mass model are for other water, where that is so."""
+    model = body.mass_model
+    if model is None or not floods(body) or abs(model.density / density - 1.0) <= TRIMMED:
+        return []
+    how = "assumed, as its file has no [water] density" if model.assumed else "the [water] density of its file"
+    return [
+        f"ballast and flooded rooms are for water of {model.density:g} kg/m^3, {how}; the vehicle is in {density:g}"
+    ]
 
 
 def spread_of(body: Body, configuration: Configuration) -> Array:

@@ -255,7 +255,7 @@ def _carried(
 
 @one_thread()
 def replaced(
-    base: ParameterFile, other: ParameterFile, name: str = ""
+    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None
 ) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
     """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
 
@@ -264,13 +264,15 @@ def replaced(
     base, other : ParameterFile
     name : str
         Of the merged file; the base's unless given.
+    own : Scaling, optional
+        What the other's data were primed by.
 
     Raises
     ------
     InputError, ScalingMismatchError
         As of `coeflab.vehicle.merge.merged`.
     """
-    made = merged(base, other, name)
+    made = merged(base, other, name, own)
     moves, _ = first_manoeuvres(made.parameters)
     carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
     return made, moves, carried
@@ -369,8 +371,8 @@ def _three(text: str, dimension: str, option: str) -> Array:
     return np.array([_number(w, dimension, option) for w in words])
 
 
-def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> ParameterFile:
-    """A parameter file, or what the default fits make of a campaign about the base's reference point.
+def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:
+    """A parameter file, or what the default fits make of a campaign about the base's reference point; and its own length.
 
     Parameters
     ----------
@@ -386,13 +388,15 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> Pa
     """
     path = Path(name)
     if path.suffix.lower() == ".json":
-        return read_parameter_file(path)
+        found = read_parameter_file(path)
+        return found, found.scaling
     campaign = table_at(located(name, "cfd_data"), DEFAULT_FITS)
     plan = Plan(
         stem(path.name), path.name, (campaign,), np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,
     )  # fmt: skip
-    return next(iter(run(plan).parameter_files.values()))
+    study = run(plan)
+    return next(iter(study.parameter_files.values())), study.tables[0].scaling
 
 
 @one_thread()
