@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.mass_model import MassModel
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
+from coeflab.bodies.outlining import with_propellers
 from coeflab.bodies.pieces import Control, Piece
 from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
@@ -170,9 +171,10 @@ class Body:
     @property
     def outline(self) -> Outline | None:
         """What semi-empirical methods see of it, made when first asked for; None of a body without a shape."""
-        if self.outlined is not None:
-            return self.outlined()
-        return None if self.shape is None else outline_of(self.shape, self.controls)
+        if self.outlined is None and self.shape is None:
+            return None
+        seen = self.outlined() if self.outlined is not None else outline_of(self.require_shape(), self.controls)
+        return with_propellers(seen, self.thrusters)
 
     def configuration(self, name: str) -> Configuration | None:
         """The configuration of that name, if the body has it."""

@@ -390,8 +390,8 @@ class ShapedBodyFile(BodyFile):
         if computed.volume is None or computed.centre_of_buoyancy is None:
             raise toml.fail("mass", "masses of a body that displaces nothing", "a shape with a volume")
         try:
-            return modelled(
-                self.mass, pieces, (self.water or WaterKeys()).density, computed.volume, computed.centre_of_buoyancy
-            )
+            water = self.water or WaterKeys()
+            made = modelled(self.mass, pieces, water.density, computed.volume, computed.centre_of_buoyancy)
+            return replace(made, assumed=self.water is None)
         except InputError as why:
             raise toml.fail(why.column or "mass", why.found, why.expected, why.advice) from None

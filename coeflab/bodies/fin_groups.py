@@ -170,6 +170,27 @@ def _group(foils: tuple[Foil, ...]) -> FinGroup:
     )  # fmt: skip
 
 
+def left_behind_fins(outline: Outline, centre: Array, diameter: float, row: int) -> float:
+    """Share of the cross velocity along y (1) or z (2) that is left in a circle behind pairs of fins which reach beyond it.
+
+    Parameters
+    ----------
+    outline : Outline
+    centre : (3,) array
+        Of the circle, across x, m.
+    diameter : float
+        m.
+    row : int
+    """
+    left = 1.0
+    for group in fin_groups(outline):
+        near = np.hypot(*(group.foils[0].stand - centre[1:])) < diameter / 2.0
+        ahead = centre[0] < group.quarter < centre[0] + 2.0 * group.reach
+        if len(group.foils) == 2 and near and ahead and group.reach > diameter / 2.0:
+            left *= 1.0 - min(group.finite, 1.0) * float(group.normal[row]) ** 2
+    return left
+
+
 def carrier(outline: Outline, stand: Array, x: float) -> Sections | None:
     """The hull that something at a station stands on or follows; None where there is none."""
     for hull in outline.hulls:

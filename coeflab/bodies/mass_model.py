@@ -89,12 +89,15 @@ class MassModel:
         Displaced by the outer shape, flooded rooms included, m^3.
     centre_of_buoyancy : (3,) array
         m, FRD, from the datum.
+    assumed : bool
+        Whether nobody stated the density.
     """
 
     parts: tuple[MassPart, ...]
     density: float
     volume: float
     centre_of_buoyancy: Array
+    assumed: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centre_of_buoyancy", locked(self.centre_of_buoyancy))
@@ -197,8 +200,9 @@ class MassModel:
         displaced = self.density * self.volume
         share = self.mass / displaced - 1.0
         does = "neutral" if abs(share) < EVEN else f"{'sinks' if share > 0.0 else 'floats'}, {share:+.2%}"
+        assumed = ", assumed: no [water] density" if self.assumed else ""
         said = [
-            f"displaces {displaced:.5g} kg of water of {self.density:g} kg/m^3: {does}",
+            f"displaces {displaced:.5g} kg of water of {self.density:g} kg/m^3{assumed}: {does}",
             f"BG = [{', '.join(map(_place, self.bg))}] m",
             "inertia about G: "
             + ", ".join(f"{n} {v:.4g}" for n, v in zip(("Ix", "Iy", "Iz"), np.diag(self.inertia), strict=True))
@@ -217,6 +221,7 @@ class MassModel:
         trim = self.trim
         return {
             "density": self.density,
+            "density_assumed": self.assumed,
             "volume": self.volume,
             "centre_of_buoyancy": self.centre_of_buoyancy.tolist(),
             "parts": [

@@ -1,4 +1,4 @@
-"""The outline of a body: what semi-empirical methods see of it: hulls as sections, foils, ring wings and bluff parts."""
+"""The outline of a body: what semi-empirical methods see of it: hulls as sections, foils, ring wings, propellers and bluff parts."""
 
 from __future__ import annotations
 
@@ -133,6 +133,34 @@ class RingWing:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+class Propeller:
+    """An open propeller that turns about x; m, FRD, from the datum.
+
+    Attributes
+    ----------
+    name : str
+        Of its thruster.
+    centre : (3,) array
+        Of its disc.
+    diameter : float
+    blades : int
+    pitch_ratio, area_ratio : float
+        P/D, and expanded blade area over the disc's, A_E/A_0.
+    """
+
+    name: str
+    centre: NDArray[np.float64]
+    diameter: float
+    blades: int
+    pitch_ratio: float
+    area_ratio: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", locked(self.centre))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
 class Bluff:
     """A part that the flow separates from in every direction: a box, a tube of a frame, a sphere; m, FRD, from the datum.
 
@@ -180,6 +208,7 @@ class Outline:
         m^2, m^3, of all.
     left_out : tuple of str
         What of the body no method sees, one line each.
+    propellers : tuple of Propeller
     """
 
     hulls: tuple[Sections, ...]
@@ -189,3 +218,4 @@ class Outline:
     wetted_surface: float
     volume: float
     left_out: tuple[str, ...] = ()
+    propellers: tuple[Propeller, ...] = ()

@@ -13,9 +13,10 @@ import numpy as np
 
 from coeflab.bodies.forms import CLASSES, Cylinder, Ellipsoid, Finned, Plate, Tube, Turned, shadow
 from coeflab.bodies.mesh.meshing import dense_meridian, surface_of
-from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
+from coeflab.bodies.outline import Bluff, Foil, Outline, Propeller, RingWing, Sections
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Part, Parts, Revolution
+from coeflab.bodies.thrusters import Thruster
 from coeflab.core.table import Table, number
 from coeflab.core.types import Array
 
@@ -168,6 +169,37 @@ def with_controls(foils: Iterable[Foil], controls: Iterable[Control]) -> tuple[t
     named = {foil.name.removesuffix("_image") for foil in made}
     left += [f"{part}, which {c.name} turns, is no foil" for c in known for part in c.parts if part not in named]
     return tuple(made), tuple(left)
+
+
+def with_propellers(outline: Outline, thrusters: Iterable[Thruster]) -> Outline:
+    """The outline with the open propellers along x of a body with a hull; of the others why no method sees them.
+
+    Parameters
+    ----------
+    outline : Outline
+    thrusters : iterable of Thruster
+    """
+    made: list[Propeller] = []
+    left: list[str] = []
+    for one in thrusters if outline.hulls else ():
+        if abs(one.axis[0]) < ALONG:
+            continue
+        screw = one.screw
+        if screw is None:
+            left.append(f"{one.name}: force across of its propeller, without [thruster.propeller]")
+        elif any(_within(ring, one.place) for ring in outline.rings):
+            left.append(f"{one.name}: force across of its propeller, which turns in a duct")
+        else:
+            made.append(
+                Propeller(one.name, one.place, screw.diameter, screw.blades, screw.pitch_ratio, screw.area_ratio)
+            )
+    return replace(outline, propellers=tuple(made), left_out=(*outline.left_out, *left)) if made or left else outline
+
+
+def _within(ring: RingWing, place: Array) -> bool:
+    """Whether a place lies in a ring."""
+    aside = float(np.hypot(*(place - ring.centre)[1:]))
+    return aside < 0.25 * ring.diameter and abs(float(place[0] - ring.centre[0]) + ring.chord / 4.0) < ring.chord
 
 
 def of_revolution(shape: Revolution) -> Outline:
@@ -377,6 +409,10 @@ def outline_table(outline: Outline) -> Table:
                 "",
             )
         )
+    for screw in outline.propellers:
+        size = f"diameter {screw.diameter:.3g}, P/D {screw.pitch_ratio:.3g}, {screw.blades} blades"
+        area = number(np.pi / 4.0 * screw.diameter**2 * screw.area_ratio, 3)
+        rows.append((screw.name, "propeller", area, size, number(float(screw.centre[0]), 4), ""))
     for part in outline.bluff:
         size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
         rows.append(
@@ -392,6 +428,7 @@ def outline_table(outline: Outline) -> Table:
     notes = [
         "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
         "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
+        *(("propeller: expanded area of its blades, centre of its disc",) if outline.propellers else ()),
         *(f"left out: {line}" for line in outline.left_out),
     ]
     headers = ("part", "seen as", "m^2", "m", "x m", "turned by")

@@ -21,6 +21,10 @@ def command(
     unit: str = typer.Option("", "--unit", metavar="UNIT", help="Of a mesh file: m, mm, in ..."),
     axes: str = typer.Option("", "--axes", metavar="AXES", help="Of a mesh file: FRD, FLU, CFD or forward,port,up."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
+    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    sheets: bool = typer.Option(
+        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
+    ),
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder to write; the current one without it."
     ),
@@ -37,7 +41,7 @@ def command(
     from coeflab.report.figures.three_views import three_views
     from coeflab.report.tables.added_mass import particulars
 
-    found = mesh_body(body, unit, axes, repair)
+    found = mesh_body(body, unit, axes, repair, fill, sheets)
     folder = Path() if out is None else out
     stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in found.name)
     files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}

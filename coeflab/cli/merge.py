@@ -77,6 +77,9 @@ class Done:
             f"{f'; {words}' if words else ''}."
         )
         show.text()
+        if made.lengths:
+            show.marked("warn", f"{made.lengths}.")
+            show.text()
         show.table(tables.merged_table(made))
         show.table(tables.estimates_table(made.parameters, carried))
         for path in self.paths:
@@ -106,9 +109,9 @@ def carried_out(first: ParameterFile, other: str, name: str, folder: Path, say: 
     from coeflab.workbench import run
     from coeflab.workbench.vehicle import given_by, replaced, replaced_files
 
-    second = given_by(other, first, run)
+    second, own = given_by(other, first, run)
     say("merging, and moving what came out")
-    made, moves, carried = replaced(first, second, name or f"{first.name}_merged")
+    made, moves, carried = replaced(first, second, name or f"{first.name}_merged", own)
     files = replaced_files(made, moves, carried)
     write_all(folder, files)
     return Done(made, carried, second.name, tuple(folder / n for n in sorted(files)))
@@ -125,5 +128,6 @@ def as_json(made: Any, carried: Any) -> dict[str, Any]:
         "name": made.parameters.name,
         "replaced": [{"symbol": r.symbol, "before": one(r.before), "after": one(r.after)} for r in made.replaced],
         "estimates": [c.symbol for c in made.estimates],
+        "lengths": made.lengths or None,
         "uncertainty": [carried_json(c) for c in carried],
     }

@@ -24,6 +24,10 @@ def command(
         "", "--axes", metavar="AXES", help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one."
     ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
+    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    sheets: bool = typer.Option(
+        False, "--sheets", help="As of other commands; a mesh with open surfaces has no parts, and is refused."
+    ),
     box: list[str] = typer.Option(
         [], "--box", metavar="NAME=BOX", help="NAME=x0:x1,y0:y1,z0:z1 in m, FRD: what is inside is that part."
     ),
@@ -67,7 +71,7 @@ def command(
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
     with show.narrated():
-        made = simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex")
+        made = simplify(mesh_body(mesh, unit, axes, repair, fill, sheets), named, parts, split == "convex")
         found = against_mesh(made, panels=panels)
     name = found.body.name
     folder = out if out is not None else Path(name)

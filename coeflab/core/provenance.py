@@ -228,6 +228,10 @@ WORKS: dict[str, str] = {
     "weissinger1955": "J. Weissinger, Zur Aerodynamik des Ringfluegels, Deutsche Versuchsanstalt fuer Luftfahrt, DVL-Bericht 2, 1955.",
     "fletcher1957": "H. S. Fletcher, Experimental investigation of lift, drag, and pitching moment of five annular airfoils, "
     "NACA TN 4117, 1957.",
+    "ribner1945": "H. S. Ribner, Formulas for propellers in yaw and charts of the side-force derivative, NACA report 819, and "
+    "Propellers in yaw, NACA report 820, 1945.",
+    "young1965": "J. de Young, Propeller at high incidence, Journal of Aircraft 2(3), 1965, as quoted by S. S. Chauhan, J. R. R. A. Martins, "
+    "Tilt-wing eVTOL takeoff trajectory optimization, Journal of Aircraft 57(1), 2020.",
     "bernitsas1981": "M. M. Bernitsas, D. Ray, P. Kinley, KT, KQ and efficiency curves for the Wageningen B-series propellers, "
     "University of Michigan, report 237, 1981.",
     "mss": "T. I. Fossen, T. Perez, Marine Systems Simulator (MSS), 2004, VESSELS/npsauv.m and VESSELS/navalvessel.m, "

@@ -1,86 +1,157 @@
-"""Open-water thrust and torque of the Wageningen B-series; the outline holds no propeller, so it adds no force by itself."""
+"""In-plane force of open propellers that turn about x: what they add to the side force and heave of a body at an angle and in a turn.
+
+A propeller in yaw acts like a fin of its blades' side area (Ribner, NACA 819 and 820, 1945). Its thrust is no matter of an
+estimate: `coeflab.bodies.wageningen` has the open-water series.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
-from coeflab.bodies.outline import Outline
-from coeflab.core.errors import InputError
-from coeflab.core.types import Array
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.fin_groups import carrier, left_behind_fins
+from coeflab.bodies.hull_flow import hull_flow
+from coeflab.bodies.outline import Outline, Propeller
+from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water
 
-summary = "open-water thrust and torque of Wageningen B-series propellers; no force by itself"
-citations = ("bernitsas1981",)
+summary = "in-plane force of open propellers in oblique flow, behind hull and fins"
+citations = ("ribner1945", "young1965", "bernitsas1981")
 
-PITCHES, AREAS, BLADES = (0.5, 1.4), (0.30, 1.05), (2, 7)
-# Coefficient, powers of J, P/D, A_E/A_0 and Z; Re 2e6 (Bernitsas, Ray & Kinley 1981, table 1).
-THRUST = np.array([
-    (0.00880496, 0, 0, 0, 0), (-0.204554, 1, 0, 0, 0), (0.166351, 0, 1, 0, 0), (0.158114, 0, 2, 0, 0),
-    (-0.147581, 2, 0, 1, 0), (-0.481497, 1, 1, 1, 0), (0.415437, 0, 2, 1, 0), (0.0144043, 0, 0, 0, 1),
-    (-0.0530054, 2, 0, 0, 1), (0.0143481, 0, 1, 0, 1), (0.0606826, 1, 1, 0, 1), (-0.0125894, 0, 0, 1, 1),
-    (0.0109689, 1, 0, 1, 1), (-0.133698, 0, 3, 0, 0), (0.00638407, 0, 6, 0, 0), (-0.00132718, 2, 6, 0, 0),
-    (0.168496, 3, 0, 1, 0), (-0.0507214, 0, 0, 2, 0), (0.0854559, 2, 0, 2, 0), (-0.0504475, 3, 0, 2, 0),
-    (0.010465, 1, 6, 2, 0), (-0.00648272, 2, 6, 2, 0), (-0.00841728, 0, 3, 0, 1), (0.0168424, 1, 3, 0, 1),
-    (-0.00102296, 3, 3, 0, 1), (-0.0317791, 0, 3, 1, 1), (0.018604, 1, 0, 2, 1), (-0.00410798, 0, 2, 2, 1),
-    (-0.000606848, 0, 0, 0, 2), (-0.0049819, 1, 0, 0, 2), (0.0025983, 2, 0, 0, 2), (-0.000560528, 3, 0, 0, 2),
-    (-0.00163652, 1, 2, 0, 2), (-0.000328787, 1, 6, 0, 2), (0.000116502, 2, 6, 0, 2), (0.000690904, 0, 0, 1, 2),
-    (0.00421749, 0, 3, 1, 2), (0.0000565229, 3, 6, 1, 2), (-0.00146564, 0, 3, 2, 2),
-])  # fmt: skip
-TORQUE = np.array([
-    (0.00379368, 0, 0, 0, 0), (0.00886523, 2, 0, 0, 0), (-0.032241, 1, 1, 0, 0), (0.00344778, 0, 2, 0, 0),
-    (-0.0408811, 0, 1, 1, 0), (-0.108009, 1, 1, 1, 0), (-0.0885381, 2, 1, 1, 0), (0.188561, 0, 2, 1, 0),
-    (-0.00370871, 1, 0, 0, 1), (0.00513696, 0, 1, 0, 1), (0.0209449, 1, 1, 0, 1), (0.00474319, 2, 1, 0, 1),
-    (-0.00723408, 2, 0, 1, 1), (0.00438388, 1, 1, 1, 1), (-0.0269403, 0, 2, 1, 1), (0.0558082, 3, 0, 1, 0),
-    (0.0161886, 0, 3, 1, 0), (0.00318086, 1, 3, 1, 0), (0.015896, 0, 0, 2, 0), (0.0471729, 1, 0, 2, 0),
-    (0.0196283, 3, 0, 2, 0), (-0.0502782, 0, 1, 2, 0), (-0.030055, 3, 1, 2, 0), (0.0417122, 2, 2, 2, 0),
-    (-0.0397722, 0, 3, 2, 0), (-0.00350024, 0, 6, 2, 0), (-0.0106854, 3, 0, 0, 1), (0.0010903, 3, 3, 0, 1),
-    (-0.000313912, 0, 6, 0, 1), (0.0035985, 3, 0, 1, 1), (-0.00142121, 0, 6, 1, 1), (-0.00383637, 1, 0, 2, 1),
-    (0.0126803, 0, 2, 2, 1), (-0.00318278, 2, 3, 2, 1), (0.00334268, 0, 6, 2, 1), (-0.00183491, 1, 1, 0, 2),
-    (0.000112451, 3, 2, 0, 2), (-0.0000297228, 3, 6, 0, 2), (0.000269551, 1, 0, 1, 2), (0.00083265, 2, 0, 1, 2),
-    (0.00155334, 0, 2, 1, 2), (0.000302683, 0, 6, 1, 2), (-0.0001843, 0, 0, 2, 2), (-0.000425399, 0, 3, 2, 2),
-    (0.0000869243, 3, 3, 2, 2), (-0.0004659, 0, 6, 2, 2), (0.0000554194, 1, 6, 2, 2),
-])  # fmt: skip
+SHARE = 0.40
+HUB = 0.2  # of the radius, where blades begin
+LOADING = 0.5  # T / (1/2 rho V^2 A) of a body that drives itself, 0 to 1
+ASPECT = 8.0  # of the fin that Ribner compares a propeller with
+ANGLES, BLADES, NARROW = (15.0, 60.0), (2, 6), 0.25  # of Ribner's charts; A_E/A_0 of blades of aircraft
 
 
-def open_water(advance: Array, pitch: float, area: float, blades: int) -> tuple[Array, Array]:
-    """K_T and K_Q of the series at Re 2e6.
+def inflow_factor(loading: float) -> float:
+    """By how much thrust raises the in-plane force: 1 + a + T_c / (4 (2 + T_c)), a = (sqrt(1 + T_c) - 1) / 2.
+
+    It equals Ribner's f(a) = (1 + a) ((1 + a) + (1 + 2 a)^2) / (1 + (1 + 2 a)^2).
 
     Parameters
     ----------
-    advance : (n,) array
-        J = V_A / (n D).
-    pitch, area : float
-        P/D from 0.5 to 1.4, A_E/A_0 from 0.30 to 1.05.
-    blades : int
-        2 to 7.
-
-    Returns
-    -------
-    K_T, K_Q : (n,) array
-        T / (rho n^2 D^4), Q / (rho n^2 D^5).
-
-    Raises
-    ------
-    InputError
-        Outside the series.
+    loading : float
+        T_c, thrust over 1/2 rho V^2 and the disc's area.
     """
-    for name, value, (low, high) in (("P/D", pitch, PITCHES), ("A_E/A_0", area, AREAS), ("Z", blades, BLADES)):
-        if not low <= value <= high:
-            raise InputError(f"{name} = {value:g}", f"{low:g} to {high:g}, as the series has it")
-    j = np.asarray(advance, dtype=float)[:, None]
-    made = []
-    for terms in (THRUST, TORQUE):
-        c, s, t, u, v = terms.T
-        made.append(np.asarray(np.sum(c * j**s * pitch**t * area**u * float(blades) ** v, axis=1)))
-    return made[0], made[1]
+    return float(1.0 + (np.sqrt(1.0 + loading) - 1.0) / 2.0 + loading / (4.0 * (2.0 + loading)))
 
 
-def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:  # noqa: ARG001 - as the port has it
-    """None: an outline holds no propeller.
+def blade_angle(pitch_ratio: float, share: Array | float) -> Array:
+    """Of a propeller of constant pitch at a share of its radius, rad."""
+    return np.arctan2(pitch_ratio, np.pi * np.asarray(share))
+
+
+def de_young(pitch_ratio: float, area_ratio: float) -> float:
+    """In-plane force per 1/2 rho V^2, disc area and angle of an unloaded propeller (de Young 1965).
+
+    4.25 s sin(beta + 8 deg) / (1 + 2 s), beta the blade angle at 0.75 R, s = 4 B c / (3 pi D) with the mean chord c.
+
+    Parameters
+    ----------
+    pitch_ratio, area_ratio : float
+        P/D; A_E/A_0.
+    """
+    solidity = 4.0 / (3.0 * np.pi) * _chords(area_ratio)
+    angle = float(blade_angle(pitch_ratio, 0.75)) + np.radians(8.0)
+    return float(4.25 * solidity * np.sin(angle) / (1.0 + 2.0 * solidity))
+
+
+def side_area(pitch_ratio: float, area_ratio: float) -> float:
+    """The same of a fin of aspect ratio 8 with the blades' side area (Ribner 1945, summary).
+
+    Of B blades at all angles about x the half counts: B/2 times the integral of c sin(beta) dr.
+
+    Parameters
+    ----------
+    pitch_ratio, area_ratio : float
+        P/D; A_E/A_0.
+    """
+    share = HUB + (1.0 - HUB) * (np.arange(64) + 0.5) / 64.0
+    projected = 0.5 * _chords(area_ratio) * (1.0 - HUB) * float(np.mean(np.sin(blade_angle(pitch_ratio, share))))
+    slope = 2.0 * np.pi * ASPECT / (ASPECT + 2.0)
+    return float(slope * projected * 2.0 / np.pi)  # D R / (pi R^2)
+
+
+def _chords(area_ratio: float) -> float:
+    """B c / D of the mean chord from the hub to the tip."""
+    return area_ratio * np.pi / 4.0 / (0.5 * (1.0 - HUB))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class InPlane:
+    """The in-plane force of one propeller; ahead only.
+
+    Attributes
+    ----------
+    centre : (3,) array
+        Of the disc, m.
+    sway, heave : float
+        Force per 1/2 rho u and cross velocity, m^2.
+    density : float
+    """
+
+    centre: NDArray[np.float64]
+    sway: float
+    heave: float
+    density: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", locked(self.centre))
+
+    def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
+        """Forces about the datum, (n, 6)."""
+        del angles
+        velocity = nu[:, :3] + np.cross(nu[:, 3:], self.centre)
+        ahead = np.maximum(nu[:, 0], 0.0)[:, None]
+        force = -0.5 * self.density * ahead * velocity * np.array([0.0, self.sway, self.heave])
+        return np.hstack([force, np.cross(self.centre, force)])
+
+
+def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
+    """The in-plane force of every propeller: two works, in the free stream and in the hull's boundary layer.
 
     Parameters
     ----------
     outline : Outline
     water : Water
     """
-    return ()
+    out = []
+    for one in outline.propellers:
+        angle = float(np.degrees(blade_angle(one.pitch_ratio, 0.75)))
+        doubts = (
+            []
+            if ANGLES[0] <= angle <= ANGLES[1]
+            else [f"blade angle {angle:.0f} deg, outside {ANGLES[0]:g} to {ANGLES[1]:g}"]
+        )
+        doubts += [] if BLADES[0] <= one.blades <= BLADES[1] else [f"{one.blades} blades, more than {BLADES[1]}"]
+        doubts += [] if one.area_ratio <= NARROW else ["blades broader than those of aircraft, which the works are for"]
+        behind = [left_behind_fins(outline, one.centre, one.diameter, row) for row in (1, 2)]
+        works = (
+            ("de Young", de_young(one.pitch_ratio, one.area_ratio), "young1965", "slope at low incidence"),
+            ("side area", side_area(one.pitch_ratio, one.area_ratio), "ribner1945", "summary: a fin of aspect ratio 8"),
+        )
+        for name, slope, work, place in works:
+            area = slope * np.pi / 4.0 * one.diameter**2 * inflow_factor(LOADING)
+            for stream, pressure in {"free stream": 1.0, "boundary layer": _pressure(outline, one, water)}.items():
+                force = InPlane(one.centre, area * pressure * behind[0], area * pressure * behind[1], water.density)
+                method = f"propeller, {name}, {stream}"
+                out.append(
+                    Contribution(one.name, "propeller in-plane", method, force, SHARE, work, place, "; ".join(doubts))
+                )
+    return tuple(out)
+
+
+def _pressure(outline: Outline, one: Propeller, water: Water) -> float:
+    """Share of the free stream's dynamic pressure over the disc, in the boundary layer of the hull ahead of it."""
+    x = float(one.centre[0])
+    hull = carrier(outline, one.centre[1:], x)
+    if hull is None:
+        return 1.0
+    flow = hull_flow(hull, water.density, water.viscosity, water.speed)
+    radius = np.sqrt(max(flow.at(hull.area, x), 0.0) / np.pi)
+    return 1.0 if radius >= one.diameter / 2.0 else flow.pressure_share(x, radius, 0.0, one.diameter / 2.0 - radius)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.fin_groups import carrier, fin_groups
+from coeflab.bodies.fin_groups import carrier, left_behind_fins
 from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline, RingWing
 from coeflab.core.types import Array, brief, locked
@@ -79,7 +79,7 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
     for ring in outline.rings:
         area = ring.diameter * ring.chord
         slope = ring_slope(ring.diameter / ring.chord) * area * _pressure(outline, ring, water)
-        sway, heave = (slope * _behind_fins(outline, ring, row) for row in (1, 2))
+        sway, heave = (slope * left_behind_fins(outline, ring.centre, ring.diameter, row) for row in (1, 2))
         lift = RingForce(ring.centre, ring.chord / 2.0, sway, heave, 0.0, water.density)
         drag = RingForce(ring.centre, ring.chord / 2.0, 0.0, 0.0, PLATE * area, water.density)
         out += [
@@ -103,14 +103,3 @@ def _pressure(outline: Outline, ring: RingWing, water: Water) -> float:
         return 1.0
     height, thin = ring.diameter / 2.0 - radius, 0.05 * ring.diameter
     return flow.pressure_share(x, radius, max(height - thin, 0.0), height + thin)
-
-
-def _behind_fins(outline: Outline, ring: RingWing, row: int) -> float:
-    """Share of the cross velocity that is left behind pairs of fins which reach beyond the ring."""
-    left = 1.0
-    for group in fin_groups(outline):
-        near = np.hypot(*(group.foils[0].stand - ring.centre[1:])) < ring.diameter / 2.0
-        ahead = ring.centre[0] < group.quarter < ring.centre[0] + 2.0 * group.reach
-        if len(group.foils) == 2 and near and ahead and group.reach > ring.diameter / 2.0:
-            left *= 1.0 - min(group.finite, 1.0) * float(group.normal[row]) ** 2
-    return left

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from coeflab.core.wording import listed
 from coeflab.estimates import Estimates
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
+from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import (
@@ -111,6 +113,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     else:
         _refuse_absurd(body, mass, displaced)
         said.append(_buoyed(mass, displaced, density))
+        said += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
     if centre is None and own is not None and (own.centre is not None or own.mass_moment):
@@ -195,6 +198,17 @@ def _buoyed(mass: float, displaced: float, density: float) -> str:
     return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
 
 
+def _of_other_water(body: Body, density: float) -> list[str]:
+    """That ballast and flooded rooms of the mass model are for other water, where that is so."""
+    model = body.mass_model
+    if model is None or not floods(body) or abs(model.density / density - 1.0) <= TRIMMED:
+        return []
+    how = "assumed, as its file has no [water] density" if model.assumed else "the [water] density of its file"
+    return [
+        f"ballast and flooded rooms are for water of {model.density:g} kg/m^3, {how}; the vehicle is in {density:g}"
+    ]
+
+
 def spread_of(body: Body, configuration: Configuration) -> Array:
     """(3, 3) integral of d d^T over the displaced volume about its centre, m^5."""
     if configuration.second_moments is not None:
@@ -244,7 +258,7 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     """
     point = np.array(parameters.reference_point.point)
     update: dict[str, object] = {
-        "thrusters": tuple(_thruster(t, point) for t in body.thrusters),
+        "thrusters": tuple(_thruster(t, point, parameters.conditions) for t in body.thrusters),
         "surfaces": _surfaces(body.controls),
     }
     if configuration.volume and configuration.centre_of_buoyancy is not None:
@@ -253,8 +267,9 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     return parameters.model_copy(update=update)
 
 
-def _thruster(t: Thruster, point: Array) -> ParameterThruster:
-    pairs = list(zip(t.curve[:-1], t.curve[1:], strict=True))
+def _thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
+    points = t.thrusts(at.speed, at.density)
+    pairs = list(pairwise(points))
     segments = []
     for (low, start), (high, end) in pairs:
         slope = (end - start) / (high - low)
@@ -262,6 +277,22 @@ def _thruster(t: Thruster, point: Array) -> ParameterThruster:
     curve = ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
     return ParameterThruster(name=t.name, position=place, direction=axis, curve=curve)
+
+
+def by_series(body: Body, speed: float) -> tuple[str, ...]:
+    """Whose thrust the open-water series gives, one line each.
+
+    Parameters
+    ----------
+    body : Body
+    speed : float
+        m/s.
+    """
+    return tuple(
+        f"thrust of {t.name}: estimate, Wageningen B-series at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
+        for t in body.thrusters
+        if t.curve is None
+    )
 
 
 def _surfaces(controls: Sequence[Control]) -> tuple[ParameterSurface, ...]:

@@ -12,11 +12,14 @@ from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+
+SAME_LENGTH = 1e-3  # of the length
 
 
 @brief
@@ -48,10 +51,13 @@ class Merged:
     ----------
     parameters : ParameterFile
     replaced : tuple of Replaced
+    lengths : str
+        Which lengths the primes of both had, where these differ; else empty.
     """
 
     parameters: ParameterFile
     replaced: tuple[Replaced, ...]
+    lengths: str = ""
 
     @property
     def estimates(self) -> tuple[Coefficient, ...]:
@@ -64,7 +70,7 @@ def estimates_of(parameters: ParameterFile) -> tuple[Coefficient, ...]:
     return tuple(c for c in parameters.coefficients if c.status is Status.ESTIMATE)
 
 
-def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
+def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None) -> Merged:
     """The base with every number that the other has: converted to the base's length, moved to its reference point.
 
     A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
@@ -76,6 +82,8 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
     base, other : ParameterFile
     name : str
         Of the file; the base's unless given.
+    own : Scaling, optional
+        What the other's data were primed by, where its file has them by another length already.
 
     Raises
     ------
@@ -119,7 +127,20 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
         entries = [e for e in entries if e[0].symbol != symbol]
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
         made = _joined(base, other, (ours, theirs), entries, replaced, name)
-    return Merged(made.model_copy(update={"law_at_points": points_of(made)}), tuple(replaced))
+    said = _lengths(base, other, own or other.scaling)
+    notes = (*made.provenance.notes, *([said] if said else []))
+    update = {"law_at_points": points_of(made), "provenance": made.provenance.model_copy(update={"notes": notes})}
+    return Merged(made.model_copy(update=update), tuple(replaced), said)
+
+
+def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:
+    """That the primes of both have different lengths, in words; empty where they are one."""
+    if abs(own.length / base.scaling.length - 1.0) < SAME_LENGTH:
+        return ""
+    return (
+        f"lengths differ: {other.name} has {own}, {base.name} has {base.scaling}. The numbers are converted, as of one body "
+        "with two lengths; those of a scale model would be wrong: make the vehicle at the model's size"
+    )
 
 
 Entry = tuple[Coefficient, int, int]  # a coefficient, from which of both files, and its row there

@@ -34,7 +34,7 @@ from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
-from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
+from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
 from coeflab.workbench.exports import exports_of, parameter_files_rendered
@@ -121,6 +121,7 @@ def from_shape(
     said.extend(_drift_limit(vehicle))
     standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
     said.extend([standing.words] if standing is not None else [])
+    said.extend(by_series(heavy.body, conditions.speed))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     carried, why = _carried(vehicle, moves, progress)
@@ -254,7 +255,7 @@ def _carried(
 
 @one_thread()
 def replaced(
-    base: ParameterFile, other: ParameterFile, name: str = ""
+    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None
 ) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
     """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
 
@@ -263,13 +264,15 @@ def replaced(
     base, other : ParameterFile
     name : str
         Of the merged file; the base's unless given.
+    own : Scaling, optional
+        What the other's data were primed by.
 
     Raises
     ------
     InputError, ScalingMismatchError
         As of `coeflab.vehicle.merge.merged`.
     """
-    made = merged(base, other, name)
+    made = merged(base, other, name, own)
     moves, _ = first_manoeuvres(made.parameters)
     carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
     return made, moves, carried
@@ -368,8 +371,8 @@ def _three(text: str, dimension: str, option: str) -> Array:
     return np.array([_number(w, dimension, option) for w in words])
 
 
-def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> ParameterFile:
-    """A parameter file, or what the default fits make of a campaign about the base's reference point.
+def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:
+    """A parameter file, or what the default fits make of a campaign about the base's reference point; and its own length.
 
     Parameters
     ----------
@@ -385,13 +388,15 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> Pa
     """
     path = Path(name)
     if path.suffix.lower() == ".json":
-        return read_parameter_file(path)
+        found = read_parameter_file(path)
+        return found, found.scaling
     campaign = table_at(located(name, "cfd_data"), DEFAULT_FITS)
     plan = Plan(
         stem(path.name), path.name, (campaign,), np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,
     )  # fmt: skip
-    return next(iter(run(plan).parameter_files.values()))
+    study = run(plan)
+    return next(iter(study.parameter_files.values())), study.tables[0].scaling
 
 
 @one_thread()

@@ -12,6 +12,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mass_model import MassModel, MassPart
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.vehicle.from_shape import Stated, weighed
 from coeflab.workbench import read_body
 
 R, T, RHO = 0.5, 0.02, 2700.0
@@ -156,3 +157,18 @@ def test_what_is_no_mass(tmp_path: Path, table: str, column: str, said: str) -> 
         body(tmp_path, table)
     assert column in str(why.value)
     assert said in str(why.value)
+
+
+def test_water_that_nobody_stated_is_said(tmp_path: Path) -> None:
+    for table, assumed in (("", True), ("[water]\ndensity = 1025.0\n", False)):
+        made = body(tmp_path, SHELL, BALLAST, table).mass_model
+        assert made is not None
+        assert made.assumed == assumed
+        assert ("assumed: no [water] density" in made.words()[0]) == assumed
+        assert made.as_json()["density_assumed"] == assumed
+
+
+def test_ballast_for_other_water_than_the_vehicles_is_said(tmp_path: Path) -> None:
+    for density, said in ((998.2, False), (1025.0, True)):
+        lines = weighed(body(tmp_path, SHELL, BALLAST), Stated(), density).said
+        assert any("ballast and flooded rooms are for water of 1000 kg/m^3, assumed" in x for x in lines) == said

@@ -87,3 +87,23 @@ def test_large_meshes_are_announced_on_standard_error(coeflab: Run, tmp_path: Pa
     assert first == f"ball.stl: {len(whole.faces)} faces, about 0.9 GB of memory"
     assert any("recommended: strip:lamb" in said for said in remarks)
     assert list(json.loads(done.stdout)) == ["strip:lamb"]
+
+
+def test_draw_and_simplify_take_holes_and_sheets_as_vehicle_does(coeflab: Run, tmp_path: Path) -> None:
+    """A ball without one face, and a wall of one sheet beside it."""
+    ball = trimesh.creation.icosphere(2, 0.5)
+    trimesh.Trimesh(ball.vertices, ball.faces[1:]).export(tmp_path / "hole.stl")
+    wall = trimesh.Trimesh([[0.6, 0, 0], [1, 0, 0], [1, 0.4, 0], [0.6, 0.4, 0]], [[0, 1, 2], [0, 2, 3]])
+    trimesh.util.concatenate([ball, wall]).export(tmp_path / "sheet.stl")
+    named = ("--unit", "m", "--axes", "FRD")
+    assert coeflab("draw", "hole.stl", *named).returncode == 2
+    done = coeflab("draw", "hole.stl", *named, "--fill")
+    assert done.returncode == 0, done.stderr
+    done = coeflab("simplify", "hole.stl", *named, "--fill", "--panels", "0")
+    assert done.returncode == 0, done.stderr
+    assert "sphere" in done.stdout
+    done = coeflab("draw", "sheet.stl", *named, "--sheets")
+    assert done.returncode == 0, done.stderr
+    done = coeflab("simplify", "sheet.stl", *named, "--sheets")
+    assert done.returncode == 2
+    assert "sheets of no thickness" in flat(done.stderr)

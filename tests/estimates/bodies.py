@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
+from coeflab.bodies.outline import Bluff, Foil, Outline, Propeller, RingWing, Sections
 from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.estimates import Estimates, Water, estimated
@@ -66,9 +66,12 @@ SAIL = foil("sail", UP, -1.2, 0.25, 0.45, 0.4)
 RING = RingWing("ring", np.array([-3.9, 0.0, 0.0]), 0.24, 0.2, 0.1)
 
 
+SCREW = Propeller("screw", np.array([-4.05, 0.0, 0.0]), 0.3, 3, 1.0, 0.5)
+
+
 def outline(*foils: Foil, rings: tuple[RingWing, ...] = (), hulls: tuple[Sections, ...] | None = None,
-            bluff: tuple[Bluff, ...] = ()) -> Outline:  # fmt: skip
-    return Outline((hull(),) if hulls is None else hulls, foils, rings, bluff, 4.0, 0.5)
+            bluff: tuple[Bluff, ...] = (), propellers: tuple[Propeller, ...] = ()) -> Outline:  # fmt: skip
+    return Outline((hull(),) if hulls is None else hulls, foils, rings, bluff, 4.0, 0.5, propellers=propellers)
 
 
 def box(name: str = "box", centre: tuple[float, float, float] = (0.0, 0.0, 0.0), size: float = 0.5) -> Bluff:

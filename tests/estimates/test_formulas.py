@@ -11,8 +11,7 @@ import pytest
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_slope, spheroid_munk_slope
 from coeflab.bodies.fin_groups import fin_groups, foil_on_body
 from coeflab.bodies.hull_flow import FLAT, STERN, friction_line, hull_flow
-from coeflab.core.errors import InputError
-from coeflab.estimates import SEPARATED, bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
+from coeflab.estimates import SEPARATED, bluff, crossflow, fins, form_drag, friction, hull_lift, ring_wing
 from tests.estimates.bodies import (
     DOWN,
     LENGTH,
@@ -198,17 +197,6 @@ def test_faces_of_bluff_parts_by_hoerner() -> None:
     share = bluff.shielding(two)
     assert share[0] == pytest.approx(0.5)
     assert share[1:].tolist() == pytest.approx([1.0, 1.0])
-
-
-def test_open_water_of_a_b_propeller_as_published() -> None:
-    # Fossen's remus100.py prints wageningen(0, 1, 0.718, 3) and wageningen(0.6632, 1, 0.718, 3).
-    thrust, torque = propeller.open_water(np.array([0.0, 0.6632]), 1.0, 0.718, 3)
-    assert thrust.tolist() == pytest.approx([0.4566, 0.1798], abs=5e-5)
-    assert torque.tolist() == pytest.approx([0.0700, 0.0312], abs=5e-5)
-    assert (len(propeller.THRUST), len(propeller.TORQUE)) == (39, 47)
-    with pytest.raises(InputError, match="P/D"):
-        propeller.open_water(np.zeros(1), 2.0, 0.7, 3)
-    assert propeller.contributions(outline(), WATER) == ()
 
 
 def test_shape_factors_of_the_boundary_layer() -> None:

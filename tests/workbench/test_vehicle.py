@@ -34,6 +34,7 @@ from coeflab.report.sections.estimates import (
     estimates_table,
     main_spread,
     manoeuvre_table,
+    replaced_section,
     shares_figure,
 )
 from coeflab.study.checks import buoyancy, export_loss
@@ -367,6 +368,24 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
     assert nv.value_si == pytest.approx(before.value_si * -0.014 / -0.012)
     with pytest.raises(InputError, match="none of an estimate"):
         merged(base, base)
+
+
+def test_numbers_of_another_length_are_converted_and_said(steered: Study) -> None:
+    (base,) = steered.parameter_files.values()
+    keep = {"Yv'": ("Yv'", -0.025)}
+    longer = replace(base.scaling, length=2.0 * base.scaling.length, length_name="LOA")
+    other = fitted(base, keep).model_copy(update={"scaling": longer})
+    made = merged(base, other)
+    found = made.parameters.coefficient("Yv")
+    assert found is not None
+    assert found.value == pytest.approx(-0.025 * 4.0)  # Y / (rho U L^2 / 2): the same force on half the length
+    for words in (str(longer), str(base.scaling), "scale model"):
+        assert words in made.lengths
+        assert any(words in note for note in made.parameters.provenance.notes)
+    assert merged(base, fitted(base, keep)).lengths == ""
+    fitted_by_ours = merged(base, fitted(base, keep), own=longer)  # a campaign of that length
+    assert str(longer) in fitted_by_ours.lengths
+    assert made.lengths[1:] in " ".join(replaced_section(made, ()).paragraphs)
 
 
 def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

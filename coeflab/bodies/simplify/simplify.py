@@ -145,6 +145,7 @@ PLURAL = {"box": "boxes", "revolution": "bodies of revolution", "mesh": "meshes"
 SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "port_top", "top", "starboard_top")
 SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
 MOST_PARTED, MANY, WHOLLY = 20_000, 60, 0.97
+SLICED = 0.5  # of a plate's area: more of it lies inside the body that it was cut from
 
 
 @brief
@@ -179,13 +180,16 @@ def simplify(
     Raises
     ------
     InputError
-        Simple parts already, a surface that is not closed, a shell that looks inward, a box that holds nothing, another number
+        Simple parts already, a surface that is not closed, sheets, a shell that looks inward, a box that holds nothing, another number
         of parts than expected, nothing but plates, convex pieces without the package vhacdx.
     """
     shape = body.require_shape()
     if isinstance(shape, Parts):
         raise InputError(f"{body.name}, which is made of simple parts already", "a mesh, or a body given by equations")
     mesh = shape if isinstance(shape, TriangleMesh) else meshed(shape, DRAWN_FACES)
+    if len(mesh.sheets):
+        advice = "coeflab added-mass and coeflab vehicle take its sheets as they are; --fill closes small holes."
+        raise InputError("a mesh with sheets of no thickness", "a closed surface", advice=advice)
     whole, statements = _whole(mesh)
     if mesh is not shape:
         statements.insert(0, f"meshed from its equations with {len(mesh.faces)} faces")
@@ -371,8 +375,22 @@ def _tried(
     likes = [likeness(p) for p in parts]
     if way is patches:
         parts, likes = _notched_too(parts, likes)
+    else:
+        likes = [_no_slice(like, part, whole) for like, part in zip(likes, parts, strict=True)]
+    largest = max(range(len(parts)), key=lambda k: parts[k].volume())
+    likes[largest] = _no_thick_plate(likes[largest], parts[largest].volume())
     good = sum(p.volume() for p, like in zip(parts, likes, strict=True) if like.clear)
     return (parts, likes) if good > WHOLLY * whole.volume() else None
+
+
+def _no_slice(like: Likeness, part: solids.Solid, whole: solids.Solid) -> Likeness:
+    """What a piece cut along planes is like: it is no plate where the cut, and not the body's surface, is one of its sides."""
+    if like.kind != "plate":
+        return like
+    within = (part.surface_area() + (whole - part).surface_area() - whole.surface_area()) / 2.0
+    if within <= SLICED * like.sizes[0] * like.sizes[1]:
+        return like
+    return replace(like, clear=False, reason=f"{like.reason}; a slice, which the body goes on from")
 
 
 def _notched_too(parts: list[solids.Solid], likes: list[Likeness]) -> tuple[list[solids.Solid], list[Likeness]]:

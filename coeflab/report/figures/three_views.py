@@ -75,6 +75,8 @@ def _surfaces(body: Body) -> Iterator[tuple[str, Surface]]:
     if isinstance(shape, Revolution) or not body.pieces:
         whole = shape if isinstance(shape, TriangleMesh) else meshed(shape, PANELS)
         yield "hull", picture_surface(whole)
+        if len(whole.sheets):  # both sides are seen
+            yield "sheets", (whole.vertices, np.concatenate([whole.sheets, whole.sheets[:, ::-1]]))
         return
     for piece in body.pieces:
         yield piece.name, picture_surface(piece.surface(PANELS))

@@ -434,7 +434,7 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
     """What was replaced, which estimates remain, and what they contribute to the uncertainty of the turn."""
     figure = shares_figure(made.parameters, carried, "shares")
     main = main_spread(carried)
-    text = [ESTIMATED]
+    text = [ESTIMATED, *([f"{made.lengths[:1].upper()}{made.lengths[1:]}."] if made.lengths else [])]
     if main is not None:
         estimated = {c.symbol for c in made.estimates}
         own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
