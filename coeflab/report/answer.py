@@ -313,10 +313,15 @@ def _of_study_named(study: Study, name: str) -> str:
 def _largest(rows: Sequence[AnswerRow]) -> Chip:
     shares = {r.symbol: abs(r.u95 / r.value) for r in rows if r.u95 and r.value}
     if not shares:
-        return Chip("Largest U95", "no U95", Severity.NOTE, "coefficients")
+        return Chip("Largest U95 in the first table", "no U95", Severity.NOTE, "coefficients")
     symbol = max(shares, key=lambda s: shares[s])
     grave = Severity.WARN if shares[symbol] > WIDE else Severity.NOTE
-    return Chip("Largest U95", f"{primed(symbol)}, {share_text(shares[symbol])} (this table)", grave, "coefficients")
+    return Chip(
+        "Largest U95 in the first table",
+        f"{primed(symbol)}, {share_text(shares[symbol])} of the value",
+        grave,
+        "coefficients",
+    )
 
 
 def _warnings(study: Study) -> Chip:

@@ -58,7 +58,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         scaling = beside.among.scaling if beside.among else None
         by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
         count = len({f.campaign for f in study.fits})
-        of = f" of {count} campaigns" if count > len(sources) else ""
+        of = f", of {count} campaigns in all" if count > len(sources) else ""
         out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
@@ -98,8 +98,9 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
         )  # fmt: skip
         if method:
             methods.setdefault(method, []).append(primed(row.symbol))
-    each = "".join(f"; {', '.join(s)} by {m}, not held here" for m, s in methods.items())
-    return f"{column.name}: the authors' values, same points{each}."
+    each = "".join(f"; {', '.join(s)} by {m}, whose points are not held here" for m, s in methods.items())
+    whose = f"{listed([r.name for r in reports])}, " if reports else ""
+    return f"{column.name}: {whose}the authors' own evaluation of the same points{each}."
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -115,10 +116,11 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     stated = _as_stated(study, rows)
     if not names:
         return f"U95 is without rig and balance; {stated}." if stated else ""
-    more = f" and {len(names) - MOST_NAMED + 1} more" if len(names) > MOST_NAMED else ""
+    more = " and others (Coefficients)" if len(names) > MOST_NAMED else ""
     shown = names[: MOST_NAMED - 1] if more else names
     said = f"; {stated}" if stated else ""
-    return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more} (Coefficients){said}."
+    which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (Coefficients)"
+    return f"U95, half-width of the 95 % interval, leaves out errors of {which}{said}."
 
 
 def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -130,7 +132,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the source states {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -143,10 +145,11 @@ def _independent(study: Study) -> str:
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of it)" for v in found if v.weak))
+    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V is {v.share} of {primed(v.symbol)})" for v in found if v.weak))
     said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
+    uncertainty = "U_V, the uncertainty of CFD minus test"
     inside = sum(all(v.within for v in one) for one in numbers)
-    return f"Independent: CFD meets {inside} of {len(numbers)} numbers measured on the same body ({bodies}) within U_V{said}."
+    return f"Independent check: CFD agrees with {inside} of {len(numbers)} coefficients measured on the same body ({bodies}) within {uncertainty}{said}."
 
 
 def _readings(first: Scaling, other: Scaling) -> str:
