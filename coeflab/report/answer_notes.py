@@ -58,7 +58,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         scaling = beside.among.scaling if beside.among else None
         by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
         count = len({f.campaign for f in study.fits})
-        of = f", of {count} campaigns in all" if count > len(sources) else ""
+        of = f" of {count} campaigns" if count > len(sources) else ""
         out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
@@ -98,9 +98,13 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
         )  # fmt: skip
         if method:
             methods.setdefault(method, []).append(primed(row.symbol))
-    each = "".join(f"; {', '.join(s)} by {m}, whose points are not held here" for m, s in methods.items())
-    whose = f"{listed([r.name for r in reports])}, " if reports else ""
-    return f"{column.name}: {whose}the authors' own evaluation of the same points{each}."
+    each = "".join(f"; {', '.join(s)} by {m}, points not held here" for m, s in methods.items())
+    names = [r.name for r in reports]
+    heads = {n.rpartition(" ")[0] for n in names}
+    same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
+    whose = f"{same} {', '.join(n.rpartition(' ')[2] for n in names)}" if same else listed(names)
+    whose = whose or "the authors' values, same points"
+    return f"{column.name}: {whose}{each}."
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -120,7 +124,7 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     shown = names[: MOST_NAMED - 1] if more else names
     said = f"; {stated}" if stated else ""
     which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (Coefficients)"
-    return f"U95, half-width of the 95 % interval, leaves out errors of {which}{said}."
+    return f"Not in U95: errors of {which}{said}."
 
 
 def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -132,7 +136,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report states: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -145,11 +149,13 @@ def _independent(study: Study) -> str:
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V is {v.share} of {primed(v.symbol)})" for v in found if v.weak))
+    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of {primed(v.symbol)})" for v in found if v.weak))
     said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
-    uncertainty = "U_V, the uncertainty of CFD minus test"
     inside = sum(all(v.within for v in one) for one in numbers)
-    return f"Independent check: CFD agrees with {inside} of {len(numbers)} coefficients measured on the same body ({bodies}) within {uncertainty}{said}."
+    return (
+        f"Independent: CFD agrees with {inside} of {len(numbers)} measured coefficients (same body, {bodies}) within the validation "
+        f"uncertainty U_V{said}."
+    )
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

@@ -91,7 +91,7 @@ def test_a_measured_number_counts_once(
         assert f"{good} of 1 measured numbers predicted by CFD" in said
         assert "Predictions: 2 comparisons of 1 measured numbers" in said
         assert "No verdict on Nv' of cfd: no grid study" in said
-        assert f"CFD meets {good} of 1 numbers" in answer_notes._independent(study)
+        assert f"CFD agrees with {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 
 @pytest.fixture(scope="module")
