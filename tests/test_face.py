@@ -28,7 +28,7 @@ def test_command_line_help_pulls_in_nothing_heavy() -> None:
 atexit.register(lambda: print([m for m in {heavy} if m in sys.modules], {ours}))
 main()"""
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert "uncertainty  Give intervals for the figures of a manoeuvre" in shown
+    assert "uncertainty  Give intervals for the quantities of a manoeuvre" in shown
     assert shown.endswith("[] ['coeflab.core.version', 'coeflab.core.errors']\n")
 
 

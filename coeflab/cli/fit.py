@@ -263,7 +263,7 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
             parts = {"random": c.parts.random, "form": c.parts.model_form, "input": c.parts.input}
             made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
-            show.sentence(f"{points}; {made}." if made else f"{points}.")
+            show.sentence(f"{points}; U95: {made}." if made else f"{points}.")
         show.text()
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
             show.table(content)
@@ -278,8 +278,15 @@ def _forms(sweep: Sweep) -> Table:
         return every
     best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
     without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
-    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}; none is recommended."]
+    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}; HC2, HC3: robust errors."]
     notes += [f"In no window: {', '.join(without)}."] if without else []
     rows = tuple(every.rows[i] for i in sorted(best.values()))
     headers = tuple("p" if h == "lack of fit" else h for h in every.headers)
-    return replace(every, headers=headers, rows=rows, notes=tuple(notes), spare=("AICc", "95 % HC3", "dof"))
+    return replace(
+        every,
+        title=f"{every.title}, none recommended",
+        headers=headers,
+        rows=rows,
+        notes=tuple(notes),
+        spare=("AICc", "95 % HC3", "dof"),
+    )

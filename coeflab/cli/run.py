@@ -126,7 +126,7 @@ def _moved(study: Study) -> None:
         rows += [
             (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
-        ] or [(made.vehicle.name, name, "none", NO_VALUE, "", _why(made))]
+        ] or [(made.vehicle.name, name, "all", NO_VALUE, "", _why(made))]
     if not show.whole():
         headers = ("file", "manoeuvre", "quantity", "value", "unit", "status")
         notes = (without_u95(study),) if rows else ()

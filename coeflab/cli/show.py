@@ -344,7 +344,7 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         held = f" Expected: {rule}." if rule else ""
         printed += marked(
             str(severity),
-            f"{about}, {len(same)} times{': ' if shared else '. '}{shared}{meant}{held}".replace("  ", " ").rstrip(),
+            f"{about}, {len(same)} findings{': ' if shared else '. '}{shared}{meant}{held}".replace("  ", " ").rstrip(),
         )
         shown = same[: max(most - printed, 1)] if most else same
         for c in shown:
@@ -363,7 +363,7 @@ def file_findings(name: str, found: Sequence[Check]) -> None:
     from coeflab.core.table import Severity
 
     if any(c.severity in (Severity.FAIL, Severity.WARN) for c in found):
-        text(f"{name} itself, as coeflab params check finds it:")
+        text(f"Checks of the file {name} (coeflab params check):")
         findings(found)
         text()
 

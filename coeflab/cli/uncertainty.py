@@ -58,12 +58,12 @@ def command(
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Give intervals for the figures of a manoeuvre.
+    """Give intervals for the quantities of a manoeuvre, such as advance.
 
     Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which coefficient is worth another
     test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
     depend on cores, scheduler, or on having been stopped and started again. Exit code 1 where the file
-    determines no figure of the manoeuvre.
+    determines no quantity of the manoeuvre.
     """
     from coeflab.cli.simulate import current_of, listed, of_manoeuvre
     from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
@@ -97,7 +97,7 @@ def _print(made: Carried, written: list[Path]) -> None:
 
     if made.undetermined:
         name = f"{made.question.manoeuvre.replace('_', ' ')} of {made.vehicle}"
-        show.text(f"No figure of the {name} has a value, so that none has an interval; no draw was run.")
+        show.text(f"No quantity of the {name} has a value, so that none has an interval; no draw was run.")
         show.text(made.undetermined)
         show.text()
     show.table(uncertainty_tables.spread_table(made))

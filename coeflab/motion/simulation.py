@@ -108,7 +108,7 @@ def unstable_course(body: Vehicle, speed: float) -> str:
     growth = linear_growth(body, ("v", "r"), speed) if speed > 0.0 and {"v", "r"} <= set(body.free) else 0.0
     if growth <= 0.0:
         return ""
-    return f"with controls fixed, straight motion at {speed:.3g} m/s is unstable in the horizontal plane: it grows by {growth:.3g} per second"
+    return f"with controls fixed, straight motion at {speed:.3g} m/s is unstable in the horizontal plane: a disturbance grows at {growth:.3g} 1/s"
 
 
 def simulate(

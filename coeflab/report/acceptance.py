@@ -269,12 +269,12 @@ def on_predictions(study: Study) -> tuple[str, ...]:
         if v.within is None:
             none.setdefault((v.why_none, v.simulation), []).append(primed(v.symbol))
     if none:
-        each = "; ".join(f"{', '.join(s)} of {campaign}: {why}" for (why, campaign), s in none.items())
-        out.append(f"Computed and measured, without a verdict: {each}.")
+        each = " ".join(f"No verdict on {listed(s)} of {campaign}: {why}." for (why, campaign), s in none.items())
+        out.append(f"Other coefficients are both computed and measured. {each}")
     return tuple(out)
 
 
-KINDS = ("measured numbers predicted by CFD", "re-fits of the authors' data", "recomputed stability indices")
+KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")
 
 
 def headline_of_study(study: Study) -> tuple[str, ...]:

@@ -35,6 +35,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
+HALF_WIDTH = "U95: half-width of the 95 % interval."
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
@@ -313,10 +314,15 @@ def _of_study_named(study: Study, name: str) -> str:
 def _largest(rows: Sequence[AnswerRow]) -> Chip:
     shares = {r.symbol: abs(r.u95 / r.value) for r in rows if r.u95 and r.value}
     if not shares:
-        return Chip("Largest U95", "no U95", Severity.NOTE, "coefficients")
+        return Chip("Largest U95 in the first table", "no U95", Severity.NOTE, "coefficients")
     symbol = max(shares, key=lambda s: shares[s])
     grave = Severity.WARN if shares[symbol] > WIDE else Severity.NOTE
-    return Chip("Largest U95", f"{primed(symbol)}, {share_text(shares[symbol])} (this table)", grave, "coefficients")
+    return Chip(
+        "Largest U95 in the first table",
+        f"{primed(symbol)}, {share_text(shares[symbol])} of the value",
+        grave,
+        "coefficients",
+    )
 
 
 def _warnings(study: Study) -> Chip:
@@ -448,7 +454,8 @@ def answer_table(found: Answer) -> Table:
     rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)
     headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
-    return Table("Answer", headers, rows, found.notes, frozenset(left))
+    defined = (HALF_WIDTH,) if any(r.u95 for r in found.rows) else ()
+    return Table("Answer", headers, rows, (*defined, *found.notes), frozenset(left))
 
 
 def _on_a_terminal(table: Table, notes: tuple[str, ...]) -> Table:

@@ -98,8 +98,13 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
         )  # fmt: skip
         if method:
             methods.setdefault(method, []).append(primed(row.symbol))
-    each = "".join(f"; {', '.join(s)} by {m}, not held here" for m, s in methods.items())
-    return f"{column.name}: the authors' values, same points{each}."
+    each = "".join(f"; {', '.join(s)} by {m}, points not held here" for m, s in methods.items())
+    names = [r.name for r in reports]
+    heads = {n.rpartition(" ")[0] for n in names}
+    same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
+    whose = f"{same} {', '.join(n.rpartition(' ')[2] for n in names)}" if same else listed(names)
+    whose = whose or "the authors' values, same points"
+    return f"{column.name}: {whose}{each}."
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -120,10 +125,11 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     stated = _as_stated(study, rows)
     if not names:
         return f"U95 is without rig and balance; {stated}." if stated else ""
-    more = f" and {len(names) - MOST_NAMED + 1} more" if len(names) > MOST_NAMED else ""
+    more = " and others (Coefficients)" if len(names) > MOST_NAMED else ""
     shown = names[: MOST_NAMED - 1] if more else names
     said = f"; {stated}" if stated else ""
-    return f"Not in U95: errors of {', '.join(shown) if more else listed(shown)}{more} (Coefficients){said}."
+    which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (Coefficients)"
+    return f"Not in U95: errors of {which}{said}."
 
 
 def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -135,7 +141,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the source states {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -148,10 +154,13 @@ def _independent(study: Study) -> str:
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of it)" for v in found if v.weak))
+    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of {primed(v.symbol)})" for v in found if v.weak))
     said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
     inside = sum(all(v.within for v in one) for one in numbers)
-    return f"Independent: CFD meets {inside} of {len(numbers)} numbers measured on the same body ({bodies}) within U_V{said}."
+    return (
+        f"Independent: CFD agrees with {inside} of {len(numbers)} measured coefficients (same body, {bodies}) within the validation "
+        f"uncertainty U_V{said}."
+    )
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

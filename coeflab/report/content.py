@@ -24,6 +24,7 @@ from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
+from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors
@@ -56,8 +57,8 @@ Part = TypeVar("Part")
 MOST = 4
 NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
-    ("at_rest", "law"): "a fitted Z0 or M0 stays in the force law",
-    ("at_rest", "apart"): "a fitted Z0 or M0 is taken out of the force law",
+    ("at_rest", "law"): "a fitted Z0 or M0, force or moment at zero angle, stays in the force law",
+    ("at_rest", "apart"): "a fitted Z0 or M0, force or moment at zero angle, is taken out of the force law",
 }
 _JOBS: list[Callable[[], object]] = []
 
@@ -304,14 +305,14 @@ def _named(c: Comparison) -> str:
 
 
 WHAT_COUNTS = (
-    "Prediction: a coefficient from CFD against the one measured on the same body, tolerance U_V. Re-fit: our coefficient from the "
-    "authors' data against theirs, tolerance U95. Recomputed index: from their printed derivatives against their printed index, "
-    "tolerance the rounding of the digits.",
+    "Prediction: a coefficient from CFD against the one measured on the same body; tolerance U_V, the validation uncertainty of both "
+    "together. Re-analysis: our coefficient from the authors' data against theirs; tolerance U95. Recomputed index: from their printed "
+    "derivatives against their printed index; tolerance the rounding of the digits. The checks of --full list the recomputed indices.",
 )
 TWO_KINDS = (
-    "Only the predictions are independent evidence. A re-fit uses the authors' own measurements: a pass says that our evaluation "
+    "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
     "reproduces theirs within U95, not that the measurements are right.",
-    "Re-fits use the authors' own measurements: a pass says that our evaluation reproduces theirs within U95, not that the "
+    "Re-analyses use the authors' own measurements: a pass says that our evaluation reproduces theirs within U95, not that the "
     "measurements are right.",
 )
 
@@ -329,20 +330,23 @@ def _re_analysis(study: Study) -> list[str]:
             f"{listed([_named(c) for c in failed])}."
         ]
     else:
-        verb = "passed" if len(judged) == 1 else "all passed"
-        out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
+        every, verb = ("The one", "passes") if len(judged) == 1 else ("All", "pass")
+        out = [
+            f"{every} {count} with the authors' own evaluation of the same data {verb}: every difference lies within U95."
+        ]
     if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
-        out.append(f"Weak passes: {tables.WEAK}: {listed(wide)}.")
+        out.append(f"Weak passes, as {tables.WEAK}: {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     predicted = [v for v in validations(study, study.budgets) if v.within is not None]
-    out += [*headline_of_study(study), *WHAT_COUNTS, TWO_KINDS[not predicted]]
+    head = headline_of_study(study)
+    out += [*head[:1], *WHAT_COUNTS, *head[1:], TWO_KINDS[not predicted]]
     missed = [v for v in predicted if v.within is False]
     if missed:
         each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
         out.append(
             f"Predictions beyond U_V: {each}. This does not fail the study: U_V leaves out the error of the turbulence model, and the "
-            'errors listed under "Not in U95" in the tables of both campaigns.'
+            'errors listed under "Not in U95" below the tables of both campaigns.'
         )
     return [*out, *_beyond_without_verdict(study)]
 
@@ -398,13 +402,12 @@ def verdict(study: Study) -> Section:
 
 def _harvest(study: Study) -> str:
     every = [c for c in study.coefficients if c.value is not None]
-    copied = {(f.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
-    found = [c for c in every if (c.campaign, c.symbol) not in copied]
+    found = [c for c in every if not _is_copied(study, c)]
     bounded = sum(c.u95 is not None for c in found)
     campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
     if not campaigns:
         return "The study holds no tables."
-    rows = _counted(sum(len(t) for t in study.tables), "row")
+    rows = _counted(sum(len(t) for t in study.tables if not t.by_symmetry), "row")
     source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {listed(campaigns)}."
     models = sum(len(f.models) for f in study.fits)
     if not found and models:
@@ -418,15 +421,25 @@ def _harvest(study: Study) -> str:
     alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
     each += f" U95 of {alone} is scatter alone." * bool(alone)
     copies = len(every) - len(found)
-    return each + f" {copies} more {'is a copy' if copies == 1 else 'are copies'} by symmetry." * bool(copies)
+    return each + f" {copies} more {'is a copy' if copies == 1 else 'are copies'} of these by symmetry." * bool(copies)
+
+
+def _is_copied(study: Study, c: Coefficient) -> bool:
+    """Whether only tables turned by symmetry, and no runs, vary the motions of a coefficient."""
+    if any((f.campaign, s.symbol) == (c.campaign, c.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry):
+        return True
+    mine = [t for t in study.tables if t.campaign == c.campaign]
+    own, turned = ({m for t in mine if bool(t.by_symmetry) is is_copy for m in t.varies} for is_copy in (False, True))
+    factors = {name for name, _ in read_factors(c.symbol.removesuffix("'")[1:]) or ()}
+    return bool(factors) and factors <= turned - own
 
 
 def _by_kind(found: Sequence[Coefficient]) -> str:
-    """How many are forces at rest, slopes, and terms of higher degree."""
+    """How many are slopes, forces at zero angle and rate, and terms of higher degree."""
     degrees = [len(read_factors(c.symbol.removesuffix("'")[1:]) or ()) for c in found]
     counts = (degrees.count(1), degrees.count(0), sum(d > 1 for d in degrees))
     return ", ".join(
-        f"{n} {name}" for n, name in zip(counts, ("linear", "at rest", "of higher degree"), strict=True) if n
+        f"{n} {name}" for n, name in zip(counts, ("linear", "constant", "of higher degree"), strict=True) if n
     )
 
 
@@ -471,8 +484,9 @@ def _next(study: Study) -> list[str]:
     out = [f"To measure next: {listed(runs)}."] if runs else []
     if wide:
         out.append(
-            f"U95 above {100.0 * WIDE:.0f} % of the value: {'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
-            "narrow it most."
+            f"Among {listed([primed(s) for s in study.plan.wanted])}, U95 exceeds {100.0 * WIDE:.0f} % of the value for "
+            f"{'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
+            "narrow U95 most."
         )
     return out
 
@@ -510,9 +524,9 @@ def _laws(study: Study) -> tuple[Section, ...]:
         return ()
     text: tuple[str, ...] = (
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
-        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. The range of a law ends before the "
-        "first point that it misses by more, if at least half of the tested range remains: that is a warning. If less remains, the study "
-        "fails; X, and a law of slopes alone, may keep less.",
+        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
+        "law misses a point by more, its range ends before that point. If at least half of the tested range remains, this is a warning. "
+        "If less remains, the study fails, except for X and for a law of slopes alone.",
         format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
@@ -525,12 +539,12 @@ def _laws(study: Study) -> tuple[Section, ...]:
 def _comparison(study: Study) -> tuple[Section, ...]:
     if not study.comparisons:
         return ()
-    text = ["Published values are made dimensionless with our length before they are compared."]
+    text = ["Published values are rescaled to our length before they are compared."]
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
                 f'"{r.name}" stands twice in the table, as its source does not say which length made its values dimensionless: {r.scaling} '
-                f"(values as printed), or {r.other_scaling} (every value rescaled)."
+                f"(values as printed) or {r.other_scaling} (every value rescaled)."
             )
     shown = filled(
         tables.campaigns(study),
@@ -569,7 +583,7 @@ def _provenance(study: Study) -> Section:
     if files > MANY:
         text = [f"{files} files went in, identified by the sha256 of their bytes; --full lists them."]
     settings = dict.fromkeys(
-        f"Settings of the fit {f.fit}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
+        f"Settings of the fit {f.fit} ({FITS.load(f.fit).summary}): {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
         for f in study.fits
         if f.settings
     )

@@ -132,8 +132,8 @@ def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
     copies = [(t.name.rpartition("/")[2], t.by_symmetry.rpartition("/")[2]) for t in tables if t.by_symmetry]
     if not copies:
         return ()
-    own, sources = (", ".join(names) for names in zip(*copies, strict=True))
-    return (f"{own}: no runs, but {sources} turned by 90 deg about x.",)
+    own, sources = (listed(names) for names in zip(*copies, strict=True))
+    return (f"{own}: no runs of their own, but copies of {sources}, turned by 90 deg about x.",)
 
 
 def _row(

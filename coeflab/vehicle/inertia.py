@@ -212,13 +212,13 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
         if i < j and other != value:
             unit = "kg m^2" if i > 2 else "kg m" if j > 2 else "kg"
             said.append(
-                f"{primed(name)} and {primed(mirror)} of the file, {value:.4g} and {other:.4g} {unit} of added mass, should be equal: "
-                f"their mean, {(value + other) / 2.0:.4g} {unit}, is used for both"
+                f"{primed(name)} and {primed(mirror)} of the file should be equal: as added mass they are {value:.4g} and {other:.4g} {unit}, "
+                f"and their mean, {(value + other) / 2.0:.4g} {unit}, is used for both"
             )
             across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
             if (size := float(np.sqrt(abs(np.prod(list(across)))))) > 0.0:
                 said[-1] += (
-                    f"; they differ by {100.0 * abs(value - other) / size:.2g} % of the root of their diagonal entries"
+                    f" (difference: {100.0 * abs(value - other) / size:.2g} % of the geometric mean of their diagonal entries)"
                 )
     return out, tuple(said)
 
@@ -233,7 +233,11 @@ def against_computed(parameters: ParameterFile) -> str:
         for (i, j), (name, value) in stated.items()
         if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
     ]
-    return f"computed{_method(parameters.added_mass)} against the file's values: {', '.join(apart)}" if apart else ""
+    return (
+        f"added mass computed{_method(parameters.added_mass)} differs from the file's: {', '.join(apart)}"
+        if apart
+        else ""
+    )
 
 
 def _no_inertia(parameters: ParameterFile, matrix: Array) -> str:

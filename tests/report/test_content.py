@@ -139,8 +139,8 @@ def test_without_published_values_there_is_no_verdict_and_no_comparison():
 
 def test_a_pass_says_what_it_means():
     text = words(small_study(FULL, published=True), "verdict")
-    assert "all passed" in text
-    assert "Re-fits use the authors' own measurements" in text
+    assert "of the same data pass: every difference lies within U95." in text
+    assert "Re-analyses use the authors' own measurements" in text
 
 
 @pytest.mark.parametrize(("share", "is_weak"), [(0.26, True), (-0.26, True), (0.24, False)])
@@ -149,8 +149,8 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
-    joined = "U95 and the source's uncertainty, root sum of squares, exceed 25 % of the published value"
-    assert (f"Weak passes: {joined}: Yv' of tow (26 %)." in text) == is_weak
+    joined = "the root sum of squares of U95 and the source's own uncertainty exceeds 25 % of the published value"
+    assert (f"Weak passes, as {joined}: Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
     assert "Weak" not in words(failed, "verdict")
 

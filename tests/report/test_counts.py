@@ -28,15 +28,17 @@ def test_copies_by_symmetry_do_not_count_and_kinds_are_named():
     turned = tuple(replace(s, by_symmetry="tow/other") if s.symbol == "Nv" else s for s in fit.sweeps)
     copied = harvest(replace(study, fits=(replace(fit, sweeps=turned), *study.fits[1:])))
     assert copied.startswith("Found: 1 coefficient (")
-    assert copied.endswith("1 more is a copy by symmetry.")
+    assert copied.endswith("1 more is a copy of these by symmetry.")
 
 
 def test_the_first_page_says_what_the_source_states_where_rig_and_balance_are_left_out():
     study = small_study(FULL)
     tables = tuple(replace(t, source=Source("t", kind="experiment", stated_uncertainty=STATED)) for t in study.tables)
     found = tuple(replace(b, unassessed=(*b.unassessed, RIG)) for b in budgets(study))
-    wanted = f"; the source states {STATED}."
+    wanted = f"; the test report: {STATED}."
     (said,) = (n for n in answer(replace(study, tables=tables, budgets=found)).notes if n.endswith(wanted))
     assert said.startswith("Not in U95: errors of ")
-    assert not any("source states" in n for n in answer(replace(study, tables=tables, budgets=budgets(study))).notes)
-    assert not any("source states" in n for n in answer(replace(study, budgets=found)).notes)
+    assert not any(
+        "the test report: " in n for n in answer(replace(study, tables=tables, budgets=budgets(study))).notes
+    )
+    assert not any("the test report: " in n for n in answer(replace(study, budgets=found)).notes)

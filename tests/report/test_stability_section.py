@@ -78,7 +78,7 @@ def test_an_index_can_be_recomputed_from_the_numbers_below_it(index):
     (section,) = stability_sections(with_files(with_u95(STABLE, 0.05)))
     made_of = section.tables[2]
     text, source = next(row[2:] for row in made_of.rows if row[1] == index)
-    assert source == "literature"
+    assert source == "published"
     y, n, y_rate, n_rate, m, x = (float(one.rpartition(" = ")[2]) for one in text.split(", "))
     sign = 1.0 if index == "G_h" else -1.0
     again = 1.0 - n * (y_rate - sign * m) / (y * (n_rate - x * m))
@@ -151,7 +151,9 @@ def test_an_index_stands_beside_the_one_that_the_same_source_prints():
     indices = section.tables[0]
     assert indices.headers[4] == "published"
     assert [row[4] for row in indices.rows] == ["-0.443297", "-", "-", "-"]
-    assert "published: G_h of synthetic: roddy1990, Table 4, report p. 19, configuration 2" in indices.notes
+    assert (
+        "published: G_h of synthetic: Roddy configuration 2 (Table 4, report p. 19, configuration 2)" in indices.notes
+    )
 
 
 def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
@@ -165,7 +167,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     )
     assert said.startswith(start)
     assert vertical in said
-    assert said.endswith(". At 1.50 m/s, the speed of the file, there is no verdict: BG is not known.")
+    assert said.endswith(". At 1.50 m/s, the speed of the parameter file, there is no verdict: BG is not known.")
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)

@@ -127,7 +127,7 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         begins = reached[k - 1]
         peak = None if begins is None else extreme(t, psi, largest=k == 1, after=begins)
         over = None if peak is None else abs(peak[1]) - o.execute
-        text = f"heading beyond {np.degrees(o.execute):g} deg after execute {k + 1} (IMO MSC.137(76))"
+        text = f"heading beyond {np.degrees(o.execute):g} deg after the {('second', 'third')[k - 1]} execute (IMO MSC.137(76))"
         out.append(figure(f"{word} overshoot", over, "rad", text, None if peak is None else peak[0]))
     back = None if first is None else crossing(t, psi, 0.0, rises=False, after=first)
     again = None if back is None else crossing(t, psi, 0.0, rises=True, after=back)

@@ -314,7 +314,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Own tows are our CFD runs of a towed body, not tank tests; one campaign a body. Grid: the part of U95 that the grid study gives, "
+        "Own tows are CFD runs of coeflab's virtual towing tank, not tank tests; each body has one campaign. Grid: the part of U95 that the grid study gives, "
         "in % of the value.",
         "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
         "needs a steady test of the same body.",
@@ -331,7 +331,7 @@ def _nothing(found: Towed) -> str:
     """A body without any value, in one line."""
     reasons = "; ".join(dict.fromkeys(r.why for r in found.rows if r.why))
     missing = listed(list(dict.fromkeys(r.missing for r in found.rows if r.missing)))
-    return f"{found.tow.name}: {missing or 'no value'}{f', {reasons}' if reasons else ''}."
+    return f"{found.tow.name}: {missing or 'no value'}{f', as {reasons}' if reasons else ''}."
 
 
 def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:

@@ -25,24 +25,24 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope is the weighted median of many fits to the whole sweep, each a line plus v|v|, cubic and smooth parts. A fit weighs the more, "
-    "the better it explains the points (docs/slope_at_origin.md). No published value is used.",
-    "Slopes: no form and no range is chosen. Terms of higher degree: their form is chosen, and the notes below the tables name them.",
-    "U95 covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
+    "Each slope is the weighted median of many fits to the whole sweep, each a line plus v|v|, cubic and smooth parts. The better a fit "
+    "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
+    "For a slope, no form and no range is chosen. For a term of higher degree the form is chosen; the notes below the tables name these terms.",
+    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
     "Form: unknown shape of the curve.",
     "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
-    "to all runs that its law covers, also some in which two motions vary. A dash: not assessed, so not in U95.",
+    "to all runs that its law covers, also some in which two motions vary. A dash: does not apply or not assessed, so not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."
-OPEN = "Sign open: U95 exceeds the value. Such a value is not to be used alone; within its law it belongs to the fit of the others."
+OPEN = "Sign open: U95 exceeds the value. Do not use such a value alone: it holds only together with the other terms of its law."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
     "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
-CONDITIONS = "In CFD angle, rate, speed, length, density and reference point are set, not measured, and have no errors of readings."
+CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point are set, not measured: they have no errors of readings."
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 

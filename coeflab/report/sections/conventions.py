@@ -236,7 +236,7 @@ CONTROLS = (
 MOVED = "The rows of the tables are moved there and then fitted: slopes that are moved after a fit about another point differ a little."
 POTENTIAL = (
     "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
-    "simulator that adds C_A(nu) nu must not count them twice."
+    "simulator that adds -C_A(nu) nu itself must get them without these parts, or it counts the parts twice."
 )
 REST = (
     "A real model may have a force at zero angle, so a curve has a constant unless its table declares symmetry. With points on both "
@@ -255,7 +255,7 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
     """
     text = (
         f"{AXES_ROWS} Tables in other axes are turned into these as they are read.",
-        f"{ANGLES} Input files may use other signs; figures use these, in degrees.",
+        f"{ANGLES} Input files may use other signs; this report uses these, and angles in degrees.",
         CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),

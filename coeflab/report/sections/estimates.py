@@ -243,7 +243,7 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
             value = f.status if f.value is None else number(f.value * factor, 3)
             if f.name != "lateral deviation":
                 rows.append((called, f.name, value, unit, ends))
-    heads = ("", "figure", "value", "unit", "95 %")
+    heads = ("", "quantity", "value", "unit", "95 %")
     return Table("First manoeuvres", heads, tuple(rows), (*notes, *_held(moves)), frozenset({0, 1, 3}))
 
 

@@ -105,7 +105,7 @@ TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
     "Positive: stable. Negative: unstable. Interval with zero in it: sign open.",
     "U95 comes from the U95 of the four derivatives, fitted or published, without mass and centre of gravity. It is linearised and "
-    "decides the verdict; Monte Carlo limits show how skew the interval is.",
+    "decides the verdict; Monte Carlo limits show how asymmetric the interval is.",
     "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
     "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
 )
@@ -146,7 +146,7 @@ def _one_body(study: Study) -> list[str]:
             kinds = dict.fromkeys(SOURCES.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
             by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
     return [
-        f"{listed(list(files))} are one body, by {listed(list(files.values()))}, in this order."
+        f"{listed([f'{name} ({kind})' for name, kind in files.items()])} are parameter files of one body."
         for files in by.values()
         if len(files) > 1
     ]
@@ -159,7 +159,11 @@ def _of_one_sense(
     each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-        each += f". At {speeds} m/s, the speed of the file, there is no verdict: BG is not known" if speeds else ""
+        each += (
+            f". At {speeds} m/s, the speed of the parameter file, there is no verdict: BG is not known"
+            if speeds
+            else ""
+        )
     undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
     said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
     return f"{said}: {each}"
@@ -211,12 +215,12 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
         for name in dict.fromkeys(row[0] for row in roots):
             speeds.setdefault(f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", []).append(name)
         at = (
-            f"Roots at {next(iter(speeds))}, the speed of the file"
+            f"Roots at {next(iter(speeds))}, the speed of the parameter file"
             if len(speeds) == 1
-            else "Roots at the speed of the file"
+            else "Roots at the speed of the parameter file"
         )
         each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
-        notes = (f"speed of the file: {each}.",) if len(speeds) > 1 else ()
+        notes = (f"speed of the parameter file: {each}.",) if len(speeds) > 1 else ()
         tables.append(Table(at, heads, tuple(roots), notes, frozenset({0, 1, 2, 4})))
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     tables += [made_of] if made_of.rows else []
@@ -241,7 +245,7 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         d = given[index]
         half = None if d.result is None else d.result.linear
         stated = from_literature(parameters, index)
-        remarks = [f"{', '.join(stated)} from literature"] if stated else []
+        remarks = [f"{', '.join(stated)} published"] if stated else []
         remarks += [d.statement] if half is None else []
         remarks += [d.limits] if d.limits else []
         remarks.append(
@@ -278,14 +282,18 @@ def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
                 continue
             by: dict[str, list[str]] = {}
             for c in found:
-                by.setdefault(c.campaign if c.origin == "fit" and c.campaign else c.origin, []).append(c.symbol)
+                origin = "published" if c.origin == "literature" else c.origin
+                by.setdefault(c.campaign if c.origin == "fit" and c.campaign else origin, []).append(c.symbol)
             sources = [f"{', '.join(those)}: {source}" for source, those in by.items()] if len(by) > 1 else list(by)
             derivatives = (f"{c.symbol} = {number(float(c.value or 0.0), 5)}" for c in found)
             centre = p.mass.mass_moment_prime / p.mass.mass_prime
             values = (*derivatives, f"m' = {number(p.mass.mass_prime, 5)}", f"xG' = {number(centre, 5)}")
             rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
     headers = ("parameter file", "index", "computed from", "derivatives from")
-    notes = ("m' and xG' come from the table Mass and inertia used; --full prints it.",)
+    notes = (
+        "m' and xG' come from the table Mass and inertia used; --full prints it. The indices above have four digits, so that they can be "
+        "recomputed from these numbers.",
+    )
     return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))
 
 
@@ -297,7 +305,7 @@ def _printed(study: Study, name: str, index: str) -> tuple[str, str]:
         if r.relation is Relation.RE_ANALYSIS and r.body == parameters.body and campaigns & set(r.campaigns):
             for value in r.indices:
                 if value.symbol == index:
-                    return value.printed, f"{index} of {name}: {r.citation}, {r.place}"
+                    return value.printed, f"{index} of {name}: {r.name} ({r.place})"
     return "", ""
 
 
@@ -325,7 +333,7 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 SIMULATED = (
     "Each manoeuvre is computed from one parameter file of this study. A result that uses motions beyond the data is marked "
-    "extrapolated; one that its data leave open has no value, and the reason stands below the table.",
+    "extrapolated. A result that the data do not determine has no value, and its reason is given.",
 )
 WITHOUT_U95 = (
     "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
@@ -390,7 +398,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
 
 EXPORTED = (
     "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
-    "those of the parameter file. The difference is the error of a simulation with that target.",
+    "those of the parameter file. The difference is the error of a simulation with that target (simulator).",
     "A simulator that adds -C_A(nu) nu itself gets linear derivatives without their potential part, so that nothing counts twice.",
 )
 
@@ -416,7 +424,7 @@ def added_masses(study: Study) -> tuple[str, ...]:
     waters = {made.parameters: made.loss.water for made in study.exports if made.loss is not None}
     files = {p.name: p for p in study.parameter_files.values()}
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
-    said = {name: "; ".join(filter(None, words)) for name, words in each.items()}
+    said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
         f"Added mass of {name}, for roots, motions and exports: {words}." for name, words in said.items() if words
     )

@@ -28,7 +28,7 @@ from coeflab.vehicle.second_order import ROUNDING, products_once
 
 NAMED = 3
 IN_PERCENT = (
-    "In % of the largest force of the component in that table. Two offsets of the set-up are subtracted from the points first: a force "
+    "Largest and rms: difference of law and points, in % of the largest force of the component in that table; where: the point of the largest. Two offsets of the set-up are subtracted from the points first: a force "
     "at zero angle and rate that the law does not have, and the part of X that changes its sign with the drift."
 )
 

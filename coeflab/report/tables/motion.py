@@ -54,13 +54,15 @@ def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Tabl
         if f.why:
             reasons.setdefault(f.why, []).append(f.name)
     notes = tuple(f"{_listed(names, len(figures))}: {why}" for why, names in reasons.items())
+    if any(row[3] for row in rows):
+        notes += (f"in L: over the reference length L = {length:.4g} m",)
     return Table(
         title, headers, tuple(rows), notes, frozenset({0, 2, len(headers) - 2, len(headers) - 1}), ("definition",)
     )
 
 
 def _listed(names: list[str], everything: int) -> str:
-    return "All" if len(names) == everything > 1 else ", ".join(names)
+    return "All quantities" if len(names) == everything > 1 else ", ".join(names)
 
 
 def columns(trajectory: Trajectory) -> dict[str, Array]:

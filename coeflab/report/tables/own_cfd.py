@@ -12,7 +12,7 @@ from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.towed import AS_PRINTED, Towed
 from coeflab.study.validation import in_millions
 
-AGAINST = {True: "no modelling error shown", False: "|E| > U_V", None: "no verdict"}
+AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
 
 
 def own_tow(found: Towed) -> Table:
@@ -35,7 +35,7 @@ def own_tow(found: Towed) -> Table:
         if why
     ]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
-    grid = "" if assessed else "There is no grid study: U95 does not contain the grid."
+    grid = "" if assessed else "There is no grid study: U95 leaves out the discretisation error."
     notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
     headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
@@ -68,7 +68,10 @@ def tow_against(found: Towed) -> Table:
         value = next((p for p in r.published if p is not None), None)
         if value is not None and not test.endswith(AS_PRINTED):
             printed.setdefault(test, []).append(as_printed(value))
-    notes = [f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}." for test, symbols in tests.items()]
+    notes = [
+        f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}{_stated(found, test)}."
+        for test, symbols in tests.items()
+    ]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     judged = [r.validation for r in found.rows if r.validation is not None]
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
@@ -77,6 +80,15 @@ def tow_against(found: Towed) -> Table:
     notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
     headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
+
+
+def _stated(found: Towed, test: str) -> str:
+    """The relative uncertainty of printed values in U_V, where all of a test have one; empty for our own fits."""
+    if not test.endswith(AS_PRINTED):
+        return ""
+    of = (r.validation for r in found.rows if r.validation is not None and r.validation.experiment == test)
+    shares = {f"{100.0 * v.u_measured / abs(v.measured):.2g} %" for v in of if v.u_measured and v.measured}
+    return f"; U_V takes the {shares.pop()} that its source states" if len(shares) == 1 else ""
 
 
 def _test(test: str, printed: Sequence[str]) -> str:

@@ -25,7 +25,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
-from coeflab.law.symbols import primed
+from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
 from coeflab.study.towed import STATES
@@ -36,7 +36,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 NO_DATA, NO_VALUE = "no data", "no value"
 ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-WEAK = f"U95 and the source's uncertainty, root sum of squares, exceed {100.0 * WIDE:.0f} % of the published value"
+WEAK = f"the root sum of squares of U95 and the source's own uncertainty exceeds {100.0 * WIDE:.0f} % of the published value"
 
 
 def coefficients(study: Study, campaign: str | None = None) -> Table:
@@ -180,13 +180,19 @@ def verdicts(study: Study) -> Table:
         for c in study.comparisons
         if c.relation is Relation.RE_ANALYSIS
     ]
-    headers = ("", "campaign", "coeflab", "U95", "published", "|difference|", "combined", "verdict", "reference")
+    headers = ("", "campaign", "ours", "U95", "published", "|difference|", "combined", "verdict", "reference")
     notes = (
         f"{Relation.RE_ANALYSIS}: {Relation.RE_ANALYSIS.meaning}.",
         *([f"weak pass: {WEAK}."] if any(row[-2] == "weak pass" for row in rows) else []),
         "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
     )
-    return Table("Re-analysis of published evaluations", headers, tuple(rows), notes, frozenset({0, 1, 7, 8}))
+    return Table(
+        "Re-analyses: our fits against the authors' own evaluation",
+        headers,
+        tuple(rows),
+        notes,
+        frozenset({0, 1, 7, 8}),
+    )
 
 
 def side_by_side(study: Study) -> Table:
@@ -221,15 +227,15 @@ def side_by_side(study: Study) -> Table:
         f"{name}, read with {reading}" if name in twice else f"{name}, as quoted" if name in given else name
         for name, reading in columns
     )
-    headers = ("", "campaign", "coeflab", "U95", "random", "form", *names)
+    headers = ("", "campaign", "ours", "U95", "random", "form", *names)
     notes = tuple(_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS)
-    return Table("Side by side with the published table", headers, tuple(rows), notes, frozenset({0, 1}))
+    return Table("Our coefficients beside published ones", headers, tuple(rows), notes, frozenset({0, 1}))
 
 
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
-        digits = "The first page gives the digits of the report itself where it is held."
+        digits = "The first page shows the digits that the test report prints, where the project holds it."
         return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
     another = "another method" if r.body in ours else "another body"
     return f"{r.name}: {another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
@@ -262,6 +268,10 @@ def campaigns(study: Study) -> Table:
             notes.append(f"{body}: {configuration.title}")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
     notes = [f"{'; '.join(notes)}."] if notes else []
+    angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]
+    notes += [f"{'; '.join(angles)}."] if angles else []
+    computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
+    notes += [f"{name}: {text}" for name, text in computed.items() if towed_ones and name not in towed_ones]
     notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))

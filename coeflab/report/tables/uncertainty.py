@@ -51,7 +51,7 @@ def spread_table(carried: Carried) -> Table:
         "+-: standard error of the ends for so many members."
     )
     headers = (
-        "figure",
+        "quantity",
         "value",
         "unit",
         "median",
@@ -188,7 +188,7 @@ def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str
     said = [*([f"errors of {listed(read)}"] if read else []), *others]
     out = [f"{what}: {'; '.join(said)}."] if said else []
     known = [n for n in fixed if n != COUPLED]
-    return [*out, f"Set in CFD, not measured: {listed(known)}."] if known else out
+    return [*out, f"Set in CFD, so without errors of readings: {listed(known)}."] if known else out
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -366,10 +366,11 @@ def predictions(found: Sequence[Validation]) -> Table:
         )
         for v in sorted(found, key=lambda v: v.within is None)
     )  # fmt: skip
-    headers = ("", "computed", "measured", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
+    headers = ("", "CFD campaign", "test campaign", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
     notes = (
-        f"Computed and measured on the same body, independently of each other; D is our fit to the points of the test.{weak}",
+        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test. E is formed before "
+        f"rounding. U_V: root sum of squares of the uncertainties of S and D. Within U_V no modelling error can be shown.{weak}",
         "No verdict without the numerical error of a grid study, nor on drag where the Reynolds numbers differ (Verdict).",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
@@ -379,7 +380,7 @@ def _verdict(v: Validation) -> str:
     """In words; a weak one with what makes it so."""
     if v.within is None:
         return "no verdict"
-    return f"weak: U_V is {v.share} of D" if v.weak else "no modelling error shown" if v.within else "beyond U_V"
+    return f"weak: U_V is {v.share} of D" if v.weak else "within U_V" if v.within else "beyond U_V"
 
 
 def derived(found: Sequence[Derived]) -> Table:

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
@@ -38,7 +38,7 @@ def check(study: Study) -> Sequence[Check]:
                     "agreement",
                     f"{primed(c.symbol)} {a.campaign}, {b.campaign}",
                     Severity.PASS if agree else Severity.WARN,
-                    f"{c.value:.4g} and {d.value:.4g}, difference {difference:.2g}",
+                    f"{plus_minus(c.value, c.u95)} and {plus_minus(d.value, d.u95)}, difference {difference:.2g}",
                     f"within the combined U95 {combined:.2g}",
                     "Agree."
                     if agree

@@ -83,7 +83,7 @@ def _extrapolation(s: Sweep) -> Check | None:
         "coverage",
         f"{s.table} {s.variable}'",
         Severity.WARN,
-        f"smallest |{s.variable}'| = {size.min():.3g} of {size.max():.3g}",
+        f"smallest |{s.variable}'| = {size.min():.3g}, largest {size.max():.3g}",
         "a run within a quarter of the range from zero",
         "The value at the origin is extrapolated. Run smaller settings.",
     )

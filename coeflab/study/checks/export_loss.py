@@ -19,7 +19,7 @@ def check(study: Study) -> Sequence[Check]:
             "export_loss", f"{made.parameters} for {made.target}", Severity.WARN,
             f"worse than no force at all: {listed(made.loss.worse_than_nothing)}",
             "a difference smaller than the force itself",
-            f"Do not use these components of {made.target}; its loss report has them by size.",
+            f"Do not use these components of {made.target}; its loss report gives their sizes.",
         )
         for made in study.exports
         if made.loss is not None and made.loss.worse_than_nothing
