@@ -92,7 +92,7 @@ class Thruster:
         made = thrust_over_speed(
             s.diameter, s.pitch_ratio, s.area_ratio, s.blades, s.highest_rpm / 60.0, inflow, density
         )
-        return made * np.array([60.0, 1.0])
+        return np.asarray(made * np.array([60.0, 1.0]))
 
 
 CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")

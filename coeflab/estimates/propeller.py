@@ -70,7 +70,7 @@ def side_area(pitch_ratio: float, area_ratio: float) -> float:
     pitch_ratio, area_ratio : float
         P/D; A_E/A_0.
     """
-    share = HUB + (1.0 - HUB) * (np.arange(64) + 0.5) / 64.0
+    share = np.asarray(HUB + (1.0 - HUB) * (np.arange(64) + 0.5) / 64.0, dtype=np.float64)
     projected = 0.5 * _chords(area_ratio) * (1.0 - HUB) * float(np.mean(np.sin(blade_angle(pitch_ratio, share))))
     slope = 2.0 * np.pi * ASPECT / (ASPECT + 2.0)
     return float(slope * projected * 2.0 / np.pi)  # D R / (pi R^2)

@@ -361,13 +361,16 @@ class Simplification:
         agreement = self.shape.agreement
         if agreement is None:
             return f"Parts were not compared with the mesh: {self.uncompared}"
-        if agreement.apart:
-            return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}."
-        worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
         error = agreement.error
         unsure = " The mesh's own error was not estimated: raise --panels." if error is None else ""
         if error is not None and error > APART / 2.0:
             unsure = f" The mesh's own error is up to {error:.0%}."
+        if agreement.apart:
+            alone = " Parts are computed alone: what they do to each other is left out." if len(self.parts) > 1 else ""
+            return (
+                f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}.{alone}{unsure}"
+            )
+        worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
         return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 
     def part_table(self) -> Table:
