@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from coeflab.vehicle.comparison import Comparison
 
 
-ROUNDING = 1e-9
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 
@@ -94,31 +93,30 @@ def as_json(found: Comparison) -> dict[str, Any]:
 
 
 def _comparable(table: Table, differ: Sequence[bool]) -> Table:
-    """The rows that can be compared, or whose values ``differ``; of the others their names, by reason."""
+    """The rows that can be compared, or whose values ``differ``; of the others their names, by verdict and reason."""
     from coeflab.vehicle.comparison import Verdict
 
     column = table.headers.index("verdict")
-    rows = [
-        row
-        for row, other in zip(table.rows, differ, strict=True)
-        if other or row[column] != Verdict.NOT_COMPARABLE.value
-    ]
+    named = (Verdict.NOT_COMPARABLE.value, Verdict.EQUAL.value)
+    rows = [row for row, other in zip(table.rows, differ, strict=True) if other or row[column] not in named]
     reasons: dict[str, list[str]] = {}
     for row in table.rows:
         if row not in rows:
-            reasons.setdefault(row[-1], []).append(row[0])
+            equal = row[column] == Verdict.EQUAL.value
+            said = f"{row[column].capitalize()}{';' if equal else ','} {row[-1]}".rstrip(",; ")
+            reasons.setdefault(said, []).append(row[0])
     if not rows:
-        for line in (table.title, *(f"  {', '.join(names)}: {why}" for why, names in reasons.items()), *table.notes):
+        for line in (table.title, *(f"  {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes):
             show.sentence(line)
         show.text()
         return replace(table, rows=())
-    notes = (*(f"Not comparable, {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)
+    notes = (*(f"{why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)
     return replace(table, rows=tuple(rows), notes=notes)
 
 
 def _print(found: Comparison) -> None:
     from coeflab.report.tables import models as comparison_tables
-    from coeflab.vehicle.comparison import Verdict
+    from coeflab.vehicle.comparison import ROUNDING, Verdict
 
     apart = [bool(r.difference) and abs(r.difference or 0.0) > ROUNDING * abs(r.a or 0.0) for r in found.rows]
     for table, differ in (
@@ -131,5 +129,5 @@ def _print(found: Comparison) -> None:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
         if verdicts:
-            said = [v for v in Verdict if v in verdicts or v not in (Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)]
+            said = [v for v in Verdict if v in verdicts or v not in (Verdict.EQUAL, Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)]
             show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in said) + ".")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import typer
@@ -74,6 +75,8 @@ def command(
         show.text(document.title)
         for path in paths:
             show.text(f"  {path}  {len(files[path.name]) / 1e6:.2f} MB")
+        if not (full or summary or section):
+            show.command_line("Appendix", f"coeflab report {shlex.quote(study)} --full")
     if open_:
         show.in_browser(paths[0].resolve().as_uri())
     if made.failed:

@@ -5,6 +5,7 @@ Run a plan, write its files, print what a person wants to see first.
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,7 +41,7 @@ def command(
     plan = typed(plan)
     file = plan / "plan.toml" if plan.is_dir() else named(plan, "plan.toml")
     try:
-        carry_out(read_plan(file), out, json, strict)
+        carry_out(read_plan(file), out, json, strict, str(plan))
     except InputError as why:
         if why.file is None:  # an option of a fit, which knows nothing of files
             why.file = file
@@ -51,10 +52,10 @@ REPORTS = "reports"
 FIRST_FIGURES = 3
 
 
-def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False) -> None:
+def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False, typed_as: str = "") -> None:
     """Run, render everything, then write; exit code 1 when a check or a comparison fails, or an export is refused.
 
-    ``strict``: for a warning, too.
+    ``strict``: for a warning, too. ``typed_as``: the plan as it was typed, for the next command.
     """
     from coeflab.core.files import write_all
     from coeflab.workbench import rendered, run
@@ -79,6 +80,8 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
     else:
         summarise(study)
         show.written(folder, sorted(files), changed)
+        if typed_as:
+            show.command_line("Appendix", f"coeflab report {shlex.quote(typed_as)} --full")
     for refused in study.refused:
         show.error(f"error: {refused.why}")
     if study.failed or (strict and study.warned):

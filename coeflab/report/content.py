@@ -279,7 +279,9 @@ def _campaigns(found: tuple[Section, ...]) -> tuple[Section, ...]:
 
 def also(study: Study) -> str:
     """What the whole report holds beside the core, in one line."""
-    name = shipped_name(study.plan) or (study.plan.file.name if study.plan.file else "PLAN")
+    shipped = shipped_name(study.plan)
+    name = shipped or (study.plan.file.name if study.plan.file else "PLAN")
+    where = "" if shipped or study.plan.file is None else f"In the folder of {name}, "
     held = [
         (len(study.budgets), "uncertainty budget"),
         (len(study.hulls), "added-mass matrix", "added-mass matrices"),
@@ -289,7 +291,7 @@ def also(study: Study) -> str:
     ]
     each = [f"{n} {names[0] if n == 1 else (*names, f'{names[0]}s')[1]}" for n, *names in held if n]
     listing = f"{', '.join(each)}, the quality of the data" if each else "the quality of the data"
-    return f"coeflab report {shlex.quote(name)} --full adds the appendix: {listing}."
+    return f"{where}coeflab report {shlex.quote(name)} --full adds the appendix: {listing}."
 
 
 def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:

@@ -116,6 +116,12 @@ _PARENTHESES = re.compile(r"(?P<name>.*?\S)\s*\((?P<unit>[^()]*(?:\([^()]*\)[^()
 _BEHIND = re.compile(r"(?P<name>.*?[^\s,/])(?:\s*,\s*|\s+/\s+)(?P<unit>\S.*)")
 # The last letter of these is no unit: coefficients, standard errors and rudders are written so too.
 _NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1,2}")
+# Units of several words behind a name, as r_rad_s, U_m_per_s, rho_kg_m3 and Mz_N_m: no name ends so by chance.
+_WORDS_BEHIND = re.compile(
+    r"(?P<name>.*[^_\s])_(?:(?P<over>rad(?:ians?)?|deg(?:rees?)?|rev|m|cm|mm|ft|in|km|kg|g|lbf?|slug|t)_(?:per_)?"
+    r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in))"
+)
+_SEPARATORS = " _-:/"
 
 
 _NO_UNIT = frozenset({"", "-", "–", "—"})
@@ -131,18 +137,40 @@ def name_and_unit(text: str) -> tuple[str, str]:
     """Split ``Fy [N]``, ``Fy (N)``, ``Fy, N`` and ``Fy / N``; the unit is empty where none stands."""
     clean = " ".join(text.split())
     if m := _BRACKETS.fullmatch(clean):
-        return m["name"], m["unit"].strip()
+        return m["name"].rstrip(_SEPARATORS) or m["name"], m["unit"].strip()
     if (m := _PARENTHESES.fullmatch(clean)) and is_unit(_BETWEEN_UNITS.sub("·", m["unit"].strip()) or "-"):
-        return m["name"], m["unit"].strip()
+        return m["name"].rstrip(_SEPARATORS) or m["name"], m["unit"].strip()
     if (m := _BEHIND.fullmatch(clean)) and is_unit(m["unit"]) and m["unit"] not in ("-", "1"):
         return m["name"], m["unit"]
     return clean, ""
 
 
+def unit_in_words(text: str) -> tuple[str, str]:
+    """Split ``r_rad_s`` and ``U_m_per_s`` into name and unit, ``rad/s``; the unit is empty where no such one stands."""
+    m = _WORDS_BEHIND.fullmatch(text)
+    if m is None or _NO_UNIT_BEHIND.fullmatch(f"{m['name']}_N"):
+        return text, ""
+    if m["force"]:
+        return m["name"], f"{m['force']}*{m['arm']}"
+    under = f"{m['under']}^2" if m["square"] else m["under"]
+    return m["name"], f"{m['over']}/{under}"
+
+
 def _underscored(texts: Sequence[str]) -> list[tuple[str, str]]:
-    """Split ``Fy_N`` where at least half of the names, and two of them, end so and one of these ends is no single letter."""
-    parts = [t.rpartition("_")[::2] for t in texts]
-    ends = [bool(n) and is_unit(u) and u != "-" and not _NO_UNIT_BEHIND.fullmatch(t) for t, (n, u) in zip(texts, parts)]
+    """Split ``Fy_N`` where at least half of the names, and two of them, end so and one of these ends is no single letter.
+
+    A unit of several words, as in ``r_rad_s``, is one wherever it stands.
+    """
+    words = list(map(unit_in_words, texts))
+    return [w if w[1] else p for w, p in zip(words, _by_last_word(texts, words), strict=True)]
+
+
+def _by_last_word(texts: Sequence[str], words: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    parts = [w if w[1] else t.rpartition("_")[::2] for t, w in zip(texts, words, strict=True)]
+    ends = [
+        bool(n) and bool(w[1] or (is_unit(u) and u != "-" and not _NO_UNIT_BEHIND.fullmatch(t)))
+        for t, (n, u), w in zip(texts, parts, words, strict=True)
+    ]
     sure = any(e and len(u) > 1 for e, (_, u) in zip(ends, parts))
     if not sure or sum(ends) < 2 or 2 * sum(ends) < len(texts):
         return [(t, "") for t in texts]
@@ -284,11 +312,12 @@ def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str
     texts = [" ".join(t.split()) for t in names[1]]
     stand = "none"
     if units:
-        split = [(t, _bare(u)) for t, u in zip(texts, units[1])]
+        split = [(t, _bare(u)) if _bare(u) else unit_in_words(t) for t, u in zip(texts, units[1])]
         stand = f"row under the names (line {units[0]})"
     else:
         split = [name_and_unit(t) for t in texts]
         if any(u for _, u in split):
+            split = [(n, u) if u else unit_in_words(n) for n, u in split]
             stand = "in the header"
         else:
             split = _underscored(texts)

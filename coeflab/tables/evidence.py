@@ -257,10 +257,11 @@ def _levers(data: Mapping[str, Array], said: Mapping[str, ColumnMap], frame: Axe
             m, f = both[0][ok], both[1][ok]
             if m.size >= 3 and np.any(f) and np.any(m) and abs(np.dot(m, f)) > CLEAR * np.sqrt((m @ m) * (f @ f)):
                 found[moment, force] = sign * float(m @ f) / float(f @ f)
+    # Of turning rows N / Y is no place of a force: Nr' / Yr' has no bound.
     turning = any(np.any(np.nan_to_num(data[m])) for m in (*ANGULAR, "R") if m in data)
-    hull = "" if turning else "; that of a bare hull without large fins acts forward of midships"
+    hull = "; that of a bare hull without large fins acts forward of midships"
     out = []
-    for (moment, force), arm in found.items():
+    for (moment, force), arm in found.items() if not turning else ():
         if frame is None:
             out.append(
                 Evidence(f"{moment} / {force}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")

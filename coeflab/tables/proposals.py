@@ -33,32 +33,10 @@ from coeflab.tables.words.axes import BODY_AXES
 OPEN = "?"
 UNKNOWN = "no known name"
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
-IDLE_UNITS = frozenset(
-    [
-        "°c",
-        "c",
-        "degc",
-        "k",
-        "s",
-        "sec",
-        "ms",
-        "min",
-        "h",
-        "hz",
-        "khz",
-        "pa",
-        "kpa",
-        "mpa",
-        "bar",
-        "mbar",
-        "v",
-        "mv",
-        "a",
-        "ma",
-        "w",
-        "kw",
-    ]
-)
+IDLE_UNITS = frozenset("°c c degc k hz khz pa kpa mpa bar mbar v mv a ma w kw".split())
+# Of a time a wrong split makes one, r_rads_s, so the name has to say it too.
+TIMES = frozenset("s sec ms min h".split())
+_OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
@@ -227,7 +205,8 @@ def _idle(column: RawColumn) -> str:
     known = column.values[np.isfinite(column.values)]
     if known.size and float(np.ptp(known)) <= 1e-9 * float(np.abs(known).max()) and not allowed(column.unit):
         return "one number throughout"
-    if column.unit.strip().casefold() in IDLE_UNITS:
+    unit = column.unit.strip().casefold()
+    if unit in IDLE_UNITS or (unit in TIMES and _OF_TIME.search(column.name)):
         return f"no fit uses [{column.unit}]"
     return ""
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
+from coeflab.core.wording import listed
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
 from coeflab.tables.mapping import (
@@ -26,6 +30,8 @@ from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
+
+MOST_IDLE = 5  # columns that a warning names
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +144,8 @@ def understood(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
+    if all(offer.whole for _, offer in still):
+        shows += tuple(_at_rest(raw, columns))
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -155,6 +163,21 @@ def understood(
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
+    )
+
+
+def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
+    """A warning where no setting is anything but zero, with the columns that vary and that no fit would use."""
+    moving = [c for c in columns if c.said.role in ("angle", "velocity", "control", "radius") and c.said.name != "u"]
+    if any(np.any(np.nan_to_num(c.values) != 0.0) for c in moving) or not any(c.said.role == "force" for c in columns):
+        return
+    used = {c.column.name for c in columns}
+    idle = [c for c in raw.columns if c.name not in used and np.unique(c.values[np.isfinite(c.values)]).size > 1]
+    varied = f"; not used, and it varies: {listed([c.name for c in idle[:MOST_IDLE]])}" if idle else ""
+    column = idle[0].name if idle else "COLUMN"
+    yield Evidence(
+        "warning: nothing varies: no column is an angle, a velocity, a rate, a control or a radius, so no slope follows"
+        f"{varied}. Say what was varied, such as --map {shlex.quote(f'{column}=r [rad/s]')}"
     )
 
 

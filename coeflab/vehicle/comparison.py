@@ -24,9 +24,10 @@ from coeflab.vehicle.parameter_model import ParameterModel
 
 
 class Verdict(StrEnum):
-    """What the difference of two coefficients says; other sign and other size of two values of which one has no U95."""
+    """What the difference of two coefficients says; equal, other sign and other size of two values of which one has no U95."""
 
     WITHIN = "within"
+    EQUAL = "equal"
     APART = "apart"
     OTHER_SIGN = "other sign"
     OTHER_SIZE = "other size"
@@ -251,6 +252,7 @@ def _common_grid(first: ParameterModel, second: ParameterModel, rates: Mapping[s
 
 
 SAME_POINT = 1e-9
+ROUNDING = 1e-9  # of the larger of two values: a move of point and length leaves so much
 OTHER_SIZE = 1.5  # of the larger over the smaller of two values without U95
 
 
@@ -427,7 +429,7 @@ def _row(
     combined = float(np.hypot(u95_a, u95_b)) if u95_a is not None and u95_b is not None else None
     verdict = Verdict.NOT_COMPARABLE
     if not why and combined is None:
-        why = "no U95 on one side"
+        why = "no U95 on either side" if u95_a is None and u95_b is None else "no U95 on one side"
         verdict = _by_value(value_a or 0.0, value_b or 0.0)
     if not why and difference is not None and combined is not None:
         verdict = Verdict.WITHIN if abs(difference) <= combined else Verdict.APART
@@ -438,6 +440,8 @@ def _row(
 
 def _by_value(a: float, b: float) -> Verdict:
     """Of two values of which one has no U95."""
+    if abs(a - b) <= ROUNDING * max(abs(a), abs(b)):
+        return Verdict.EQUAL
     if a * b < 0.0:
         return Verdict.OTHER_SIGN
     small, large = sorted((abs(a), abs(b)))

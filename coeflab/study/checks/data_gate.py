@@ -521,4 +521,21 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
         out += _open_ends(table, cells, rows)
         out += _pasted(table, again)
         out += _astern(table, ahead)
+    out += _at_rest(tables)
     return (*out, _summary(tables[0].campaign, readings, missed, out))
+
+
+def _at_rest(tables: Sequence[ForceTable]) -> list[Check]:
+    """A campaign without a motion or control in any row, from which no slope follows."""
+    if any(t.varies for t in tables):
+        return []
+    speeds = np.concatenate([t.speed for t in tables])
+    resistance = float(np.ptp(speeds)) > AHEAD * float(np.max(np.abs(speeds), initial=0.0))
+    return [
+        Check(
+            "data_gate", tables[0].campaign, Severity.WARN if resistance else Severity.FAIL,
+            "nothing varies but the speed" if resistance else "nothing varies",
+            "an angle, a velocity, a rate, a control or a radius that varies",
+            "No slope follows. Map the column that was varied: coeflab inspect shows all columns of the file.",
+        )
+    ]  # fmt: skip
