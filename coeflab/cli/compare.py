@@ -129,5 +129,7 @@ def _print(found: Comparison) -> None:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
         if verdicts:
-            said = [v for v in Verdict if v in verdicts or v not in (Verdict.EQUAL, Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)]
+            said = [
+                v for v in Verdict if v in verdicts or v not in (Verdict.EQUAL, Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)
+            ]
             show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in said) + ".")

@@ -154,7 +154,10 @@ def _independent(study: Study) -> str:
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    weak = list(dict.fromkeys(f"{primed(v.symbol)} (U_V {v.share} of {primed(v.symbol)})" for v in found if v.weak))
+    shares: dict[str, list[str]] = {}
+    for v in (v for v in found if v.weak and v.share not in shares.get(v.symbol, ())):
+        shares.setdefault(v.symbol, []).append(v.share)
+    weak = [f"{primed(s)} (U_V {' and '.join(each)} of {primed(s)})" for s, each in shares.items()]
     said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
     inside = sum(all(v.within for v in one) for one in numbers)
     return (

@@ -22,7 +22,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.study import PlannedTow, Study
-from coeflab.study.validation import Validation, reynolds_of, validation
+from coeflab.study.validation import Validation, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.reference import Reference
@@ -59,6 +59,8 @@ class TowedRow:
         Whether |E| lies within U_V; None where no verdict can be given.
     why_none : str
         Why not.
+    no_grid : str
+        Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
     """
 
     symbol: str
@@ -70,6 +72,7 @@ class TowedRow:
     validation: Validation | None = None
     verdict: bool | None = None
     why_none: str = ""
+    no_grid: str = ""
 
     @property
     def value(self) -> float | None:
@@ -151,6 +154,7 @@ def _row(
     own = _coefficient(fits, source or symbol)
     budget = _budget(study, tow.campaign, source or symbol)
     u_grid = None if budget is None else budget.part("grid")
+    no_grid = "" if budget is None else without_grid(budget.unassessed)
     if own is None or own.value is None:
         missing, why = _missing(study, tow, source or symbol, own)
         return TowedRow(symbol, None, u_grid, missing, why, published)
@@ -165,15 +169,16 @@ def _row(
             f"set equal to {equal} by fourfold symmetry",
             published,
             why_none=f"as {primed(source)}",
+            no_grid=no_grid,
         )
     why = _left_out(study, tow.campaign, symbol)
     made = None if budget is None else _against(study, budget, own, fits, tests)
     if made is None:
         lacking = "no budget" if budget is None else "no test of it" if tests else ""
-        return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking)
+        return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking, no_grid=no_grid)
     found, other = made
     none = "; ".join(filter(None, (other, found.why_none)))
-    return TowedRow(symbol, own, u_grid, "", why, published, found, None if none else found.within, none)
+    return TowedRow(symbol, own, u_grid, "", why, published, found, None if none else found.within, none, no_grid)
 
 
 def _coefficient(fits: tuple[FitResult, ...], symbol: str) -> Coefficient | None:

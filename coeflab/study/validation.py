@@ -158,10 +158,9 @@ class Validation:
     @property
     def why_none(self) -> str:
         """Why there is no verdict; empty where there is one."""
-        grid = next((name for name in self.lacking if name.partition(" ")[0] == "grid"), "")
         reasons = (
             "the test has no U95" if self.u_measured is None else "",
-            "" if not grid else "no grid study" if grid == "grid" else f"grid {grid.removeprefix('grid ').strip('()')}",
+            without_grid(self.lacking),
             self._friction(),
         )
         return ", ".join(filter(None, reasons))
@@ -223,6 +222,12 @@ def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]
             reynolds = (reynolds_of(study, s.campaign, length), reynolds_of(study, d.campaign, length))
             out.append(validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling), reynolds))
     return tuple(out)
+
+
+def without_grid(lacking: Sequence[str]) -> str:
+    """Why an uncertainty leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds the grid."""
+    grid = next((name for name in lacking if name.partition(" ")[0] == "grid"), "")
+    return "" if not grid else "no grid study" if grid == "grid" else f"grid {grid.removeprefix('grid ').strip('()')}"
 
 
 def by_measured_number(found: Sequence[Validation]) -> tuple[tuple[Validation, ...], ...]:

@@ -33,9 +33,11 @@ from coeflab.tables.words.axes import BODY_AXES
 OPEN = "?"
 UNKNOWN = "no known name"
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
-IDLE_UNITS = frozenset("°c c degc k hz khz pa kpa mpa bar mbar v mv a ma w kw".split())
+IDLE_UNITS = frozenset(
+    {"°c", "c", "degc", "k", "hz", "khz", "pa", "kpa", "mpa", "bar", "mbar", "v", "mv", "a", "ma", "w", "kw"}
+)
 # Of a time a wrong split makes one, r_rads_s, so the name has to say it too.
-TIMES = frozenset("s sec ms min h".split())
+TIMES = frozenset({"s", "sec", "ms", "min", "h"})
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {

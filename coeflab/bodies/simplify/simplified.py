@@ -367,9 +367,7 @@ class Simplification:
             unsure = f" The mesh's own error is up to {error:.0%}."
         if agreement.apart:
             alone = " Parts are computed alone: what they do to each other is left out." if len(self.parts) > 1 else ""
-            return (
-                f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}.{alone}{unsure}"
-            )
+            return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}.{alone}{unsure}"
         worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
         return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 

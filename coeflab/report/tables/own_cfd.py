@@ -36,7 +36,14 @@ def own_tow(found: Towed) -> Table:
     ]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
     grid = "" if assessed else "There is no grid study: U95 leaves out the discretisation error."
-    notes = tuple(n for n in (where, *reasons, *found.turned, grid, found.tow.note) if n)
+    without: dict[str, list[str]] = {}
+    for r in found.rows:
+        if assessed and r.no_grid and not r.missing:
+            without.setdefault(r.no_grid, []).append(primed(r.symbol))
+    no_grid = [
+        f"{', '.join(symbols)}: {why}; U95 leaves out the discretisation error." for why, symbols in without.items()
+    ]
+    notes = tuple(n for n in (where, *reasons, *found.turned, grid, *no_grid, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
     headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
     return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
