@@ -1,4 +1,4 @@
-"""Twelve kinds of vehicles: each becomes the forms that it was made of, or stays a mesh and says so."""
+"""Twelve kinds of vehicles, and four more: each becomes the forms that it was made of, or stays a mesh and says so."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from coeflab.bodies.simplify.simplify import simplify
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
 from coeflab.workbench.hulls import against_mesh
+from tests.bodies.four import FOUR
 from tests.bodies.twelve import TWELVE
 
 FOUND: dict[str, dict[str, int]] = {
@@ -29,19 +30,24 @@ FOUND: dict[str, dict[str, int]] = {
     "tube": {"tube": 1},
     "catamaran": {"ellipsoid": 2, "plate": 1},
     "towfish": {"revolution": 1, "tube": 1, "plate": 4, "box": 1},
+    "blended_wing": {"mesh": 1},
+    "ring_wing_hull": {"revolution": 1, "tube": 1, "plate": 7},
+    "lander": {"ellipsoid": 3, "cylinder": 10},
+    "kayak": {"ellipsoid": 1, "revolution": 1, "plate": 1, "box": 1},
 }
+VEHICLES = {**TWELVE, **FOUR}
 FLU_TO_FRD = np.diag([1.0, -1.0, -1.0])
 
 
 def body(name: str) -> Body:
-    mesh = TWELVE[name]()
+    mesh = VEHICLES[name]()
     mesh.merge_vertices()
     shape = TriangleMesh(np.asarray(mesh.vertices) @ FLU_TO_FRD, np.asarray(mesh.faces))
     return Body(name, name, Datum("middle"), np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), shape)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", TWELVE)
+@pytest.mark.parametrize("name", VEHICLES)
 def test_a_vehicle_becomes_its_forms_or_stays_a_mesh(name: str) -> None:
     found = simplify(body(name))
     assert Counter(p.likeness.kind for p in found.parts) == FOUND[name]
@@ -50,7 +56,7 @@ def test_a_vehicle_becomes_its_forms_or_stays_a_mesh(name: str) -> None:
     assert found.failures == ()
     plates = sum(p.volume for p in found.parts if not p.part.form.volume)
     assert found.shape.volume == pytest.approx(found.mesh.volume - plates, rel=0.005)
-    assert found.left_as_mesh == (name == "manta")
+    assert found.left_as_mesh == (name in ("manta", "blended_wing"))
     for p in found.parts:
         if isinstance(p.part.form, Faceted):
             assert p.part.form.volume == pytest.approx(p.volume, rel=1e-9)
