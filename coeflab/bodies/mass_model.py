@@ -19,6 +19,7 @@ from coeflab.core.table import Table, number, with_u95
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt, parallel_axis
 from coeflab.law.transforms import rotation
+from coeflab.law.water import FRESH_DENSITY
 
 GRAVITY = 9.80665
 # Nominal densities, kg/m^3; a part whose density is known better states its own.
@@ -73,6 +74,37 @@ class MassPart:
 def _place(value: float) -> str:
     """A coordinate to a tenth of a millimetre."""
     return f"{round(float(value), 4) + 0.0:.4f}"
+
+
+def at_rest(excess: float, bg: Array) -> tuple[float, float] | None:
+    """Pitch and roll at rest, rad: the centre of gravity hangs below that of buoyancy.
+
+    Parameters
+    ----------
+    excess : float
+        Weight over buoyancy, less one.
+    bg : (3,) array
+        From the centre of buoyancy to that of gravity, m, FRD.
+
+    Returns
+    -------
+    tuple of float
+        None where weight and buoyancy differ by more than 1 %, or both centres lie at one place.
+    """
+    if abs(excess) > NEUTRAL or np.linalg.norm(bg) <= LEVEL:
+        return None
+    x, y, z = bg
+    return float(np.arctan2(-x, np.hypot(y, z))), float(np.arctan2(y, z))
+
+
+def rest_words(angles: tuple[float, float] | None, bg: Array) -> str:
+    """Of `at_rest`, in words: where the bow points, and whether it stays upright."""
+    if angles is None:
+        return "no trim at rest: weight and buoyancy differ by over 1 %, or G is at B"
+    pitch, roll = (round(float(a), 2) + 0.0 for a in np.degrees(angles))
+    bow = f" (bow {'up' if pitch > 0.0 else 'down'})" if pitch else ""
+    upright = "" if bg[2] > 0.0 else "; G lies above B: it turns over"
+    return f"at rest: pitch {f'{pitch:+.2f}' if pitch else '0'} deg{bow}, roll {f'{roll:+.2f}' if roll else '0'} deg{upright}"
 
 
 @brief
@@ -155,10 +187,7 @@ class MassModel:
 
         None where weight and buoyancy differ by more than 1 %, or both centres lie at one place.
         """
-        x, y, z = self.bg
-        if abs(self.net) > NEUTRAL * GRAVITY * self.density * self.volume or np.linalg.norm(self.bg) <= LEVEL:
-            return None
-        return float(np.arctan2(-x, np.hypot(y, z))), float(np.arctan2(y, z))
+        return at_rest(self.mass / (self.density * self.volume) - 1.0, self.bg)
 
     def properties(self, reference: Array) -> MassProperties:
         """Mass properties about a point.
@@ -200,7 +229,7 @@ class MassModel:
         displaced = self.density * self.volume
         share = self.mass / displaced - 1.0
         does = "neutral" if abs(share) < EVEN else f"{'sinks' if share > 0.0 else 'floats'}, {share:+.2%}"
-        assumed = ", assumed: no [water] density" if self.assumed else ""
+        assumed = ", assumed: no [water] density in its body.toml" if self.assumed else ""
         said = [
             f"displaces {displaced:.5g} kg of water of {self.density:g} kg/m^3{assumed}: {does}",
             f"BG = [{', '.join(map(_place, self.bg))}] m",
@@ -208,13 +237,7 @@ class MassModel:
             + ", ".join(f"{n} {v:.4g}" for n, v in zip(("Ix", "Iy", "Iz"), np.diag(self.inertia), strict=True))
             + " kg m^2",
         ]
-        if (trim := self.trim) is None:
-            said.append("no trim at rest: weight and buoyancy differ by over 1 %, or G is at B")
-        else:
-            pitch, roll = np.degrees(trim)
-            upright = "" if self.bg[2] > 0.0 else "; G lies above B: it turns over"
-            said.append(f"at rest: pitch {pitch:.2f} deg, roll {roll + 0.0:.2f} deg{upright}")
-        return tuple(said)
+        return (*said, rest_words(self.trim, self.bg))
 
     def as_json(self) -> dict[str, Any]:
         """For machines: SI, FRD, from the datum; absent values are null."""
@@ -245,10 +268,10 @@ class WaterKeys(takes.Declaration):
     Attributes
     ----------
     density : float
-        Fresh water unless given.
+        Fresh water of 20 deg C unless given.
     """
 
-    density: Annotated[takes.Density, takes.ABOVE_ZERO] = 1000.0
+    density: Annotated[takes.Density, takes.ABOVE_ZERO] = FRESH_DENSITY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -175,7 +175,10 @@ class Bluff:
     half_extents : (3,) array
         Along its own axes.
     areas : (3,) array
-        Projected along x, y and z of the body, m^2.
+        Silhouettes along x, y and z of the body, m^2.
+    unshielded : (3,) array, optional
+        The same where one surface of the part stands behind another and counts again, as the bars of a frame do; the
+        silhouettes unless given.
     """
 
     name: str
@@ -184,10 +187,18 @@ class Bluff:
     rotation: NDArray[np.float64]
     half_extents: NDArray[np.float64]
     areas: NDArray[np.float64]
+    unshielded: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         for name in ("centre", "rotation", "half_extents", "areas"):
             object.__setattr__(self, name, locked(getattr(self, name)))
+        if self.unshielded is not None:
+            object.__setattr__(self, "unshielded", locked(self.unshielded))
+
+    @property
+    def in_the_open(self) -> NDArray[np.float64]:
+        """(3,) areas with nothing hidden, m^2."""
+        return self.areas if self.unshielded is None else self.unshielded
 
 
 @brief

@@ -1,12 +1,13 @@
 """The outline of any shape; of a mesh by its sections across x.
 
 Cores of sections that overlap their neighbours are hulls, what stands out of them and is thin are foils, round walls are
-ring wings. Where these hold too little of the volume, or no hull is slender, the whole body is bluff. What is neither is
-said in ``left_out``.
+ring wings. Where these hold too little of the volume or of the surface, or no hull is slender, the whole body is bluff. What is
+neither is said in ``left_out``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -33,7 +34,8 @@ from coeflab.bodies.cuts import (
     width,
 )  # fmt: skip
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import mesh_outline, polygons
+from coeflab.bodies.mesh.solids import polygons
+from coeflab.bodies.mirror_planes import PAIRED, mirror_planes, silhouettes, unpaired
 from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
 from coeflab.bodies.outlining import SLENDER, of_parts, of_revolution, with_controls
 from coeflab.bodies.pieces import HULL, Control
@@ -44,6 +46,8 @@ KEPT = 8
 STATIONS, FINE = 96, 64  # along the body; along each group of appendages
 INSIDE = 1e-5  # of the length: where the end faces are cut
 MAIN, SHARE = 0.25, 0.7  # inscribed radius of a hull over the largest; volume that is recognised
+TO_RADIUS = 0.02  # of an inscribed radius: its error, so that bars of just a quarter do not hang on rounding
+UNSEEN = 0.2  # of the surface: more that is neither hull nor flat fin, and the flow separates from the body as a whole
 ENDS = 0.05  # of the largest section: thinner ends do not count as length
 BLUNT, SHORT = 0.5, 3.0  # both end faces over the largest section, with a length under so many diameters: a box
 SMALL, THICK = 0.1, 0.5  # span over the hull's radius; thickness over chord: more is bluff
@@ -194,17 +198,14 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     place = _words(way)
     bluff = Bluff(f"part_{place}", "mesh", middle, np.eye(3), half, np.array([shadow_x, *side]))
     foil = _foil(f"foil_{place}", x, low, high, on_hull, bits, origin, way) if len(x) > 4 else None
-    sides = (
-        np.array(
-            [
-                sum(float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()) for r in polygons(b.polygon))
-                for b in bits
-            ]
-        )
-        / 2.0
-    )
+    sides = np.array([_edges(bit) for bit in bits]) / 2.0
     bent = float(np.trapezoid(sides, x) / np.trapezoid(high - low, x)) - 1.0 if foil is not None else 0.0
     return _Appendage(foil, bluff, volume, bent)
+
+
+def _edges(bit: Bit) -> float:
+    """Length of all edges of a bit, m."""
+    return sum(float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()) for r in polygons(bit.polygon))
 
 
 def _foil(
@@ -266,7 +267,7 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     cuts = cuts_of(mesh, _spaced(fore, aft, STATIONS))
     tracks = tracks_of(cuts)
     largest = max((bit.inscribed for track in tracks for bit in track), default=0.0)
-    main = [t for t in tracks if len(t) > 2 and max(bit.inscribed for bit in t) >= MAIN * largest]
+    main = [t for t in tracks if len(t) > 2 and max(bit.inscribed for bit in t) >= (1.0 - TO_RADIUS) * MAIN * largest]
     slender = [t for t in main if _is_slender(t)]
     rings, ring_volume = _rings(mesh, cuts)
     if not slender and ring_volume > SHARE * mesh.volume:
@@ -289,12 +290,37 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     rough = [merged for _, merged in clusters]
     names = [HULL] if len(slender) == 1 else [f"{HULL}_{i + 1}" for i in range(len(slender))]
     hulls = tuple(_hull(n, t, cuts, gone) for n, t in zip(names, slender, strict=True))
-    foils, bluff, volume, left = _appendages(mesh, cuts, rough, slender, hulls)
+    foils, bluff, volume, left, surfaces = _appendages(mesh, cuts, rough, slender, hulls)
     volume += ring_volume + sum(float(-np.trapezoid(h.area, h.x)) for h in hulls)
     if volume < SHARE * mesh.volume:
         return _all_bluff(mesh, f"hulls and foils hold {volume / mesh.volume:.0%} of its volume only")
+    if (unseen := _unseen(mesh, hulls, foils, rings, bluff, *surfaces)) > UNSEEN:
+        return _all_bluff(mesh, f"{unseen:.0%} of its surface is neither hull nor flat fin")
     turned, more = with_controls(foils, controls)
     return Outline(hulls, turned, rings, bluff, mesh.integrals.area, mesh.volume, (*left, *more))
+
+
+def _unseen(
+    mesh: TriangleMesh, hulls: Sequence[Sections], foils: Sequence[Foil], rings: Sequence[RingWing],
+    bluff: Sequence[Bluff], across: float, joining: float,
+) -> float:  # fmt: skip
+    """Share of a surface that its outline does not hold, with foils that a mirror plane of the solid says are none.
+
+    ``across`` is the surface that stands across the planforms of foils, ``joining`` that of what joins hulls, m^2: it counts as
+    seen up to as much as the hulls have themselves, as of a deck on two hulls. More is a frame.
+    """
+    area, size = mesh.integrals.area, float(mesh.extents.max())
+    seen = sum(float(-np.trapezoid(h.girth, h.x) + h.area[0] + h.area[-1]) for h in hulls)
+    seen += min(joining, seen)
+    seen += sum(2.0 * f.area for f in foils) + sum(2.0 * np.pi * r.diameter * r.chord for r in rings)
+    seen += sum(2.0 * float(b.areas.sum()) for b in bluff)
+    single: dict[str, Foil] = {}
+    planes = mirror_planes(mesh) if foils else (False, False, False)
+    for axis in (1, 2):
+        if planes[axis]:
+            middle = float(mesh.centre_of_volume[axis])
+            single |= {f.name: f for f in unpaired(foils, axis, middle, PAIRED * size)}
+    return float((max(area - seen, across) + sum(2.0 * f.area for f in single.values())) / area)
 
 
 def _of(cores: list[list[Bit]], tracks: list[list[Bit]]) -> list[list[Bit]]:
@@ -321,9 +347,9 @@ def _is_slender(track: list[Bit]) -> bool:
 def _all_bluff(mesh: TriangleMesh, why: str) -> Outline:
     """The whole body as one bluff part, with its silhouettes."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    views = [np.eye(3)[[i, j]] for i, j in ((1, 2), (2, 0), (0, 1))]
-    areas = np.array([mesh_outline(mesh.vertices, mesh.faces, view).area() for view in views])
-    whole = Bluff("body", "mesh", (low + high) / 2.0, np.eye(3), (high - low) / 2.0, areas)
+    whole = Bluff(
+        "body", "mesh", (low + high) / 2.0, np.eye(3), (high - low) / 2.0, silhouettes(mesh), mesh.integrals.projected
+    )
     return Outline(
         (), (), (), (whole,), mesh.integrals.area, mesh.volume, (f"single parts: {why}, all of it is one bluff part",)
     )
@@ -360,12 +386,12 @@ def _counts(cluster: list[Bit], tracks: list[list[Bit]], cores: list[list[Bit]])
 
 def _appendages(
     mesh: TriangleMesh, cuts: Cuts, rough: list[list[Bit]], tracks: list[list[Bit]], hulls: tuple[Sections, ...]
-) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str]]:
-    """Each cluster by finer sections of its own."""
+) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str], tuple[float, float]]:
+    """Each cluster by finer sections of its own; volume of all, what is left out; surface across planforms, and of joints."""
     foils: list[Foil] = []
     bluff: list[Bluff] = []
     left: list[str] = []
-    volume = 0.0
+    volume = across = joining = 0.0
     for fore, aft in _ranges(cuts.x, [(c[0].step, c[-1].step) for c in rough]):
         fine = cuts_of(mesh, np.linspace(fore, aft, FINE + 1) * 1.0)
         for step, here in enumerate(fine.cores):
@@ -388,6 +414,7 @@ def _appendages(
                 ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
                 left.append(f"what joins two hulls, {ends}")
                 volume += float(-np.trapezoid([b.polygon.area() for b in cluster], [b.x for b in cluster]))
+                joining += float(-np.trapezoid([_edges(b) for b in cluster], [b.x for b in cluster]))
                 continue
             track = _own_track(cluster, tracks)
             near = [bit for bit in cores if (n := _nearest(track, bit.x)) is not None and overlap(bit, n) > 0.0]
@@ -400,11 +427,12 @@ def _appendages(
             if found.foil is not None and found.foil.thickness <= THICK:
                 foils.append(found.foil)
                 if found.bent > BENT:
+                    across += 2.0 * found.bent * found.foil.area
                     more = f"its planform leaves out {found.bent:.0%}"
                     left.append(f"what stands across {found.foil.name} at x = {found.foil.root[0]:.3g} m: {more}")
             else:
                 bluff.append(found.bluff)
-    return _numbered(foils), tuple(_numbered(bluff)), volume, left
+    return _numbered(foils), tuple(_numbered(bluff)), volume, left, (across, joining)
 
 
 def _joins(cluster: list[Bit], tracks: list[list[Bit]]) -> bool:

@@ -1,122 +1,20 @@
-"""One body's added mass by several methods, side by side, and which of them to use.
-
-Mirror planes of a body and what they say about its added-mass matrix.
-
-The mirror planes of a body's shape.
-"""
+"""One body's added mass by several methods, side by side, and which of them to use."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.shape import Ellipsoid, Part, Parts, Revolution, Shape
+from coeflab.bodies.mirror_planes import NAMES, mirrors, vanishing
+from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, Faces, brief
+from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-
-# Signs of u v w p q r under the mirror that turns x, y or z round: velocities are polar, rates axial vectors.
-SIGNS = np.array([[-1, 1, 1, 1, -1, -1], [1, -1, 1, -1, 1, -1], [1, 1, -1, -1, -1, 1]])
-INNER, OUTER = 1.0 / 6.0, 1.0 / 2.0
-WEIGHTS = np.array([-0.8, 0.45, 0.45, 0.45, 0.45])
-
-
-def asymmetries(vertices: Array, faces: Faces) -> Array:
-    """How far a closed surface is from its mirror images in x, y and z through its centre of volume, shape (3,).
-
-    The largest volume moment up to the third degree that a mirror plane would make vanish, in coordinates of unit second
-    moment, over the volume: zero for a symmetric body however it is meshed.
-
-    Notes
-    -----
-    Necessary, not sufficient: a body that only higher moments tell from its image, such as one of canted fins all alike,
-    passes. Tetrahedra from the centre to the faces, each by the rule of degree 3 of Keast (1986) with five points.
-    """
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    sixth = np.einsum("ij,ij->i", a - vertices[0], np.cross(b - vertices[0], c - vertices[0])) / 6.0
-    volume = sixth.sum()
-    centre = sixth @ (a + b + c + vertices[0]) / (4.0 * volume)
-    a, b, c = a - centre, b - centre, c - centre
-    signed = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
-    middle, corners = (a + b + c) / 4.0, (np.zeros_like(a), a, b, c)
-    total = a + b + c
-    points = np.stack([middle, *(INNER * (total - k) + OUTER * k for k in corners)])
-    weight = WEIGHTS[:, None] * signed
-    scale = np.sqrt(np.einsum("sn,snk->k", weight, points**2) / volume)
-    x = points / scale
-    out = []
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        others = (x[..., i], x[..., j], x[..., k] ** 2, x[..., i] ** 2, x[..., j] ** 2, x[..., i] * x[..., j])
-        out.append(max(abs(float(np.sum(weight * x[..., k] * f))) for f in others) / volume)
-    return np.array(out)
-
-
-def vanishing(mirrors: tuple[bool, bool, bool]) -> NDArray[np.bool_]:
-    """Which entries of the (6, 6) matrix vanish about a point on the mirror planes of x, y and z, as booleans."""
-    out = np.zeros((6, 6), dtype=bool)
-    for signs, holds in zip(SIGNS, mirrors, strict=True):
-        if holds:
-            out |= np.outer(signs, signs) < 0
-    return out
-
-
-WITHIN = 2e-3
-NAMES = ("fore-aft", "port-starboard", "top-bottom")
-
-
-@lru_cache(2)
-def mirrors(shape: Shape) -> tuple[bool, bool, bool]:
-    """Whether a shape equals its image in x, in y and in z, each through its centre of volume.
-
-    A mesh is held to volume moments up to the third degree, 0.2 % in units of its own size; parts are compared one by one.
-    """
-    if isinstance(shape, Revolution):
-        return _fore_aft(shape), True, True
-    if isinstance(shape, TriangleMesh) and not len(shape.faces):
-        return False, False, False
-    if isinstance(shape, TriangleMesh):
-        x, y, z = asymmetries(shape.vertices, shape.faces) < WITHIN
-        return bool(x), bool(y), bool(z)
-    middle = shape.centre_of_volume
-    x, y, z = (_parts_mirror(shape, k, middle) for k in range(3))
-    return x, y, z
-
-
-def _fore_aft(hull: Revolution) -> bool:
-    area, middle = hull.radius**2 * hull.weight, hull.centre_of_volume[0]
-    spread = float(np.sqrt(np.sum(area * (hull.x - middle) ** 2) / area.sum()))
-    return abs(float(np.sum(area * (hull.x - middle) ** 3))) < WITHIN * spread**3 * float(area.sum())
-
-
-def _parts_mirror(shape: Parts, axis: int, middle: Array) -> bool:
-    turn = np.ones(3)
-    turn[axis] = -1.0
-    size = max(float(np.max(p.form.half_extents(p.rotation))) for p in shape.parts)
-    figures = [_figure(p) for p in shape.parts]
-    return all(
-        any(
-            other[0] == kind
-            and abs(other[1] - volume) <= WITHIN * max(volume, other[1])
-            and np.allclose(other[2], turn * (centre - middle) + middle, atol=WITHIN * size)
-            and np.allclose(other[3], np.outer(turn, turn) * spread, atol=WITHIN * size**2)
-            and np.allclose(other[4], turn * skew, atol=WITHIN * size)
-            for other in figures
-        )
-        for kind, volume, centre, spread, skew in figures
-    )
-
-
-def _figure(part: Part) -> tuple[str, float, Array, Array, Array]:
-    """Kind, volume, centre, second moments, and how far a form without middle leans out of its centre of volume."""
-    return type(part.form).__name__, part.form.volume, part.centre, part.second_moments, part.middle - part.centre
 
 
 def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from coeflab.law.water import FRESH_DENSITY
 from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def width() -> int:
     return ENDLESS if whole() else _terminal() if sys.stdout.isatty() else PROSE
 
 
-FRESH_WATER = 998.2  # kg/m^3 at 20 deg C, ITTC 7.5-02-01-03 (2011): the tank's and the vehicle's default, too
+FRESH_WATER = FRESH_DENSITY
 _asked = {"wide": False}
 PROSE, NARROWEST, ENDLESS = 80, 40, 1_000_000
 

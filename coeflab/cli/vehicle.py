@@ -166,6 +166,7 @@ def _exported(study: Study) -> None:
 
 def as_json(study: Study) -> dict[str, Any]:
     """Particulars, estimates with what they are made of, manoeuvres, what is assumed and what is missing; SI and radians."""
+    from coeflab.bodies.mesh.particulars import mesh_statements
     from coeflab.cli.uncertainty import as_json as carried_json
     from coeflab.report.tables.formats import in_short
 
@@ -173,7 +174,7 @@ def as_json(study: Study) -> dict[str, Any]:
     if shape is None:
         return {}
     c = shape.weighed.configuration
-    hull = parameters.added_mass
+    hull, rest = parameters.added_mass, shape.weighed.at_rest
     return {
         "name": name,
         "displacement": shape.conditions.density * (c.volume or 0.0),
@@ -191,6 +192,8 @@ def as_json(study: Study) -> dict[str, Any]:
             "method": hull.method, "matrix": hull.matrix.tolist(),
             "walls": [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in hull.walls],
         },
+        "at_rest": None if rest is None else {"pitch": rest[0], "roll": rest[1]},
+        "mesh": list(mesh_statements(shape.weighed.body)),
         "assumed": list(shape.weighed.assumed),
         "said": list(shape.said),
         "missing": list(shape.missing),

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.mirror_planes import NAMES, Planes, forbidden, planes_of, planes_through
 from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
@@ -238,6 +239,7 @@ def combined(
     Alternatives of one part and kind: their mean, with half-width range / sqrt(3) (95 % of a rectangular distribution
     between the extremes has standard deviation range / (2 sqrt 3)). Scatter of one kind is common to all of its parts;
     what a source states of single bodies is an error of each group, and so is the place of its force. Kinds are independent.
+    What a mirror plane of the solid through the reference point forbids is zero and is left out.
     """
     scaling = body.scaling or _overall(body, outline)
     point = body.reference_point
@@ -287,6 +289,8 @@ def combined(
     for error in errors:
         covariance += np.outer(error, error) / 4.0
         scatter += error**2
+    none = forbidden(symbols, planes := _planes(body, outline))
+    value[none], scatter[none], spread[none] = 0.0, 0.0, 0.0
     keep = _counting(symbols, value, scatter + spread)
     works = {s: _works(contributions, rows, i) for i, s in enumerate(symbols)}
     coefficients = tuple(
@@ -302,8 +306,19 @@ def combined(
     )
     return Estimates(
         found, contributions, {symbols[i]: shares[symbols[i]] for i in keep},
-        shifted(recommended(contributions), point), _notes(outline, contributions),
+        shifted(recommended(contributions), point), _notes(outline, contributions, planes),
     )  # fmt: skip
+
+
+def _planes(body: Body, outline: Outline) -> Planes:
+    """Mirror planes of the solid through the reference point; of an outline that holds more than the shape, of both."""
+    if body.shape is None:
+        return False, False, False
+    x, y, z = planes_through(body.shape, body.reference_point, [t.place for t in body.thrusters])
+    if body.outlined is None:
+        return x, y, z
+    _, port, top = planes_of(outline, body.reference_point)
+    return x, y and port, z and top
 
 
 def _rows(
@@ -535,9 +550,11 @@ def _overall(body: Body, outline: Outline) -> Scaling:
     return Scaling(float(max(ends) - min(ends)), "length over all")
 
 
-def _notes(outline: Outline, contributions: tuple[Contribution, ...]) -> tuple[str, ...]:
+def _notes(outline: Outline, contributions: tuple[Contribution, ...], planes: Planes) -> tuple[str, ...]:
     """What is assumed and left out."""
     outside = [f"{c.part}, {c.kind}: {c.outside}" for c in contributions if c.outside]
     said = ["Ahead only: no hull lift and no sidewash astern; foils do not stall."]
+    mirrored = [name for name, found in zip(NAMES[1:], planes[1:], strict=True) if found]
+    said += [f"Mirror planes of the solid: {', '.join(mirrored)}; what they forbid is zero."] if mirrored else []
     said += ["Bluff parts: mean of shielded and not, across each axis and along the motion."] if outline.bluff else []
     return tuple(dict.fromkeys([*said, *outside, *(f"left out: {x}" for x in outline.left_out)]))

@@ -81,7 +81,7 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
     for part in outline.bluff:
         for shielded in (False, True):
             for crossed in (True, False):
-                areas = face_drag(part) * part.areas * (hidden if shielded else 1.0)
+                areas = face_drag(part) * (part.areas * hidden if shielded else part.in_the_open)
                 method = (
                     f"bluff, {'shielded' if shielded else 'in the open'}, {'each axis' if crossed else 'whole speed'}"
                 )

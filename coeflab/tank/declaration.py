@@ -16,13 +16,14 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.units import with_unit
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import CONTROL_COLUMNS
+from coeflab.law.water import FRESH_DENSITY, FRESH_VISCOSITY
 from coeflab.tank.tank import Grid
 from coeflab.tank.test_matrix import Study
 
 MEDIUM = "medium"
 GRIDS = (Grid("coarse", 1.3), Grid(MEDIUM, 1.0), Grid("fine", 1.0 / 1.3))
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]{0,59}")
-FRESH_WATER = Conditions(998.2, 2.0, 1.0034e-6)  # 20 deg C, ITTC 7.5-02-01-03 (2011)
+FRESH_WATER = Conditions(FRESH_DENSITY, 2.0, FRESH_VISCOSITY)
 
 
 def _no_name(name: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.mass_model import at_rest, rest_words
 from coeflab.bodies.pieces import Control
 from coeflab.bodies.shape import Parts, Revolution
 from coeflab.bodies.thrusters import Thruster
@@ -73,11 +74,14 @@ class Weighed:
         Mass against displacement first, then what is assumed, one line each.
     assumed : tuple of str
         Which of ``mass``, ``centre`` and ``inertia`` nobody stated.
+    at_rest : tuple of float or None
+        Pitch and roll at rest, rad; None where it does not stay at rest, or nobody stated the centre of gravity.
     """
 
     body: Body
     said: tuple[str, ...]
     assumed: tuple[str, ...]
+    at_rest: tuple[float, float] | None = None
 
     @property
     def configuration(self) -> Configuration:
@@ -122,6 +126,10 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         centre = buoyancy
         assumed.append("centre")
         said.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
+        rest = None
+    else:
+        rest = at_rest(mass / displaced - 1.0, centre - buoyancy)
+        said.append(rest_words(rest, centre - buoyancy))
     turning = stated.inertia
     if turning is None and own is not None and own.inertia_matrix is not None:
         turning = about_another(own.inertia_matrix, own.mass, own.centre_of_gravity, np.zeros(3))
@@ -137,7 +145,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     made = MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
     vehicle = replace(base, name=body.name, title=body.title, mass=made)
     others = tuple(c for c in body.configurations if c.name != body.name)
-    return Weighed(replace(body, configurations=(*others, vehicle)), tuple(said), tuple(assumed))
+    return Weighed(replace(body, configurations=(*others, vehicle)), tuple(said), tuple(assumed), rest)
 
 
 def displaced_mass(body: Body, density: float) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import mesh_body
 from coeflab.bodies.triangulation import Triangulation
@@ -86,7 +87,7 @@ def from_shape(
     shape = body.require_shape()
     conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
     conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
-    said = list(_assumed(plan, conditions))
+    said = [*mesh_statements(body), *_assumed(plan, conditions)]
     if scaling is None:
         scaling = Scaling(shape.length, "length over all")
     point = body.reference_point if plan.reference_point is None else plan.reference_point

@@ -13,6 +13,7 @@ from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import form_surface, meshed, surface_of
 from coeflab.bodies.mesh.source import ply
+from coeflab.bodies.mirror_planes import mirrors
 from coeflab.bodies.panels.added_mass import panel_added_mass
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import (
@@ -30,7 +31,6 @@ from coeflab.bodies.shape import (
     shadow,
 )
 from coeflab.bodies.simplify.simplified import part_file
-from coeflab.bodies.triangulation import mirrors
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source

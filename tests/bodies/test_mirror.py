@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.bodies.triangulation import SIGNS, asymmetries, vanishing
+from coeflab.bodies.mirror_planes import SIGNS, asymmetries, vanishing
 from coeflab.law.transforms import moved
 
 

@@ -425,7 +425,7 @@ def _alike(shape: Shape, panelled: _Panelled, centre: Array, wall: Wall | None, 
     """
     from scipy.spatial import cKDTree
 
-    from coeflab.bodies.triangulation import mirrors
+    from coeflab.bodies.mirror_planes import mirrors
 
     given = panelled.gated if panelled.gated is not None and not panelled.sheeted else None
     corners = given.vertices if given is not None else np.unique(panelled.finest.reshape(-1, 3), axis=0)

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mirror_planes import silhouettes
 from coeflab.core.errors import InputError
 from coeflab.core.units import factor
 
+BY_MESH = "by_mesh"
 SHORTEST, LONGEST = 0.05, 500.0  # m: from the smallest towed model to the largest ship; beyond, the unit is wrong
 UNITS = ("mm", "m", "cm", "ft", "in")
 NEAR = 0.05  # of a stated length: the unit is right
@@ -19,15 +21,21 @@ SAME_VOLUME, SAME_SURFACE = 0.01, 0.03  # printed particulars of one model; sail
 def computed(shape: TriangleMesh, statements: tuple[str, ...]) -> Configuration:
     """Volume, centre, areas and second moments of the facets, with what was done to the mesh in words."""
     return Configuration(
-        name="by_mesh",
+        name=BY_MESH,
         title="; ".join((f"integrals over {len(shape.faces)} faces", *statements)),
         volume=shape.volume,
         wetted_surface=shape.integrals.area,
         centre_of_buoyancy=shape.centre_of_volume,
         mass=None,
-        projected_areas=shape.integrals.projected,
+        projected_areas=silhouettes(shape),
         second_moments=shape.integrals.second_moments,
     )
+
+
+def mesh_statements(body: Body) -> tuple[str, ...]:
+    """What was done to the mesh of a body as it was read, such as ``repaired: 5 shells united``; empty of other bodies."""
+    own = body.configuration(BY_MESH)
+    return () if own is None else tuple(own.title.split("; ")[1:])
 
 
 def likely_unit(numbers: float, length: float | None) -> str:

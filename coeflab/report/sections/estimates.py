@@ -77,7 +77,7 @@ def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
             rows.append(("inertia x, y, z", _three(np.diag(c.mass.inertia_matrix)), "kg m^2"))
     rows.append(("wetted surface", number(c.wetted_surface), "m^2"))
     if c.projected_areas is not None:
-        rows.append(("projected areas along x, y, z", _three(c.projected_areas), "m^2"))
+        rows.append(("silhouettes along x, y, z", _three(c.projected_areas), "m^2"))
     if hull is not None:
         along, about = np.diag(hull.matrix)[:3], np.diag(hull.matrix)[3:]
         rows += [("added mass along x, y, z", _three(along), "kg"), ("added inertia x, y, z", _three(about), "kg m^2")]

@@ -52,7 +52,7 @@ def displaced(body: Body, density: float) -> Table:
         *(f"I{a} kg m^2" for a in ("x", "y", "z", "xy", "xz", "yz")),
     )
     notes = (
-        "A: area projected along the axis",
+        "A: silhouette along the axis; what lies behind something else counts once",
         f"I: moments and products (integral of x y dm) of {density:g} kg/m^3 about the centre of buoyancy",
     )
     return Table(f"{body.name}: projected areas and inertia of the displaced water", headers, tuple(rows), notes)
