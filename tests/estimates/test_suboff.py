@@ -74,7 +74,7 @@ def test_goals_are_printed_and_do_not_count(compared: Acceptance, found: tuple[R
     assert goals(tuple(replace(r, measured=r.value) for r in found)).count(", met") == 3
     assert goals(tuple(replace(r, measured=3.0 * r.value) for r in found)).count(", missed") == 2
     assert answer(compared, drawn=False).sentence == (
-        "Estimates from the shape against SUBOFF tests: all 15 numbers within the tolerance; all 15 are validation: predicted."
+        "Estimates from the shape against SUBOFF tests: all 15 numbers within the tolerance; none of them is validation: revised only."
     )
     assert len(derivatives.rows) == len(counted)
     shown = table(found)
