@@ -577,11 +577,6 @@ def _checks(study: Study) -> Section:
     return Section("checks", "Checks", text, shown, subsections=(whole,))
 
 
-def _in_words(fit: str) -> str:
-    """What a fit is, in brackets; empty for estimates, which are none."""
-    return f" ({FITS.load(fit).summary})" if fit in FITS.names() else ""
-
-
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
     inputs = filled(tables.provenance(study))
@@ -590,7 +585,7 @@ def _provenance(study: Study) -> Section:
     if files > MANY:
         text = [f"{files} files went in, identified by the sha256 of their bytes; --full lists them."]
     settings = dict.fromkeys(
-        f"Settings of the fit {f.fit}{_in_words(f.fit)}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
+        f"Settings of the fit {f.fit}{f' ({FITS.load(f.fit).summary})' if f.fit in FITS.names() else ''}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
         for f in study.fits
         if f.settings
     )
