@@ -36,7 +36,14 @@ from coeflab.report.figures.answer import share_text
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
-from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, tow_sections
+from coeflab.report.sections.campaign import (
+    anchor,
+    budget_sections,
+    campaign_section,
+    filled,
+    says_nothing,
+    tow_sections,
+)
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
@@ -233,7 +240,7 @@ def _document(study: Study, full: bool) -> Document:
         moving = [*stability_sections(study), *manoeuvre_sections(study)]
         conventions = conventions_section(study, drawn=answered.axes is None)
         appendix = _appendix(study) if full else ()
-        campaigns = tuple(drawn() or [job() for job in alone])
+        campaigns = tuple(s for s in drawn() or [job() for job in alone] if not says_nothing(s))
     sections = (
         verdict(study),
         *_comparison(study),

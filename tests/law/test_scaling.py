@@ -172,6 +172,7 @@ NO_PRIMES = {
         1,
         "dynamic pressure on the reference area of a coefficient: frontal, wetted or a wing's",
     ),
+    "estimates/propeller.py": (1, "side area of a propeller in oblique flow, m^2"),
     "estimates/friction.py": (1, "dynamic pressure on a wetted surface"),
     "estimates/form_drag.py": (1, "dynamic pressure on a frontal or base area"),
     "estimates/crossflow.py": (2, "dynamic pressure on strips of a hull"),

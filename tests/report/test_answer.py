@@ -395,13 +395,16 @@ def test_suboff(suboff: Study):
         "of the authors' data, 3 of 3 recomputed stability indices."
     )
     assert said[3].startswith("Prediction: a coefficient from CFD against the one measured")
-    assert said[4].startswith("Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull")
+    assert said[4].startswith("Predictions: 5 comparisons of 3 measured numbers")
     assert said[5].startswith(
+        "Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull (84 %) and Yv' of suboff_tow_bare_hull"
+    )
+    assert said[6].startswith(
         "Other coefficients are both computed and measured. No verdict on X0' of suboff_cfd_barehull: grid study divergent"
     )
-    assert said[6].startswith("Only the predictions are independent evidence.")
-    assert said[7].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
-    assert "This does not fail the study" in said[7]
+    assert said[7].startswith("Only the predictions are independent evidence.")
+    assert said[8].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
+    assert "This does not fail the study" in said[8]
     assert said[8].startswith(
         "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method"
     )

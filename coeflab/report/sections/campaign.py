@@ -111,6 +111,11 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     )
 
 
+def says_nothing(section: Section) -> bool:
+    """Whether a later fit of a campaign brings nothing to its section but the pointer to the first one."""
+    return section.paragraphs == (AS_BEFORE,) and not (section.tables or section.figures or section.subsections)
+
+
 def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient]) -> str:
     """Slopes without a section: turned by symmetry, or of an own tow and not among those that the plan wants."""
     said = {s.symbol for s in alone} | {c.symbol for c in zero}

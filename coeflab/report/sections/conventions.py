@@ -239,8 +239,8 @@ POTENTIAL = (
     "simulator that adds -C_A(nu) nu itself must get them without these parts, or it counts the parts twice."
 )
 REST = (
-    "A real model may have a force at zero angle, so a curve has a constant unless its table declares symmetry. With points on both "
-    "sides of zero, a fit may add an even part to a curve that symmetry makes odd, and an odd part to one that it makes even."
+    "A curve has a constant (force at zero angle) unless its table declares symmetry. With points on both sides of zero, a fit may "
+    "add the even or odd part that symmetry would forbid."
 )
 
 

@@ -476,6 +476,7 @@ def summary(study: Study) -> Table:
             for used in ACCELERATIONS
             if any(row[4] == used for row in rows)
         ),
+        *(["files: each with a loss report, .loss.txt, beside it."] if lossy else []),
         "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. A "
         "component below 1 % of the largest force or moment is too small to judge. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
@@ -527,5 +528,5 @@ def _too_small(loss: Loss) -> list[str]:
 
 
 def _place(made: Export) -> str:
-    names = ", ".join(sorted(made.files))
+    names = ", ".join(n for n in sorted(made.files) if made.loss is None or not n.endswith(".loss.txt"))
     return f"{made.folder}/: {names}" if made.folder else names
