@@ -405,7 +405,7 @@ def test_suboff(suboff: Study):
     assert said[7].startswith("Only the predictions are independent evidence.")
     assert said[8].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
     assert "This does not fail the study" in said[8]
-    assert said[8].startswith(
+    assert said[9].startswith(
         "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method"
     )
     assert said[-1].startswith("The study does not fail: ")
