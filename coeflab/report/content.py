@@ -577,27 +577,24 @@ def _checks(study: Study) -> Section:
     if not study.checks:
         return Section("checks", "Checks", ("No checks were made.",))
     grave = [c for c in study.checks if c.severity in (Severity.FAIL, Severity.WARN)]
-    counts = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
-    text = (f"{counts}. Only a failure makes the study fail.",)
+    found = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
     whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
     shown = filled(replace(tables.without(tables.checks(grave), "rule"), title="Failures and warnings"))
-    return Section("checks", "Checks", text, shown, subsections=(whole,))
+    return Section("checks", "Checks", (f"{found}. Only a failure makes the study fail.",), shown, subsections=(whole,))
 
 
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
     inputs = filled(tables.provenance(study))
-    files = sum(len(t.rows) for t in inputs)
-    text = ["The files below are identified by the sha256 of their bytes."]
-    if files > MANY:
-        text = [f"{files} files went in, identified by the sha256 of their bytes; --full lists them."]
-    settings = dict.fromkeys(
-        f"Settings of the fit {f.fit}{f' ({FITS.load(f.fit).summary})' if f.fit in FITS.names() else ''}: {', '.join(_setting(k, v) for k, v in sorted(f.settings.items()))}."
-        for f in study.fits
-        if f.settings
-    )
-    text += settings
-    if files > MANY:
-        whole = Section("inputs", "All inputs", tables=inputs, appendix=True)
-        return Section("provenance", "Provenance", tuple(text), subsections=(whole,))
-    return Section("provenance", "Provenance", tuple(text), inputs)
+    said = "The files below are identified by the sha256 of their bytes."
+    if many := (files := sum(len(t.rows) for t in inputs)) > MANY:
+        said = f"{files} files went in, identified by the sha256 of their bytes; --full lists them."
+    text = (said, *dict.fromkeys(f"Settings of the fit {f.fit}{_about(f)}." for f in study.fits if f.settings))
+    whole = (Section("inputs", "All inputs", tables=inputs, appendix=True),) if many else ()
+    return Section("provenance", "Provenance", text, () if many else inputs, subsections=whole)
+
+
+def _about(fit: FitResult) -> str:
+    """What a fit is, and its settings; estimates are no plugin of their own."""
+    summary = f" ({FITS.load(fit.fit).summary})" if fit.fit in FITS.names() else ""
+    return f"{summary}: {', '.join(_setting(k, v) for k, v in sorted(fit.settings.items()))}"
