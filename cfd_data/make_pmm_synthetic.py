@@ -248,6 +248,7 @@ contains_inertia = true                        # a balance in the model
 file = "table.csv"
 sha256 = "{hashlib.sha256(out["pmm_synthetic_steady/table.csv"]).hexdigest()}"
 contains_inertia = false                       # the fluid's force alone
+arm_point = [0.0, 0.0, 0.0]                    # velocities hold at the reference point
 """,
     )  # fmt: skip
     out["pmm_synthetic/beside_steady.toml"] = b"""# SYNTHETIC: oscillating runs beside steady ones of the same law.

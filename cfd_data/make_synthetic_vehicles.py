@@ -74,6 +74,7 @@ def csv_of(columns: Mapping[str, Array]) -> bytes:
 def campaign_of(name: str, d: Description, table: bytes) -> bytes:
     """campaign.toml with the hash of the table."""
     alpha = 'alpha = "w = +U sin(alpha)"\n' if d.alpha else ""
+    still = "arm_point = [0.0, 0.0, 0.0]\n" if b"[rad/s]" in table.split(b"\n", 1)[0] else ""
     return f"""# SYNTHETIC: written by cfd_data/make_synthetic_vehicles.py, which also makes the table. No measurement, no CFD.
 [campaign]
 name = "{name}"
@@ -105,7 +106,7 @@ how_obtained = "{d.how}"
 file = "table.csv"
 sha256 = "{hashlib.sha256(table).hexdigest()}"
 contains_inertia = false
-""".encode()
+{still}""".encode()
 
 
 def flyingfish(medium: str) -> tuple[bytes, Description]:

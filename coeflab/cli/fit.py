@@ -227,7 +227,10 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables import results as tables
     from coeflab.report.tables import uncertainty as budget_tables
 
-    show.sentence(tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits))
+    found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
+    show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
+    for line in tables.lost_by_move(study):
+        show.sentence(line)
     if symbols:
         _of_symbols(study, symbols)
     else:

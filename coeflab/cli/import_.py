@@ -187,6 +187,7 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
+        notes += [tables.primed_about(study), *tables.lost_by_move(study)]
         show.table(replace(
             found, title="First slopes, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),

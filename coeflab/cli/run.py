@@ -92,6 +92,7 @@ def summarise(study: Study) -> None:
     """The answer, the findings that matter, and with ``--wide`` every table."""
     from coeflab.report.answer import answer
     from coeflab.report.tables import models as model_tables
+    from coeflab.report.tables import results as tables
 
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
@@ -100,6 +101,8 @@ def summarise(study: Study) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
+    for line in tables.drift_assumed(study):
+        show.sentence(line)
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)

@@ -6,6 +6,7 @@ The point of a body that points are measured from: an id that is compared, and a
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -189,6 +190,21 @@ class Datum:
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id
+
+
+def point_in_words(point: Sequence[float] | NDArray[np.float64], datum: Datum) -> str:
+    """A point as sentences name it: ``nose (0, 0, 0)``, ``x = -2.01 m from nose``.
+
+    Parameters
+    ----------
+    point : (3,) array
+        m, FRD, from the datum.
+    datum : Datum
+    """
+    x, y, z = (float(f"{c:.5g}") + 0.0 for c in point)
+    if y or z:
+        return f"({x:g}, {y:g}, {z:g}) m from {datum.id}"
+    return f"x = {x:g} m from {datum.id}" if x else f"{datum.id} (0, 0, 0)"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from coeflab.core.axes import point_in_words
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.glide_polar import munk_in_words
@@ -13,6 +14,7 @@ from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
+from coeflab.report.tables.results import lost_by_move
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
@@ -57,11 +59,14 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     if sources:
         scaling = beside.among.scaling if beside.among else None
         by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
+        if beside.among:
+            by += f", about {point_in_words(beside.among.reference_point, beside.among.datum)}"
         count = len({f.campaign for f in study.fits})
         of = f" of {count} campaigns" if count > len(sources) else ""
         out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
+    out += lost_by_move(study)
     own = [r for r in rows if r.source in towed_rows]
     if own:
         out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")

@@ -29,7 +29,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import RawTable
-from coeflab.tables.settings import CONFIRMED, EACH, OF_ARMS, SECTIONS, Settings
+from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
 
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
@@ -124,7 +124,9 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         for key, one in t.settings.items():
             section, _, name = key.partition(".")
             if section == "table" and (len(tables) == 1 or key in t.asked or key not in OF_ARMS):
-                own[name], said[name] = one.value, one.origin
+                at_reference = key == ARM_POINT and one.value == REFERENCE
+                own[name] = t.settings[POINT_OF].value if at_reference else one.value
+                said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
         if t.settings[POINT_OF].value != common[POINT_OF].value:
             own["reference_point"], said["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
         declared.append((own, said))

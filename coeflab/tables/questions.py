@@ -18,7 +18,16 @@ from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import RawTable, Stated
-from coeflab.tables.settings import Setting, Settings, arm_by_words, frame_of, of_datum, point_by_words
+from coeflab.tables.settings import (
+    ARM_POINT,
+    REFERENCE,
+    Setting,
+    Settings,
+    arm_by_words,
+    frame_of,
+    of_datum,
+    point_by_words,
+)
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 
@@ -284,6 +293,8 @@ def _of_rotation(
             f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
             line or "the reference point, unless said", later, grave=True,
         )  # fmt: skip
+    elif {"q", "r"} & set(likely) or any(np.any(rates[m]) for m in ("q", "r") if m in rates):
+        yield _where_still(raw, settings)
     inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
         by_words = raw.stated.get("table.contains_inertia")
@@ -308,6 +319,20 @@ def _of_rotation(
             yield Question(
                 "inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "Ix, Iy, Iz, kg m^2", grave=True
             )
+
+
+def _where_still(raw: RawTable, settings: Settings) -> Question:
+    """The point that turning rows state no drift for, of a table with a rate: no number of it shows the point."""
+    at, later, line = arm_by_words(raw, settings) or ("", "", "")
+    about = (
+        f"Point where beta = 0 (or the stated drift) and U hold: {REFERENCE}, or {PLACE_ASKED}. A point x forward of it drifts with "
+        "v = x r: about a point off it Yr' and Nr' are others by Yv' and Nv'"
+    )
+    choices = f"where beta = 0 and U hold: {REFERENCE}; or x from the datum, m: -2.0 from nose; cg"
+    choices = f"{line}; {choices}".removeprefix("; ")
+    if at or later:
+        return Question(ARM_POINT, about, choices, at, line, line, later if not at else "", grave=True)
+    return Question(ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True)
 
 
 def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:

@@ -37,6 +37,7 @@ _KINDS = {
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 ARM_POINT = "table.arm_point"
+REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
@@ -154,6 +155,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
     **dict.fromkeys(PLACE_KEYS, _place),
+    ARM_POINT: lambda said: REFERENCE if is_reference(said) else _place(said),
     "table.centre": _one_of(*campaign.CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
@@ -232,16 +234,24 @@ _SIDED = frozenset(
 )
 
 
+def is_reference(said: Any) -> bool:
+    """Whether a person says that the point of the arm is the reference point."""
+    return isinstance(said, str) and " ".join(re.split(r"[\s_]+", said.strip().casefold())) in (REFERENCE, "reference")
+
+
 def read_settings(key: str, text: str) -> dict[str, Any]:
     """What a person types for a key; a point says its datum and a length its name with it.
 
-    ``axes.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, ``scaling.length`` takes ``4.3 m LOA``.
+    ``axes.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, the latter also ``reference point``;
+    ``scaling.length`` takes ``4.3 m LOA``.
 
     Raises
     ------
     InputError
         As `read_setting`; or a place with its side in words.
     """
+    if key == ARM_POINT and is_reference(text):
+        return {key: REFERENCE}
     if key in (POINT_OF, ARM_POINT) and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
         datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}

@@ -151,6 +151,7 @@ SYMMETRIC = ("X", "Z", "M")
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
+ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -221,7 +222,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
             InputFile(f"{campaign.name}/{table.file}", digest),
         ),
-        notes=tuple(notes),
+        notes=(*notes, *([ASSUMED_POINT] if _assumes_a_point(table, motion) else [])),
         lines=columns.lines,
         density=columns.density,
         arm_point=table.arm_point,
@@ -231,6 +232,13 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
     return made.about(campaign.reference_point)
+
+
+def _assumes_a_point(table: TableDeclaration, motion: Mapping[str, Array]) -> bool:
+    """Whether the point of no drift is assumed: rows turn without drifting, and nothing states the point."""
+    turning = (motion["q"] != 0.0) | (motion["r"] != 0.0)
+    drifting = np.any(motion["v"][turning]) or np.any(motion["w"][turning])
+    return table.arm_point is None and bool(np.any(turning)) and not drifting
 
 
 def _place(point: Array) -> str:

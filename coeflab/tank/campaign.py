@@ -19,7 +19,7 @@ import numpy as np
 
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import quoted, value
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import natural, one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
@@ -195,7 +195,11 @@ def campaign_files(
             continue
         origin = f"by fourfold symmetry, from {_SOURCES[name]}.csv turned by 90 deg about x" if name in turned else ""
         files[f"{name}.csv"], notes = _table(group, origin)
-        declared.append(_declared(name, group, notes, origin, hashlib.sha256(files[f"{name}.csv"]).hexdigest()))
+        declared.append(
+            _declared(
+                name, group, notes, origin, hashlib.sha256(files[f"{name}.csv"]).hexdigest(), tank.reference_point
+            )
+        )
     if not declared:
         return {}
     files[FILE] = _campaign_text(
@@ -359,11 +363,15 @@ def _short(x: float) -> str:
     return f"{x:.3g}" if x > 0.0 else ""
 
 
-def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str]], origin: str, digest: str) -> str:
-    """The ``[[table]]`` of one table, whose bytes have the sha256 ``digest``."""
+def _declared(
+    name: str, group: Sequence[TowedRun], names: Mapping[str, list[str]], origin: str, digest: str, point: Array
+) -> str:
+    """The ``[[table]]`` of one table, whose bytes have the sha256 ``digest``; its runs turn about ``point``."""
     lines = ["[[table]]", f'file = "{name}.csv"', f'sha256 = "{digest}"']
     if any(r.condition.turns for r in group):
         lines.append(f"{'contains_inertia = false':<41} # the solver's frame turns: hydrodynamic force only")
+        still = f"arm_point = {value([float(x) for x in point])}"
+        lines.append(f"{still:<41} # U and drift hold here")
     lines.append(f"labels = {value(names['labels'])}")
     if names["ignore"]:
         lines.append(f"ignore = {value(names['ignore'])}")

@@ -45,6 +45,37 @@ def test_a_figure_is_one_file_with_equal_bytes(coeflab: Run, tmp_path: Path) -> 
     assert (tmp_path / "out.svg").read_bytes() == first
 
 
+def test_slopes_of_an_arm_about_another_point_say_what_their_move_lacks(coeflab: Run, tmp_path: Path) -> None:
+    assert coeflab("new", "mine").returncode == 0
+    campaign = tmp_path / "mine" / "campaign"
+    text = (campaign / "campaign.toml").read_text()
+    stated = "arm_point = [-0.80, 0.0, 0.0]"
+    assert stated in text
+    head, drift, arm = text.partition("[[table]]")[0], *text.split("[[table]]")[1:]
+    assert "Primed by LOA = 1.6 m, about x = -0.8 m from nose." in flat(coeflab("fit", "mine/campaign").stdout)
+    elsewhere = arm.replace(stated, "arm_point = [-0.30, 0.0, 0.0]")
+    (campaign / "campaign.toml").write_text(f"{head}[[table]]{elsewhere}")
+    said = flat(coeflab("fit", "mine/campaign").stdout)
+    assert "x = -0.3 m from nose, 0.5 m ahead of the study's point" in said
+    assert "a move takes its Yv' and Nv'" in said
+    (campaign / "campaign.toml").write_text(f"{head}[[table]]{drift}[[table]]{elsewhere}")
+    assert "a move takes" not in flat(coeflab("fit", "mine/campaign").stdout)
+    (campaign / "campaign.toml").write_text(f"{head}[[table]]{arm.replace(stated, '')}")
+    said = flat(coeflab("fit", "mine/campaign").stdout)
+    assert "drift is zero at x = -0.8 m from nose, the reference point (assumed: no arm_point)" in said
+
+
+def test_a_law_that_misses_a_left_out_point_names_it_first(coeflab: Run, tmp_path: Path) -> None:
+    assert coeflab("new", "mine").returncode == 0
+    file = tmp_path / "mine" / "campaign" / "drift.csv"
+    file.write_text(file.read_text().replace("10,6,-12.7208,18.9707,", "10,6,-12.7208,-18.9707,"))
+    found = [
+        c for c in json.loads(coeflab("run", "mine/plan.toml", "--json").stdout)["checks"] if c["severity"] == "fail"
+    ]
+    assert len(found) == 1
+    assert found[0]["comment"].startswith("10 is left out of Yv' (data gate)")
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -236,7 +236,7 @@ def test_a_rotating_table_has_to_say_what_it_contains(tmp_path: Path) -> None:
 
 def test_what_a_rotating_table_contains_is_asked_before_units_are_known(tmp_path: Path) -> None:
     for head, keys in (
-        ("r", {"table.contains_inertia"}),
+        ("r", {"table.contains_inertia", "table.arm_point"}),
         ("R", {"table.contains_inertia", "table.centre", "table.arm_point"}),
     ):
         file = tmp_path / "arm.csv"
@@ -244,6 +244,30 @@ def test_what_a_rotating_table_contains_is_asked_before_units_are_known(tmp_path
         done = invoke("import", file, "--out", tmp_path / "out")
         left_open(done)
         assert set(re.findall(r"table\.(?:contains_inertia|centre|arm_point)", done.output)) == keys
+
+
+def test_a_rotating_table_is_asked_where_its_drift_is_zero(tmp_path: Path) -> None:
+    file, out = tmp_path / "arm.csv", tmp_path / "out"
+    file.write_text("r (rad/s),Fy (N),Mz (Nm)\n-0.4,-10,13\n-0.2,-5,7\n0.2,5,-7\n0.4,10,-13\n")
+    ask = ("import", file, "--out", out)
+    known = sets(axes__frame="FRD", table__contains_inertia="false")
+    shown = invoke(*ask, *known)
+    assert shown.exit_code == 2
+    assert "reference point" in shown.output.partition("table.arm_point")[2].partition("\n")[0]
+    for said in (
+        (*ask, "--yes", *known),
+        (*ask, "--yes", "--force", *known, "--set", "table.arm_point=reference point"),
+    ):
+        done = invoke(*said)
+        assert done.exit_code == 0, done.output
+        assert "reference point" in (out / "campaign.toml").read_text().partition("arm_point = [")[2].partition("\n")[0]
+        assert table_of(out).motion["v"].tolist() == [0.0] * 4
+    done = invoke(*ask, "--yes", "--force", *known, "--set", "table.arm_point=-1.5 from nose")
+    assert done.exit_code == 0, done.output
+    table = table_of(out)
+    behind = table.reference_point[0] + 1.5
+    assert abs(behind) > 0.1
+    assert table.motion["v"] == pytest.approx(behind * table.motion["r"])
 
 
 def test_a_density_other_than_that_of_the_forces_is_refused(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from coeflab.fits.uncertainty.budget import budgets_of
 from coeflab.fits.uncertainty.grid_convergence import grid_studies
 from coeflab.law.symbols import MOTIONS
 from coeflab.tables.force_table import COARSER, ForceTable
+from coeflab.tables.to_frd import ASSUMED_POINT
 from tests.conftest import SECTIONS
 
 Read = Callable[..., ForceTable]
@@ -80,6 +81,15 @@ def test_a_point_ahead_of_the_arm_point_drifts_by_x_r(read_table: Read) -> None:
         "r [rad/s],beta [deg],U [m/s],Y [N]\n0.2,0,2,1\n0.4,-8,4,1\n", table=aft.replace('centre = "starboard"', "")
     )
     np.testing.assert_allclose(velocity(by_rate), velocity(table), rtol=1e-14)
+
+
+def test_rows_that_turn_without_drift_say_which_point_is_assumed(read_table: Read) -> None:
+    csv, own = "r [rad/s],Y [N],N [N*m]\n0.1,1,-1\n0.2,2,-2\n", "contains_inertia = false"
+    assert ASSUMED_POINT in read_table(csv, table=own).notes
+    assert ASSUMED_POINT not in read_table(csv, table=f"{own}\narm_point = [-2.0, 0.0, 0.0]").notes
+    assert ASSUMED_POINT not in read_table(csv.replace("0.1,", "0,").replace("0.2,", "0,"), table=own).notes
+    drifting = "v [m/s],r [rad/s],Y [N]\n0.2,0.1,1\n0.2,0.2,2\n"
+    assert ASSUMED_POINT not in read_table(drifting, table=own).notes
 
 
 def test_a_pitched_model_turns_about_the_vertical(read_table: Read) -> None:

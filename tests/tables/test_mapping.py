@@ -121,7 +121,7 @@ def written(folder: Path, axes: str, system: str, forward: float) -> tuple[Path,
         "scaling.length": f'"{LENGTH / FOOT!r} ft"' if system == "US" else repr(LENGTH),
         "conditions.density": f'"{RHO * FOOT**3 / POUND!r} lb/ft^3"' if system == "US" else repr(RHO),
         "conditions.speed": "2.0", "source.kind": '"synthetic"', "source.citation": '"synthetic"',
-        "table.contains_inertia": "false",
+        "table.contains_inertia": "false", "table.arm_point": point,
     }  # fmt: skip
     if system == "US":
         settings |= {"axes.beta": f'"v = {"-" if sign < 0 else "+"}U sin(beta)"', "axes.alpha": '"w = +U sin(alpha)"'}
@@ -262,6 +262,7 @@ def test_lift_and_drag_give_the_six_derivatives(tmp_path: Path, frame: str, by: 
     settings = SIMPLE | {"axes.frame": f'"{frame}"', "axes.alpha": '"w = +U sin(alpha)"'}
     if by == "velocities":
         settings = {key: said for key, said in settings.items() if key not in ("axes.alpha", "axes.beta")}
+        settings |= {"table.arm_point": "[-2, 0, 0]"}
     said = {name: text for name, (_, text) in columns.items()}
     for table in (by_columns(file, said, settings), by_import(file, said, settings)):
         assert table.forces["X"] == pytest.approx(frd[:, 6], rel=1e-10)

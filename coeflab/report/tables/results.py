@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -23,6 +24,7 @@ from coeflab.core.table import (
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
@@ -153,6 +155,55 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
         by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
     return f"{each} (U95; covers {covers(study, chosen)})."
+
+
+def primed_about(study: Study) -> str:
+    """By which length the coefficients are primed, about which point, and where rotating tables are assumed not to drift."""
+    by: dict[str, None] = {}
+    for f in study.fits:
+        c = f.coefficients
+        if c.conditions is not None or not c.coefficients:
+            continue
+        point = point_in_words(c.reference_point, c.datum)
+        by[f"{c.scaling.length_name} = {c.scaling.length:.5g} m, about {point}"] = None
+    lines = [f"Primed by {'; by '.join(by)}."] if by else []
+    return " ".join([*lines, *drift_assumed(study)])
+
+
+def drift_assumed(study: Study) -> tuple[str, ...]:
+    """Of tables that turn and state no arm point, where their velocities are taken to be; a planned tow turns about its point."""
+    towed = {t.campaign for t in study.plan.tows}
+    found: dict[str, list[str]] = {}
+    for t in study.tables:
+        if t.campaign not in towed and t.arm_point is None and {"q", "r"} & set(t.varies):
+            own = t.reference_point if t.measured_about is None else t.measured_about
+            still = any(note.startswith("drift is zero") for note in t.notes)
+            what = "drift is zero at" if still else "U and velocities are those of"
+            found.setdefault(f"{what} {point_in_words(own, t.datum)}", []).append(t.name)
+    return tuple(
+        f"{listed(names)}: {place}, the reference point (assumed: no arm_point)." for place, names in found.items()
+    )
+
+
+def lost_by_move(study: Study) -> tuple[str, ...]:
+    """Slopes that a campaign gives about another point than the study's, and what their move lacks; a sentence a campaign."""
+    out = []
+    for f in study.fits:
+        lost = [s.symbol for s in f.sweeps if s.value is not None and f.coefficients[s.symbol].value is None]
+        own = [t for t in study.tables if t.campaign == f.campaign]
+        slopes = [s for s in lost if s[1:] in ("r", "q")]
+        if not slopes or not own or not (shift := arm_shift(own)):
+            continue
+        turning = {s[1:] for s in slopes}
+        needed = [*(("Yv", "Nv") if "r" in turning else ()), *(("Zw", "Mw") if "q" in turning else ())]
+        at = own[0].reference_point + np.array([shift, 0.0, 0.0])
+        stated = all(t.arm_point is not None for t in own if {"q", "r"} & set(t.varies))
+        out.append(
+            f"{listed([primed(s) for s in slopes])}: velocities of {f.campaign} are at {point_in_words(at, own[0].datum)}, {abs(shift):.3g} m "
+            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}put the drift runs "
+            f"into this campaign, for a move takes its {listed([primed(n) for n in needed])}."
+        )
+    return tuple(out)
 
 
 def weight(c: Comparison) -> float:

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coeflab.core.table import Check
+from coeflab.core.table import Check, Severity
+from coeflab.core.wording import listed
+from coeflab.law.symbols import primed
 from coeflab.study.study import Study
+from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import law_findings
 
 summary = "distance of a parameter file's law from its measured points, and where the law holds"
@@ -16,7 +20,27 @@ citations = ("roddy1990",)
 def check(study: Study) -> Sequence[Check]:
     """One finding per parameter file, table and component, from the law as the file has it now."""
     return [
-        replace(c, subject=f"{name} {c.subject}")
+        replace(c, subject=f"{name} {c.subject}", comment=_comment(study, parameters, c))
         for name, parameters in study.parameter_files.items()
         for c in law_findings(parameters)
     ]
+
+
+def _comment(study: Study, parameters: ParameterFile, found: Check) -> str:
+    """The comment; of a law that fails, the missed points that a slope at the origin left out as not belonging come first."""
+    if found.severity is not Severity.FAIL:
+        return found.comment
+    missed = {f"{f.component} {f.table}": f.missed for f in points_of(parameters)}.get(found.subject, ())
+    out: dict[str, list[str]] = {}
+    for f in study.fits:
+        for s in f.sweeps:
+            if f"{s.component} {s.table}" == found.subject:
+                for label in (s.labels[i] for i in s.wrong if s.labels[i] in missed):
+                    out.setdefault(label, []).append(primed(s.symbol))
+    if not out:
+        return found.comment
+    points = "; ".join(f"{label} is left out of {listed(symbols)} (data gate)" for label, symbols in out.items())
+    return (
+        f"{points}, while the terms beyond the slope still use it. Compare it with its source first, and name the cell under "
+        "uncertain to leave it out of the law too." + f" {found.comment}" * bool(set(missed) - set(out))
+    )
