@@ -227,7 +227,8 @@ def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_document, s
     assert hulls == {"suboff_aff8", "suboff_bare_hull"}
     planes, sketches, first_page = 4, 3, 3
     motions = 4 * sum(not made.undetermined for made in study.manoeuvres)
-    turning = sum(rate in t.varies for t in study.tables for rate in "qr")
+    fitted = {campaign for f in study.fits for campaign in f.campaigns}
+    turning = sum(rate in t.varies for t in study.tables if t.campaign in fitted for rate in "qr")
     settings = len(study.tables) + turning  # of every table, and the local incidence of those that turn
     by_symmetry = [{c.symbol for c in zeros(study, f.campaign, f.coefficients.coefficients)} for f in study.fits]
     sweeps = 2 * sum(

@@ -53,6 +53,7 @@ def write_imperial(folder: Path, at: float) -> Path:
         'frame = "FRD"': 'frame = "CFD"',
         'beta = "v = -U sin(beta)"': 'beta = "v = +U sin(beta)"',
         "reference_point = [-0.80, 0.0, 0.0]": f'reference_point = ["{at / FOOT!r} ft", 0.0, 0.0]',
+        "arm_point = [-0.80, 0.0, 0.0]": f'arm_point = ["{at / FOOT!r} ft", 0.0, 0.0]',
         "length = 1.60\n": f'length = "{1.6 / FOOT!r} ft"\n',
         "density = 1025.0": f'density = "{1025.0 * FOOT**3 / 0.45359237!r} lb/ft^3"',
         "speed = 2.0 ": f'speed = "{2.0 / 1852 * 3600!r} kn" ',

@@ -328,7 +328,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     text += tuple(_nothing(one) for one in found if one not in with_values)
     each = (t for one in with_values for t in (own_cfd.own_tow(one), own_cfd.tow_against(one)))
     rest = _filled(tuple(own_cfd.own_tow(one) for one in found if one not in with_values))
-    more = (Section("no-tow", "Not towed", tables=rest, appendix=True),) if rest else ()
+    more = (Section("no-tow", "Own CFD without a value", tables=rest, appendix=True),) if rest else ()
     return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)
 
 
