@@ -104,6 +104,9 @@ def test_tables_read_as_any_other_and_hold_what_was_towed(tmp_path: Path) -> Non
     assert not any(drift.exclusions)
     arm = tables["arm.csv"]
     assert arm.primed_motion("r", tank.scaling.length).tolist() == pytest.approx([0.1, 0.2, 0.3])
+    assert arm.arm_point is not None
+    assert arm.arm_point.tolist() == tank.reference_point.tolist()
+    assert arm.motion["v"].tolist() == [0.0] * 3
 
 
 def test_a_row_that_did_not_converge_is_there_and_counts_for_nothing(tmp_path: Path) -> None:

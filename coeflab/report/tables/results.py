@@ -33,6 +33,7 @@ from coeflab.study.study import Study
 from coeflab.study.towed import STATES
 from coeflab.study.validation import WIDE
 from coeflab.tables.force_table import Exclusion, ForceTable
+from coeflab.tables.to_frd import ASSUMED_POINT
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
@@ -171,14 +172,12 @@ def primed_about(study: Study) -> str:
 
 
 def drift_assumed(study: Study) -> tuple[str, ...]:
-    """Of tables that turn and state no arm point, where their velocities are taken to be; a planned tow turns about its point."""
-    towed = {t.campaign for t in study.plan.tows}
+    """Of tables that turn and state no arm point, where their velocities are taken to be."""
     found: dict[str, list[str]] = {}
     for t in study.tables:
-        if t.campaign not in towed and t.arm_point is None and {"q", "r"} & set(t.varies):
+        if t.arm_point is None and {"q", "r"} & set(t.varies):
             own = t.reference_point if t.measured_about is None else t.measured_about
-            still = any(note.startswith("drift is zero") for note in t.notes)
-            what = "drift is zero at" if still else "U and velocities are those of"
+            what = "drift is zero at" if ASSUMED_POINT in t.notes else "U and velocities are those of"
             found.setdefault(f"{what} {point_in_words(own, t.datum)}", []).append(t.name)
     return tuple(
         f"{listed(names)}: {place}, the reference point (assumed: no arm_point)." for place, names in found.items()
