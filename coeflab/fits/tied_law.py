@@ -4,6 +4,7 @@ A law that is to hold over the whole range of the data is fitted with its linear
 `coeflab.fits.slope_at_origin` recommends, so that the two never contradict each other at rest. Of the forms none, x|x|, x^3
 and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of it the simplest. Variables take turns.
 Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine.
+A reading that the slopes left out because it does not fit the others is left out of the law too.
 What no symmetric body has is the set-up's: it is fitted with the law, taken off the points and stated, never in the law.
 
 With y = s x + A b the coefficients are b = A+ (y - s x), so that they move by -A+ x with the slope: that share of the
@@ -24,7 +25,8 @@ from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
 from coeflab.fits import FITS
-from coeflab.fits.results.fit_result import FitResult, Tied
+from coeflab.fits.results.fit_result import FitResult, Sweep, Tied
+from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
@@ -110,14 +112,17 @@ def _bases(component: str, among: CoefficientSet) -> dict[str, tuple[NamedTerm, 
     return out
 
 
-def _rows(component: str, tables: Sequence[ForceTable], variables: Sequence[str], length: float) -> _Rows:
-    """Usable rows ahead in which nothing but these variables moves."""
+def _rows(
+    component: str, tables: Sequence[ForceTable], variables: Sequence[str], length: float, sweeps: Sequence[Sweep]
+) -> _Rows:
+    """Usable rows ahead in which nothing but these variables moves, but for those that the slopes left out."""
     xs: dict[str, list[Array]] = {v: [] for v in variables}
     ys, at, names = list[Array](), list[NDArray[np.intp]](), list[str]()
     for table in tables:
         if component not in table.forces:
             continue
         keep = np.asarray(table.usable[component] & (table.motion["u"] > 0.0))
+        keep &= ~not_belonging(table, component, sweeps, length)
         for v in (*MOTIONS[1:], *table.controls):
             if v not in variables:
                 keep &= np.abs(table.primed_motion(v, length)) <= AT_REST
@@ -352,7 +357,7 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         variables = list(dict.fromkeys(v for t, _ in bases.values() for v, _, _ in t.term.factors))
         if not variables:
             continue
-        rows = _rows(component, tables, variables, length)
+        rows = _rows(component, tables, variables, length, found.sweeps)
         constant = chosen.at_rest == "law" and component in "ZM" and ALIKE not in declared
         law = _chosen(component, rows, bases, constant=constant, declared=declared) if len(rows.y) else None
         if law is None:

@@ -17,7 +17,7 @@ from pydantic import Field, model_validator
 from coeflab.core.stored import Finite, Means, Name, NotNegative
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.rows.sweeps import NEAR_ZERO
+from coeflab.fits.rows.sweeps import NEAR_ZERO, not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
 from coeflab.law.terms import read_term
@@ -165,6 +165,8 @@ def measured_tables(
         forces = []
         scale = density / t.water_density
         tied = any(f.tied is not None and f.campaign == t.campaign for f in fits)
+        sweeps = [s for f in fits for s in f.sweeps if s.campaign == t.campaign]
+        by_slopes = all(f.sweeps or f.tied for f in fits if t.campaign in f.campaigns)
         for c in COMPONENTS:
             variables = spoken.get((c, t.name))
             if variables is None or c not in t.forces:
@@ -175,6 +177,8 @@ def measured_tables(
                 moved = {m for m, on in zip(names, moving[:, row], strict=True) if on}
                 combined[row] = not any(moved <= together for together in crossed.get(c, ()))
             usable = t.usable[c] & (t.motion["u"] > 0.0) & ~strange & ~combined
+            if by_slopes:
+                usable &= ~not_belonging(t, c, sweeps, length)
             if np.any(usable):
                 still = usable & ~np.any(moving, axis=0)
                 rest = _of_set_up(t, c, fits, still, length, in_law=c in constants)

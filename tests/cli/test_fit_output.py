@@ -65,15 +65,15 @@ def test_slopes_of_an_arm_about_another_point_say_what_their_move_lacks(coeflab:
     assert "drift is zero at x = -0.8 m from nose, the reference point (assumed: no arm_point)" in said
 
 
-def test_a_law_that_misses_a_left_out_point_names_it_first(coeflab: Run, tmp_path: Path) -> None:
+def test_a_reading_that_the_slope_leaves_out_is_left_out_of_the_law_and_named(coeflab: Run, tmp_path: Path) -> None:
     assert coeflab("new", "mine").returncode == 0
     file = tmp_path / "mine" / "campaign" / "drift.csv"
     file.write_text(file.read_text().replace("10,6,-12.7208,18.9707,", "10,6,-12.7208,-18.9707,"))
-    found = [
-        c for c in json.loads(coeflab("run", "mine/plan.toml", "--json").stdout)["checks"] if c["severity"] == "fail"
-    ]
-    assert len(found) == 1
-    assert found[0]["comment"].startswith("10 is left out of Yv' (data gate)")
+    checks = json.loads(coeflab("run", "mine/plan.toml", "--json").stdout)["checks"]
+    assert not [c for c in checks if c["severity"] == "fail"]
+    assert [c["subject"] for c in checks if c["severity"] == "warn"] == ["my_campaign/drift.csv line 12"]
+    (law,) = [c for c in checks if c["subject"] == "my_vehicle Y my_campaign/drift.csv"]
+    assert law["comment"].startswith("10 is left out of Yv' (data gate), and of the law.")
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 
 from coeflab.core.table import Severity
+from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.law.scaling import Conditions
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import law_findings, plausibility
-from tests.fits.test_tied_law import ANGLES, V, beyond, planted, slopes
+from tests.fits.test_tied_law import ANGLES, LENGTH, V, beyond, planted, slopes
 
 GROUP = PlannedParameterFile("file", "body of tow", ("tow",), ())
 AT = Conditions(1025.0, 2.0)
@@ -76,6 +78,35 @@ def test_five_per_cent_on_one_coefficient_of_a_written_file_fails(
     failed = [c for c in law_findings(broken) if c.severity is Severity.FAIL]
     assert failed[0].subject.startswith(symbol[0])
     assert "changed after the file was written" in failed[0].comment
+
+
+def test_a_reading_that_the_slope_leaves_out_moves_no_law_and_is_no_point_of_it() -> None:
+    table = planted(TRUTH, {"v": V}, noise=1e-6)
+    y = np.array(table.forces["Y"])
+    y[12] = -y[12]
+    flipped = replace(table, forces={**table.forces, "Y": y})
+    usable = np.ones(len(V), dtype=bool)
+    usable[12] = False
+    named = replace(table, usable={**table.usable, "Y": usable})
+    laws = []
+    for t in (flipped, named):
+        slope = FITS.load("slope_at_origin").fit([t], LENGTH, {})
+        beyond_it = FITS.load("tied_law").complete(slope, [t], LENGTH, {})  # type: ignore[attr-defined]
+        laws.append(made([slope, beyond_it], t))
+    one, other = laws
+    assert [c.value for c in one.coefficients] == pytest.approx([c.value for c in other.coefficients])
+    assert [(f.component, f.n_points) for f in points_of(one)] == [("Y", len(V) - 1), ("N", len(V))]
+    assert worst(one) is Severity.PASS
+
+
+def test_of_repeated_labels_only_the_setting_that_does_not_fit_is_left_out() -> None:
+    table = replace(planted(TRUTH, {"v": V}, noise=1e-6), labels=tuple(str(i % 6) for i in range(len(V))))
+    y = np.array(table.forces["Y"])
+    y[12] = -y[12]
+    flipped = replace(table, forces={**table.forces, "Y": y})
+    slope = FITS.load("slope_at_origin").fit([flipped], LENGTH, {})
+    assert np.flatnonzero(not_belonging(flipped, "Y", slope.sweeps, LENGTH.length)).tolist() == [12]
+    assert not np.any(not_belonging(flipped, "N", slope.sweeps, LENGTH.length))
 
 
 def test_the_limit_is_five_per_cent_of_the_largest_force(whole: ParameterFile) -> None:

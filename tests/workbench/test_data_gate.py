@@ -258,7 +258,8 @@ def test_a_row_that_the_slope_leaves_out_is_said_to_be_left_out_in_the_unit_of_t
         f"{number(found.value, 3)} ± {number(found.u95, 2)} without it"
     )
     assert in_primes.comment == (
-        "Left out of Yv'. Compare point 11 with its source; other forms and fits use it unless the cell is named under uncertain."
+        "Left out of Yv'. Compare point 11 with its source; the law does without it, other fits use it unless the cell is named under "
+        "uncertain."
     )
 
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import coefficient, plus_minus
 from coeflab.core.types import Array, brief
-from coeflab.fits.results.fit_result import LeftOut
+from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import WIND, Area, Rows, response
 from coeflab.fits.statistics.slopes import is_one_sided
@@ -35,6 +35,7 @@ from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "moves astern (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
+SAME_SETTING = 0.02  # a rate's prime changes with the point at which the speed is taken
 NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
@@ -115,6 +116,20 @@ def collect_points(
     errors = np.array(se)
     known = errors if len(errors) and np.all(np.isfinite(errors)) else None
     return np.array(x), np.array(y), known, tuple(labels), tuple(left)
+
+
+def not_belonging(table: ForceTable, component: str, sweeps: Sequence[Sweep], length: float) -> NDArray[np.bool_]:
+    """Rows of a table whose force a sweep over it left out because it does not fit the others, shape (n,)."""
+    out = np.zeros(len(table), dtype=bool)
+    labels = np.array(table.labels, dtype=object)
+    for s in (s for s in sweeps if (s.table, s.component) == (table.name, component)):
+        x = table.primed_motion(s.variable, length)
+        of_sweep = np.array(s.labels, dtype=object)
+        for i in map(int, s.wrong):
+            here = np.flatnonzero((labels == s.labels[i]) & np.isclose(x, s.x[i], rtol=SAME_SETTING))
+            there = np.flatnonzero((of_sweep == s.labels[i]) & np.isclose(s.x, s.x[i], rtol=SAME_SETTING))
+            out[here[there == i] if len(here) == len(there) else here] = True
+    return out
 
 
 def one_size(x: Array, variable: str, speed: Array) -> str:

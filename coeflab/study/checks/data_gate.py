@@ -390,7 +390,7 @@ def _some(where: Sequence[str]) -> str:
 
 
 ADVICE = "Compare the row with its source; name the cell under uncertain to leave it out."
-LEFT_OUT = "Compare the row with its source; other forms and fits use it unless the cell is named under uncertain."
+LEFT_OUT = "Compare the row with its source; the law does without it, other fits use it unless the cell is named under uncertain."
 INFLUENTIAL = "Repeat the run."
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check
 from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
@@ -27,20 +27,21 @@ def check(study: Study) -> Sequence[Check]:
 
 
 def _comment(study: Study, parameters: ParameterFile, found: Check) -> str:
-    """The comment; of a law that fails, the missed points that a slope at the origin left out as not belonging come first."""
-    if found.severity is not Severity.FAIL:
-        return found.comment
+    """The comment; the points that a slope at the origin left out as not belonging come first."""
     missed = {f"{f.component} {f.table}": f.missed for f in points_of(parameters)}.get(found.subject, ())
     out: dict[str, list[str]] = {}
     for f in study.fits:
         for s in f.sweeps:
             if f"{s.component} {s.table}" == found.subject:
-                for label in (s.labels[i] for i in s.wrong if s.labels[i] in missed):
+                for label in (s.labels[i] for i in s.wrong):
                     out.setdefault(label, []).append(primed(s.symbol))
     if not out:
         return found.comment
     points = "; ".join(f"{label} is left out of {listed(symbols)} (data gate)" for label, symbols in out.items())
-    return (
-        f"{points}, while the terms beyond the slope still use it. Compare it with its source first, and name the cell under "
-        "uncertain to leave it out of the law too." + f" {found.comment}" * bool(set(missed) - set(out))
-    )
+    if still := [label for label in out if label in missed]:
+        rest = f" {found.comment}" * bool(set(missed) - set(out))
+        return (
+            f"{points}, while other terms of the law use {listed(still)}. Compare it with its source first, and name the cell "
+            f"under uncertain to leave it out of them too.{rest}"
+        )
+    return f"{points}, and of the law. Compare it with its source. {found.comment}".strip()
