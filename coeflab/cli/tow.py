@@ -147,7 +147,7 @@ def _tow(
     folder = out if out is not None else Path(RUNS) / tank.name
     before: Mapping[str, Any] | None = None
     if (folder / PLAN).is_file():
-        refuse_other(folder, tank)
+        refuse_other(folder, tank, surface.body.name)
         before = read_plan(folder)
         if not go_on and not dry_run and has_begun(folder):
             _refuse_begun(folder)

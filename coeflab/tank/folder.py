@@ -116,8 +116,8 @@ def read_plan(folder: Path) -> dict[str, Any]:
     return content
 
 
-def refuse_other(folder: Path, tank: Tank) -> None:
-    """Refuse a folder that holds another tow, or files of something else.
+def refuse_other(folder: Path, tank: Tank, body: str) -> None:
+    """Refuse a folder that holds another tow, one of another body than this name, or files of something else.
 
     Raises
     ------
@@ -137,6 +137,9 @@ def refuse_other(folder: Path, tank: Tank) -> None:
     if (there["name"], there["solver"]) != (tank.name, tank.solver):
         raise InputError(f"the tow of {there['name']} by {there['solver']}", f"that of {tank.name} by {tank.solver}",
                          file=folder, advice="Name another --out: a folder holds one tow.")  # fmt: skip
+    if there["body"] != body:
+        raise InputError(f"a tow of the body {there['body']}", f"one of {body}", file=folder,
+                         advice="Name another --out: a folder holds one tow.")  # fmt: skip
 
 
 def forget(folder: Path, own: set[Path]) -> None:

@@ -275,7 +275,7 @@ def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
             combined = next((_combined(t) for t in tables if t.name == table), 0)
             joined = f"{combined} rows combine motions: --fit {COMBINES} fits them as one model. Or run"
             raise InputError(
-                f"{points} usable points of the sweep over {variable}'",
+                f"{points} usable point{'s' * (points != 1)} of the sweep over {variable}'",
                 f"at least {FEWEST} for an intercept, a slope and an error",
                 file=table,
                 advice=f"{joined if combined >= FEWEST else 'Run'} more settings, or leave the table out of the plan.",

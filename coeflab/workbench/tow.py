@@ -247,7 +247,7 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     folder = folder.absolute()
     solver = SOLVERS.load(tank.solver)
     installed = solver.installed()
-    refuse_other(folder, tank)
+    refuse_other(folder, tank, body.body.name)
     with only_one(folder, "tow"):
         own = default_text(body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})

@@ -302,6 +302,10 @@ def test_another_tow_or_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="the tow of spheroid by planted") as why:
         laid_out(tmp_path, tank_file(tmp_path / "other", name="another"))
     assert "Name another --out" in str(why.value)
+    plan = tmp_path / "x" / "tow.json"
+    plan.write_text(plan.read_text().replace('"body": "', '"body": "other_'))
+    with pytest.raises(InputError, match="a tow of the body other_"):
+        laid_out(tmp_path, tank_file(tmp_path))
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.tex").touch()
     with pytest.raises(InputError, match="which is not empty"):
