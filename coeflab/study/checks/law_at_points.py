@@ -38,7 +38,15 @@ def _comment(study: Study, parameters: ParameterFile, found: Check) -> str:
     if not out:
         return found.comment
     points = "; ".join(f"{label} is left out of {listed(symbols)} (data gate)" for label, symbols in out.items())
-    if still := [label for label in out if label in missed]:
+    used = [
+        label
+        for m in parameters.measured
+        for f in m.forces
+        if f"{f.component} {m.table}" == found.subject
+        for label, value in zip(m.labels, f.values, strict=True)
+        if value is not None and m.labels.count(label) == 1
+    ]
+    if still := [label for label in out if label in missed or label in used]:
         rest = f" {found.comment}" * bool(set(missed) - set(out))
         return (
             f"{points}, while other terms of the law use {listed(still)}. Compare it with its source first, and name the cell "
