@@ -166,7 +166,8 @@ def measured_tables(
         scale = density / t.water_density
         tied = any(f.tied is not None and f.campaign == t.campaign for f in fits)
         sweeps = [s for f in fits for s in f.sweeps if s.campaign == t.campaign]
-        by_slopes = all(f.sweeps or f.tied for f in fits if t.campaign in f.campaigns)
+        others = [f for f in fits if t.campaign in f.campaigns and not (f.sweeps or f.tied)]
+        elsewhere = {k.symbol[0] for f in others for k in f.coefficients.coefficients if k.value is not None}
         for c in COMPONENTS:
             variables = spoken.get((c, t.name))
             if variables is None or c not in t.forces:
@@ -177,7 +178,7 @@ def measured_tables(
                 moved = {m for m, on in zip(names, moving[:, row], strict=True) if on}
                 combined[row] = not any(moved <= together for together in crossed.get(c, ()))
             usable = t.usable[c] & (t.motion["u"] > 0.0) & ~strange & ~combined
-            if by_slopes:
+            if c not in elsewhere:
                 usable &= ~not_belonging(t, c, sweeps, length)
             if np.any(usable):
                 still = usable & ~np.any(moving, axis=0)
