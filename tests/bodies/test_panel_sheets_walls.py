@@ -12,7 +12,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panels import influence as kernel
 from coeflab.bodies.panels.added_mass import Wall, panel_added_mass
-from coeflab.bodies.panels.influence import bisected, graded, layer_slopes, panels_of, seen_by, sharp_points, velocities
+from coeflab.bodies.panels.influence import bisected, graded, gradients, panels_of, seen_by, sharp_points
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -51,11 +51,14 @@ def test_slopes_are_those_of_differences(monkeypatch: pytest.MonkeyPatch, reach:
     monkeypatch.setattr(kernel, "REACH", 100.0)
     (high, layer), (low, below) = (seen_by(at + s * 1e-5 * way, panels) for s in (1.0, -1.0))
     monkeypatch.setattr(kernel, "REACH", reach)
+    velocity, slope, itself = gradients(at, way, panels)
     for found, wanted in (
-        (velocities(at, way, panels), (high - low) / 2e-5),
-        (layer_slopes(at, way, panels), (layer - below) / 2e-5),
+        (velocity, (high - low) / 2e-5),
+        (slope, (layer - below) / 2e-5),
+        (itself, (layer + below) / 2.0),
     ):
         assert np.max(np.abs(found - wanted)) < 1e-3 * np.max(np.abs(wanted))
+    assert gradients(at, way, panels, single=True)[0] == pytest.approx(velocity, rel=1e-6)
 
 
 @pytest.mark.parametrize(("aspect", "printed"), [(1.0, 0.579), (2.0, 0.757)])

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panels.influence import Panels, layer_slopes, panels_of, seen_by, velocities
+from coeflab.bodies.panels.influence import Panels, gradients, panels_of, seen_by
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import moved
 
@@ -125,7 +125,7 @@ def panel_added_mass(
         diagonal = 4.0 * np.pi - angles.sum(axis=1, dtype=np.float64)
     else:
         angles, right, diagonal = np.zeros((0, 0), np.float32), np.zeros((0, 6)), np.zeros(0)
-    multiply: Multiply = partial(_by_angles, angles)
+    multiply: Multiply = partial(_single, angles)
     if sheet.count:
         multiply, right, diagonal = _with_sheets(panels, sheet, near, angles, right, diagonal)
     potential, steps, residual = _solved(multiply, diagonal, right)
@@ -147,40 +147,36 @@ def _with_sheets(
     The rows of sheets are multiplied by the inverse of their own block, so that its poor conditioning does not slow the
     iteration down; the blocks stay apart, as their product costs more than all steps.
     """
+    from scipy.linalg import lu_factor, lu_solve
+
     n, k = panels.count, sheet.count
-    velocity, slope = velocities(sheet.centre, sheet.normal, sheet), np.zeros((k, 6))
-    back, jump = np.zeros((n, k)), np.zeros((k, n))
-    if n:
-        back, jump = seen_by(panels.centre, sheet)[0], velocities(sheet.centre, sheet.normal, panels)
-        slope = _slope(sheet.centre, sheet.normal, panels)
+    # Seen from the sheets themselves; behind a wall the derivative is along the mirrored direction.
+    seen = [(sheet.centre, sheet.normal, panels.centre, 1.0)]
     if near is not None:
-        points = near.behind(sheet.centre)
-        # The derivative at a target is along the mirrored direction where the target is mirrored.
         ways = sheet.normal - 2.0 * (sheet.normal @ near.normal)[:, None] * near.normal
-        velocity += near.factor * velocities(points, ways, sheet)
+        seen.append((near.behind(sheet.centre), ways, near.behind(panels.centre), near.factor))
+    velocity, slope = np.zeros((k, k)), np.zeros((k, 6))
+    back, jump = np.zeros((n, k), dtype=np.float32), np.zeros((k, n), dtype=np.float32)
+    for points, way, centres, factor in seen:
+        velocity += factor * gradients(points, way, sheet)[0]
         if n:
-            back += near.factor * seen_by(near.behind(panels.centre), sheet)[0]
-            jump += near.factor * velocities(points, ways, panels)
-            slope += near.factor * _slope(points, ways, panels)
+            through, pulled, layer = gradients(points, way, panels, single=True)
+            jump += np.float32(factor) * through
+            slope += factor * np.hstack([pulled, np.cross(way, layer) + np.cross(points, pulled)])
+            back += factor * seen_by(centres, sheet)[0]
     own = -4.0 * np.pi * _with_turning(sheet.normal, sheet.centre) - slope
-    inverse = 2.0 * np.pi * np.linalg.inv(velocity)  # the sheets' unknowns keep the unit of the others
+    block = lu_factor(velocity / (2.0 * np.pi))  # the sheets' unknowns keep the unit of the others
 
     def multiply(x: Array) -> Array:
-        return np.concatenate([_by_angles(angles, x[:n]) + back @ x[n:], inverse @ (jump @ x[:n])])
+        passing = lu_solve(block, _single(jump, x[:n]))
+        return np.concatenate([_single(angles, x[:n]) + _single(back, x[n:]), passing])
 
-    return multiply, np.concatenate([right, inverse @ own]), np.concatenate([diagonal, np.full(k, 2.0 * np.pi)])
+    return multiply, np.concatenate([right, lu_solve(block, own)]), np.concatenate([diagonal, np.full(k, 2.0 * np.pi)])
 
 
-def _by_angles(angles: NDArray[np.float32], x: Array) -> Array:
+def _single(matrix: NDArray[np.float32], x: Array) -> Array:
     """Product in single precision."""
-    return np.asarray(angles @ x.astype(np.float32), dtype=np.float64)
-
-
-def _slope(targets: Array, ways: Array, panels: Panels) -> Array:
-    """(m, 6) derivative along a way of the potential of the layers of n and y x n."""
-    slope = layer_slopes(targets, ways, panels)
-    layer = seen_by(targets, panels)[1]
-    return np.hstack([slope, np.cross(ways, layer) + np.cross(targets, slope)])
+    return np.asarray(matrix @ x.astype(np.float32), dtype=np.float64)
 
 
 def _with_turning(vector: Array, at: Array) -> Array:

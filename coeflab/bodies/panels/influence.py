@@ -350,39 +350,77 @@ def seen_by(targets: Array, panels: Panels) -> tuple[Array, Array]:
     return out, layer
 
 
-def velocities(targets: Array, directions: Array, panels: Panels) -> Array:
-    """Derivative of the solid angle of every panel along a direction at each target, (m, n).
+def gradients(
+    targets: Array, directions: Array, panels: Panels, single: bool = False
+) -> tuple[NDArray[np.floating], Array, Array]:
+    """Derivatives along a direction at each target: of the solid angle of every panel, and of the integral of n / r.
 
-    Near panels as vortex rings along their sides (Katz & Plotkin, Low-Speed Aerodynamics, 2001, 10.4.5); beyond `REACH`
-    three dipoles at the middles of the sides, which is exact to the second degree.
+    Near panels exactly: vortex rings along their sides (Katz & Plotkin, Low-Speed Aerodynamics, 2001, 10.4.5), and the
+    gradient of 1 / r over a flat panel (Hess & Smith 1967). Beyond `REACH` three dipoles or sources at the middles of the
+    sides, which is exact to the second degree.
 
     Parameters
     ----------
     targets, directions : (m, 3) arrays
     panels : Panels
+    single : bool
+        Keep the first of them in single precision.
+
+    Returns
+    -------
+    velocity : (m, n) array
+        Of the solid angle.
+    slope : (m, 3) array
+        Of the integral of n / r over all panels.
+    layer : (m, 3) array
+        That integral itself, m.
     """
-    out = np.empty((len(targets), panels.count))
-    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
-    square = np.sum(panels.centre**2, axis=1)
-    step = max(1, BLOCK // panels.count)
-    for start in range(0, len(targets), step):
-        x, n = targets[start : start + step], directions[start : start + step]
-        facing = n @ panels.normal.T
-        total = np.zeros((len(x), panels.count))
-        for k in range(3):
-            y = middles[:, k]
-            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
-            along = n @ y.T - np.sum(n * x, axis=1)[:, None]
-            height = np.sum(panels.normal * y, axis=1) - x @ panels.normal.T
-            total += (3.0 * along * height / away - facing) / (away * np.sqrt(away))
-        total *= panels.area / 3.0
-        near = np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
-        i, j = np.nonzero(near)
-        for part in range(0, len(i), NEAR_BLOCK):
-            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
-            total[a, b] = np.einsum("ni,ni->n", _ring(x[a], panels.corners[b]), n[a])
-        out[start : start + step] = total
-    return out
+    m, n = len(targets), panels.count
+    velocity: NDArray[np.floating] = np.empty((m, n), dtype=np.float32 if single else np.float64)
+    slope, layer = np.empty((m, 3)), np.empty((m, 3))
+    corners, normal, third = panels.corners, panels.normal, panels.area / 3.0
+    middles = (corners + np.roll(corners, -1, axis=1)).transpose(1, 2, 0) / 2.0
+    squares = [_squares(y) for y in (*middles, panels.centre.T)]
+    ahead = [np.vstack([y, np.full(n, -1.0)]) for y in middles]
+    plane = np.vstack([-normal.T, np.sum(normal * panels.centre, axis=1)])
+    reach = (REACH * panels.size) ** 2
+    step = max(1, BLOCK // n)
+    spare = np.empty((8, step, n))  # memory that the system hands out anew for every block costs more than the sums
+    for start in range(0, m, step):
+        x, way = targets[start : start + step], directions[start : start + step]
+        away, root, along, moved, inverse, pull, push, cubes = (one[: len(x)] for one in spare)
+        lifted = np.hstack([x, np.sum(x**2, axis=1)[:, None], np.ones((len(x), 1))])
+        turned = np.hstack([way, np.sum(way * x, axis=1)[:, None]])
+        near = np.flatnonzero((np.matmul(lifted, squares[3], out=away) < reach).ravel())
+        for total in (inverse, pull, push, cubes):
+            total.fill(0.0)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # at a middle of a side, which is near
+            for square, at in zip(squares, ahead, strict=False):
+                np.reciprocal(np.matmul(lifted, square, out=away), out=away)
+                inverse += np.sqrt(away, out=root)
+                cubes += np.multiply(root, away, out=root)
+                pull += np.multiply(np.matmul(turned, at, out=along), root, out=along)
+                push += np.multiply(along, away, out=moved)
+            push *= np.matmul(lifted[:, [0, 1, 2, 4]], plane, out=along)
+            push *= 3.0
+            push -= np.multiply(cubes, np.matmul(way, normal.T, out=along), out=cubes)
+        for total in (inverse, pull, push):
+            np.multiply(total, third, out=total)
+        flat = [total.ravel() for total in (inverse, pull, push)]
+        for part in range(0, len(near), NEAR_BLOCK):
+            place = near[part : part + NEAR_BLOCK]
+            i, j = np.divmod(place, n)
+            angle, flat[0][place] = exact_integrals(x[i], corners[j], normal[j])
+            flat[1][place] = np.einsum("ni,ni->n", _pull(x[i], corners[j], normal[j], angle), way[i])
+            flat[2][place] = np.einsum("ni,ni->n", _ring(x[i], corners[j]), way[i])
+        here = slice(start, start + step)
+        velocity[here], slope[here], layer[here] = push, pull @ normal, inverse @ normal
+    return velocity, slope, layer
+
+
+def _squares(points: Array) -> Array:
+    """(5, n): squares of distances to points, (3, n), as a polynomial of the target (x, x x, 1)."""
+    return np.vstack([-2.0 * points, np.ones(points.shape[1]), np.sum(points**2, axis=0)])
 
 
 def _ring(targets: Array, corners: Array) -> Array:
@@ -397,37 +435,8 @@ def _ring(targets: Array, corners: Array) -> Array:
     return total
 
 
-def layer_slopes(targets: Array, directions: Array, panels: Panels) -> Array:
-    """Derivative along a direction at each target of the integral of n / r over the panels, (m, 3).
-
-    The gradient of the integral of 1 / r of a flat panel: its solid angle along the normal, and along its plane the
-    logarithms of its sides, each along its outward normal (Hess & Smith 1967).
-    """
-    out = np.empty((len(targets), 3))
-    square = np.sum(panels.centre**2, axis=1)
-    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
-    step = max(1, BLOCK // panels.count)
-    for start in range(0, len(targets), step):
-        x, n = targets[start : start + step], directions[start : start + step]
-        total = np.zeros((len(x), panels.count))
-        for k in range(3):
-            y = middles[:, k]
-            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
-            total += (n @ y.T - np.sum(n * x, axis=1)[:, None]) / (away * np.sqrt(away))
-        total *= panels.area / 3.0
-        i, j = np.nonzero(
-            np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
-        )
-        for part in range(0, len(i), NEAR_BLOCK):
-            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
-            total[a, b] = np.einsum("ni,ni->n", _pull(x[a], panels.corners[b], panels.normal[b]), n[a])
-        out[start : start + step] = total @ panels.normal
-    return out
-
-
-def _pull(targets: Array, corners: Array, normals: Array) -> Array:
-    """Gradient of the integral of 1 / r of triangle k at target k, (n, 3)."""
-    angle, _ = exact_integrals(targets, corners, normals)
+def _pull(targets: Array, corners: Array, normals: Array, angle: Array) -> Array:
+    """Gradient of the integral of 1 / r of triangle k, seen under an angle, at target k, (n, 3)."""
     to = corners - targets[:, None]
     r = np.linalg.norm(to, axis=2)
     total = angle[:, None] * normals
