@@ -10,6 +10,7 @@ from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
+    from coeflab.law.added_mass import AddedMass
 
 EXAMPLE = "coeflab added-mass suboff_bare_hull"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -50,7 +51,7 @@ def command(
         "", "--error", metavar="SHARE", help="Raise the panels until their error estimate is below it: 2%, 0.02."
     ),
     density: float = typer.Option(show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
-    json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
+    json: bool = typer.Option(False, "--json", help="Print {method: matrix, error, point, density ...} in SI."),
 ) -> None:
     """Show a body's added mass by several methods.
 
@@ -73,7 +74,8 @@ def command(
     if json:
         for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
             show.error(line)
-        show.json_object({r.method: r.matrix.tolist() for r in found.results})
+        chosen = "" if found.none_recommended else found.recommended.method
+        show.json_object({r.method: _as_json(r, density, chosen) for r in found.results})
         return
     show.table(tables.particulars(found.body))
     show.table(tables.displaced(found.body, density))
@@ -84,6 +86,20 @@ def command(
     show.table(tables.primes(found))
     for citation in found.citations:
         show.text(f"  {work(citation)}")
+
+
+def _as_json(found: AddedMass, density: float, recommended: str) -> dict[str, object]:
+    """Everything that a method says of its matrix, which is in kg, kg m, kg m^2 about the point, FRD."""
+    return {
+        "matrix": found.matrix.tolist(),
+        "error": None if found.error is None else found.error.tolist(),
+        "point": found.reference_point.tolist(),
+        "datum": found.datum.id,
+        "density": density,
+        "rough": found.rough,
+        "recommended": found.method == recommended,
+        "statements": list(found.statements),
+    }
 
 
 def _share(text: str) -> str:
@@ -128,7 +144,7 @@ def _near(
     if json:
         far = found[0]
         walls = [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in far.walls]
-        show.json_object({"method": far.method, "matrix": far.matrix.tolist(), "walls": walls})
+        show.json_object({"method": far.method, **_as_json(far, density, far.method), "walls": walls})
         return
     for result in found:
         show.table(noun_tables.matrix(result))

@@ -49,15 +49,25 @@ def test_a_coarse_mesh_is_divided_into_similar_ones() -> None:
     assert [volume(c) for c in found] == pytest.approx([1.0, 1.0, 1.0], rel=1e-12)
 
 
-@pytest.mark.parametrize("panels", [4000, 1600])
+@pytest.mark.parametrize("panels", [3200, 1600])
 def test_a_fine_mesh_is_decimated(panels: int) -> None:
-    """4,000: as it is, then coarser; 1,600: coarser at once."""
+    """3,200: as it is, then coarser; 1,600: coarser at once."""
     ball = meshed(one(Ellipsoid(1.0, 0.8, 0.8)), 3000)
     found = family(TriangleMesh(ball.vertices, ball.faces), panels)
     assert len(found) >= 2
-    assert len(found[0]) == (len(ball.faces) if panels == 4000 else pytest.approx(1600, rel=0.05))
+    assert len(found[0]) == (len(ball.faces) if panels == 3200 else pytest.approx(1600, rel=0.05))
     assert len(found[1]) < len(found[0]) / 2
     assert volume(found[1]) == pytest.approx(ball.volume, rel=0.03)
+
+
+@pytest.mark.parametrize("times", [2, 3, 6])
+def test_a_mesh_is_refined_to_the_panels_asked_for(times: int) -> None:
+    """Also between its own facets and four times as many, which facets as they are used to stand for."""
+    ball = meshed(one(Ellipsoid(1.0, 0.8, 0.8)), 1500)
+    panels = times * len(ball.faces)
+    found = family(TriangleMesh(ball.vertices, ball.faces), panels)
+    assert 0.6 * panels <= len(found[0]) <= 1.1 * panels
+    assert volume(found[0]) == pytest.approx(ball.volume, rel=1e-3)
 
 
 def rod(sections: int, length: float) -> TriangleMesh:

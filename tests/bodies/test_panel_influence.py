@@ -95,4 +95,5 @@ def test_compiled_and_plain_agree() -> None:
     plain, compiled = influence(stretched()), panel_compiled.influence(stretched())
     assert compiled[0].dtype == plain[0].dtype == np.float32
     assert np.max(np.abs(compiled[0] - plain[0])) < 1e-6
-    assert compiled[1][0] == pytest.approx(plain[1][0], rel=1e-11, abs=1e-12)
+    # The plain layer is summed in single precision, as the angles are kept.
+    assert np.max(np.abs(compiled[1][0] - plain[1][0])) < 1e-6 * np.max(np.abs(compiled[1][0]))

@@ -37,7 +37,7 @@ def test_json_holds_matrices(coeflab: Run) -> None:
     done = coeflab("added-mass", "huuv", "--json", "--density", "1025")
     found = json.loads(done.stdout)
     assert set(found) == {"ellipsoid", "panel", "primitives", "primitives:huuv"}
-    matrix = np.array(found["primitives:huuv"])
+    matrix = np.array(found["primitives:huuv"]["matrix"])
     assert matrix.shape == (6, 6)
     assert matrix[1, 1] == pytest.approx(1025.0 * np.pi * (0.07**2 * 1.2 + 0.02**2 * 0.3), rel=1e-12)
 
@@ -70,7 +70,20 @@ def test_a_thin_box_gets_no_ellipsoid_without_a_caveat(coeflab: Run, tmp_path: P
 
 def test_one_method(coeflab: Run) -> None:
     done = coeflab("added-mass", "spheroid_example", "--method", "strip:lamb", "--json")
-    assert list(json.loads(done.stdout)) == ["strip:lamb"]
+    found = json.loads(done.stdout)
+    assert list(found) == ["strip:lamb"]
+    said = found["strip:lamb"]
+    assert list(said) == ["matrix", "error", "point", "datum", "density", "rough", "recommended", "statements"]
+    assert (said["error"], said["density"], said["rough"], said["recommended"]) == (None, 998.2, False, True)
+    assert len(said["point"]) == 3
+
+
+def test_json_of_the_panel_method_has_its_error(coeflab: Run) -> None:
+    done = coeflab("added-mass", "spheroid_example", "--method", "panel", "--json", "--density", "1025")
+    said = json.loads(done.stdout)["panel"]
+    share = said["error"][1][1] / said["matrix"][1][1]
+    assert 0.0 < share < 0.05
+    assert said["density"] == 1025.0
 
 
 def test_help_has_an_example(coeflab: Run) -> None:
@@ -95,7 +108,7 @@ def test_wrong_input(coeflab: Run, arguments: tuple[str, ...], said: str) -> Non
 def test_a_mesh_file_with_its_unit_and_axes(coeflab: Run, tmp_path: Path) -> None:
     trimesh.creation.icosphere(3, 500.0).export(tmp_path / "ball.stl")
     done = coeflab("added-mass", tmp_path / "ball.stl", "--unit", "mm", "--axes", "FLU", "--method", "panel", "--json")
-    matrix = np.array(json.loads(done.stdout)["panel"])
+    matrix = np.array(json.loads(done.stdout)["panel"]["matrix"])
     assert np.diag(matrix)[:3] == pytest.approx(0.5 * 1000.0 * 4.0 / 3.0 * np.pi * 0.5**3, rel=0.02)
     done = coeflab("added-mass", tmp_path / "ball.stl")
     assert done.returncode == 2

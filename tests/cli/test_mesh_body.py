@@ -51,7 +51,7 @@ def test_particulars_and_matrices(coeflab: Run, bar: Path) -> None:
 
 def test_json(coeflab: Run, bar: Path) -> None:
     found = json.loads(coeflab("added-mass", bar / "body.toml", "--json", "--method", "strip").stdout)
-    matrix = np.array(found["strip"])
+    matrix = np.array(found["strip"]["matrix"])
     assert matrix[2, 2] == pytest.approx(1000.0 * 1.36 * np.pi * 0.1**2 * 2.0, rel=0.01)
     assert matrix[0] == pytest.approx(np.zeros(6))
 

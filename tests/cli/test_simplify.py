@@ -38,7 +38,9 @@ def test_the_shipped_vehicle_from_mesh_to_added_mass(coeflab: Run, tmp_path: Pat
     assert sorted(p.name for p in folder.iterdir()) == sorted(FILES)
     for words in ("hull", "cylinder_top", "plate_port", "plate_starboard", "unassigned", "body.toml: written"):
         assert words in flat(done.stdout)
-    matrix = json.loads(coeflab("added-mass", folder, "--method", "primitives", "--json").stdout)["primitives"]
+    matrix = json.loads(coeflab("added-mass", folder, "--method", "primitives", "--json").stdout)["primitives"][
+        "matrix"
+    ]
     assert np.linalg.eigvalsh(np.array(matrix))[0] > 0.0
     first = {f: (folder / f).read_bytes() for f in FILES}
     again = coeflab("simplify", "huuv_mesh", *COARSE)

@@ -28,6 +28,7 @@ citations = ("newman1977", "hess1967", "vanoosterom1983", "wilton1984", "roache1
 reproducible: Mapping[str, str] = {"kernel": "numpy"}
 takes_surface = True
 FEWEST_PANELS, MOST_PANELS = 1_000, 32_000
+OVERSHOOT = 1.1
 THIN, THIN_SHARE, SHARP = 0.05, 0.5, 0.5
 COMPILE_FROM = 5_000
 MOST_SHEETS, RATIO, INSIDE = 4_096, 4, 2.0 * np.pi
@@ -114,33 +115,37 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     """
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
-    panels = chosen.panels
+    panelled = _panelled(shape, chosen.panels, chosen)
+    _fits(panelled.count)
     while True:
-        panelled = _panelled(shape, panels, chosen)
         found, worst = _found(body, shape, panelled, density, chosen)
         if chosen.error == 0.0 or worst <= chosen.error:
             return found
-        more = _more(panels, worst / chosen.error)
-        if more is None:
+        finer = _finer(shape, panelled, worst / chosen.error, chosen)
+        if finer is None:
             said = (
                 f"ERROR NOT REACHED: {chosen.error:.2g} was asked for, {worst:.2g} is left at {panelled.count:,} panels"
             )
             return replace(found, statements=(said, *found.statements))
-        panels = more
+        panelled = finer
 
 
-def _more(panels: int, above: float) -> int | None:
+def _finer(shape: Shape, panelled: _Panelled, above: float, chosen: Options) -> _Panelled | None:
     """Panels for an error so many times smaller, at first order; None where the machine or the method ends."""
-    more = min(int(panels * float(np.clip(above**2, 1.5, 4.0))), MOST_PANELS)
-    there = physical_memory()
-    if more < 1.2 * panels or not np.isfinite(above) or (there is not None and memory_needed(more) > there):
+    if not np.isfinite(above):
         return None
-    return more
+    wanted = min(int(panelled.count * float(np.clip(above**2, 1.5, 4.0))), MOST_PANELS)
+    there = physical_memory()
+    most = MOST_PANELS if there is None else min(MOST_PANELS, int(np.sqrt(max(there - memory_needed(0), 0) / 4.0)))
+    if min(wanted, most) < 1.2 * panelled.count:
+        return None
+    finer = _panelled(shape, min(wanted, most), chosen)
+    # A family of similar meshes overshoots where panels are halved in sets of equals.
+    return finer if 1.2 * panelled.count <= finer.count <= OVERSHOOT * most else None
 
 
 def _found(body: Body, shape: Shape, panelled: _Panelled, density: float, chosen: Options) -> tuple[AddedMass, float]:
     """The matrix, and its largest relative error on the diagonal."""
-    _fits(panelled.count)
     wall = _wall(body, panelled, chosen)
     closed = [closed for closed, _ in panelled.meshes]
     thin = _thin(closed[0]) if len(closed[0]) else 0.0

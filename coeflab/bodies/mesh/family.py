@@ -21,6 +21,7 @@ from coeflab.core.machine import stage
 from coeflab.core.types import Array
 
 RATIO = 4  # of panels from rung to rung: panels half as long
+OWN = 1.4  # panels asked for over the facets of a mesh, up to which these serve as they are
 RUNGS, LEAST_STEP = 28, 3
 LEAST, HIGHEST = 0.6, 1.1
 PRICE = 0.1  # of fewer panels at the top, in units of a ratio that is off by one e-fold
@@ -35,8 +36,8 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
     ----------
     shape : Shape
     panels : int
-        Of the finest, about: from 0.6 to 1.1 times that, so that the coarser ones can be similar. Of a mesh, a quarter
-        and more of as many facets are kept, and much fewer divided, to up to twice as many, where they are compact;
+        Of the finest, about: from 0.6 to 1.1 times that, so that the coarser ones can be similar. The facets of a mesh
+        are kept where they are about as many, and much fewer divided, to up to twice as many, where they are compact;
         else long facets are split, and what comes of that is decimated.
     most : int
         1 for the finest alone, which is then not chosen for its likeness to others; or 3.
@@ -99,7 +100,7 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
         if influence.unfit_share(coarse) <= MOST_UNFIT:
             middle = influence.split_in_four(coarse)
             return (influence.split_in_four(middle), middle, coarse)[:most]
-    elif panels <= RATIO * len(own) <= RATIO * panels and influence.unfit_share(own) <= MOST_UNFIT:
+    elif len(own) <= panels <= OWN * len(own) and influence.unfit_share(own) <= MOST_UNFIT:
         found = (own, *_coarser(mesh, most - 1))
         if len(found) == most:
             return _graded(found, panels)

@@ -151,21 +151,24 @@ def _with_sheets(
 
     n, k = panels.count, sheet.count
     # Seen from the sheets themselves; behind a wall the derivative is along the mirrored direction.
-    seen = [(sheet.centre, sheet.normal, panels.centre, 1.0)]
+    views = [(sheet.centre, sheet.normal, panels.centre, 1.0)]
     if near is not None:
         ways = sheet.normal - 2.0 * (sheet.normal @ near.normal)[:, None] * near.normal
-        seen.append((near.behind(sheet.centre), ways, near.behind(panels.centre), near.factor))
-    velocity, slope = np.zeros((k, k)), np.zeros((k, 6))
+        views.append((near.behind(sheet.centre), ways, near.behind(panels.centre), near.factor))
+    velocity, slope = np.zeros((k, k), dtype=np.float32), np.zeros((k, 6))
     back, jump = np.zeros((n, k), dtype=np.float32), np.zeros((k, n), dtype=np.float32)
-    for points, way, centres, factor in seen:
-        velocity += factor * gradients(points, way, sheet)[0]
+    for points, way, centres, factor in views:
+        velocity += np.float32(factor) * gradients(points, way, sheet)[0]
         if n:
-            through, pulled, layer = gradients(points, way, panels, single=True)
-            jump += np.float32(factor) * through
+            through, pulled, layer = gradients(points, way, panels)
             slope += factor * np.hstack([pulled, np.cross(way, layer) + np.cross(points, pulled)])
-            back += factor * seen_by(centres, sheet)[0]
+            through *= np.float32(factor)
+            jump += through
+            seen = seen_by(centres, sheet)[0]
+            seen *= np.float32(factor)
+            back += seen
     own = -4.0 * np.pi * _with_turning(sheet.normal, sheet.centre) - slope
-    block = lu_factor(velocity / (2.0 * np.pi))  # the sheets' unknowns keep the unit of the others
+    block = lu_factor(velocity.astype(float) / (2.0 * np.pi))  # the sheets' unknowns keep the unit of the others
 
     def multiply(x: Array) -> Array:
         passing = lu_solve(block, _single(jump, x[:n]))

@@ -241,7 +241,6 @@ def sharp_points(vertices: Array, faces: Faces, step: float) -> Array:
 REACH = 5.0
 BLOCK = 2**18
 NEAR_BLOCK = 2**15
-WORK = 5
 
 
 def exact_integrals(targets: Array, corners: Array, normals: Array) -> tuple[Array, Array]:
@@ -316,9 +315,9 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
     reach = (REACH * panels.size) ** 2
     step = max(1, BLOCK // count)
 
-    spare: SimpleQueue[Array] = SimpleQueue()
+    spare: SimpleQueue[_Work] = SimpleQueue()
     for _ in range(os.cpu_count() or 1):
-        spare.put(np.empty((WORK, step, count)))
+        spare.put(_Work.of(step, count))
 
     def rows(start: int) -> None:
         work = spare.get()
@@ -338,21 +337,19 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
     return angles, layers
 
 
-def seen_by(targets: Array, panels: Panels) -> tuple[Array, Array]:
+def seen_by(targets: Array, panels: Panels) -> tuple[NDArray[np.float32], Array]:
     """Solid angle of every panel, (m, n), and the integral of n / r, (m, 3), from points that are no centroids of theirs."""
-    out, layer = np.empty((len(targets), panels.count)), np.empty((len(targets), 3))
+    out, layer = np.empty((len(targets), panels.count), dtype=np.float32), np.empty((len(targets), 3))
     far, reach = _Far.of(panels), (REACH * panels.size) ** 2
     step = max(1, BLOCK // panels.count)
-    work = np.empty((WORK, step, panels.count))
+    work = _Work.of(step, panels.count)
     for start in range(0, len(targets), step):
         here = slice(start, start + step)
         out[here], layer[here] = far.with_near(targets[here], panels, reach, work)
     return out, layer
 
 
-def gradients(
-    targets: Array, directions: Array, panels: Panels, single: bool = False
-) -> tuple[NDArray[np.floating], Array, Array]:
+def gradients(targets: Array, directions: Array, panels: Panels) -> tuple[NDArray[np.float32], Array, Array]:
     """Derivatives along a direction at each target: of the solid angle of every panel, and of the integral of n / r.
 
     Near panels exactly: vortex rings along their sides (Katz & Plotkin, Low-Speed Aerodynamics, 2001, 10.4.5), and the
@@ -363,8 +360,6 @@ def gradients(
     ----------
     targets, directions : (m, 3) arrays
     panels : Panels
-    single : bool
-        Keep the first of them in single precision.
 
     Returns
     -------
@@ -376,42 +371,41 @@ def gradients(
         That integral itself, m.
     """
     m, n = len(targets), panels.count
-    velocity: NDArray[np.floating] = np.empty((m, n), dtype=np.float32 if single else np.float64)
-    slope, layer = np.empty((m, 3)), np.empty((m, 3))
-    corners, normal, third = panels.corners, panels.normal, panels.area / 3.0
+    velocity, slope, layer = np.empty((m, n), dtype=np.float32), np.empty((m, 3)), np.empty((m, 3))
+    corners, third = panels.corners, (panels.area / 3.0).astype(np.float32)
     middles = (corners + np.roll(corners, -1, axis=1)).transpose(1, 2, 0) / 2.0
     squares = [_squares(y) for y in (*middles, panels.centre.T)]
-    ahead = [np.vstack([y, np.full(n, -1.0)]) for y in middles]
-    plane = np.vstack([-normal.T, np.sum(normal * panels.centre, axis=1)])
-    reach = (REACH * panels.size) ** 2
+    ahead = [np.vstack([y, np.full(n, -1.0)]).astype(np.float32) for y in middles]
+    height = np.vstack([-panels.normal.T, np.sum(panels.normal * panels.centre, axis=1)]).astype(np.float32)
+    normal, reach = panels.normal.astype(np.float32), (REACH * panels.size) ** 2
     step = max(1, BLOCK // n)
-    spare = np.empty((8, step, n))  # memory that the system hands out anew for every block costs more than the sums
+    work = _Work.of(step, n, 8)
     for start in range(0, m, step):
         x, way = targets[start : start + step], directions[start : start + step]
-        away, root, along, moved, inverse, pull, push, cubes = (one[: len(x)] for one in spare)
+        away, rest = work.square[: len(x)], work.rest[:, : len(x)]
+        square, root, along, moved, inverse, pull, push, cubes = rest
         lifted = np.hstack([x, np.sum(x**2, axis=1)[:, None], np.ones((len(x), 1))])
-        turned = np.hstack([way, np.sum(way * x, axis=1)[:, None]])
+        turned = np.hstack([way, np.sum(way * x, axis=1)[:, None]]).astype(np.float32)
         near = np.flatnonzero((np.matmul(lifted, squares[3], out=away) < reach).ravel())
-        for total in (inverse, pull, push, cubes):
-            total.fill(0.0)
+        rest[4:].fill(0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # at a middle of a side, which is near
-            for square, at in zip(squares, ahead, strict=False):
-                np.reciprocal(np.matmul(lifted, square, out=away), out=away)
-                inverse += np.sqrt(away, out=root)
-                cubes += np.multiply(root, away, out=root)
+            for to_middle, at in zip(squares, ahead, strict=False):
+                np.matmul(lifted, to_middle, out=away)
+                np.copyto(square, np.reciprocal(away, out=away), casting="same_kind")
+                inverse += np.sqrt(square, out=root)
+                cubes += np.multiply(root, square, out=root)
                 pull += np.multiply(np.matmul(turned, at, out=along), root, out=along)
-                push += np.multiply(along, away, out=moved)
-            push *= np.matmul(lifted[:, [0, 1, 2, 4]], plane, out=along)
+                push += np.multiply(along, square, out=moved)
+            push *= np.matmul(lifted[:, [0, 1, 2, 4]].astype(np.float32), height, out=along)
             push *= 3.0
-            push -= np.multiply(cubes, np.matmul(way, normal.T, out=along), out=cubes)
-        for total in (inverse, pull, push):
-            np.multiply(total, third, out=total)
+            push -= np.multiply(cubes, np.matmul(turned[:, :3], normal.T, out=along), out=cubes)
+        rest[4:7] *= third
         flat = [total.ravel() for total in (inverse, pull, push)]
         for part in range(0, len(near), NEAR_BLOCK):
             place = near[part : part + NEAR_BLOCK]
             i, j = np.divmod(place, n)
-            angle, flat[0][place] = exact_integrals(x[i], corners[j], normal[j])
-            flat[1][place] = np.einsum("ni,ni->n", _pull(x[i], corners[j], normal[j], angle), way[i])
+            angle, flat[0][place] = exact_integrals(x[i], corners[j], panels.normal[j])
+            flat[1][place] = np.einsum("ni,ni->n", _pull(x[i], corners[j], panels.normal[j], angle), way[i])
             flat[2][place] = np.einsum("ni,ni->n", _ring(x[i], corners[j]), way[i])
         here = slice(start, start + step)
         velocity[here], slope[here], layer[here] = push, pull @ normal, inverse @ normal
@@ -449,6 +443,27 @@ def _pull(targets: Array, corners: Array, normals: Array, angle: Array) -> Array
     return total
 
 
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """Memory for blocks of rows: what the system has to hand out anew for every block costs more than the sums.
+
+    Attributes
+    ----------
+    square : (m, n) array
+        Of distances, in double precision: small against the body's size.
+    rest : (k, m, n) array
+        In single precision, as what comes of it is kept.
+    """
+
+    square: Array
+    rest: NDArray[np.float32]
+
+    @classmethod
+    def of(cls, rows: int, columns: int, arrays: int = 5) -> _Work:
+        """For blocks of at most so many rows."""
+        return cls(np.empty((rows, columns)), np.empty((arrays, rows, columns), dtype=np.float32))
+
+
 @brief
 @dataclass(frozen=True, slots=True)
 class _Far:
@@ -463,14 +478,14 @@ class _Far:
     height : (4, n) array
         Of the plane over the target, times the panel's area.
     weighted : (n, 3) array
-        Normal times area.
+        Normal times area. All but the first in single precision, as the angles that come of them are kept.
     """
 
     square: Array
-    inverse: Array
-    solid: Array
-    height: Array
-    weighted: Array
+    inverse: NDArray[np.float32]
+    solid: NDArray[np.float32]
+    height: NDArray[np.float32]
+    weighted: NDArray[np.float32]
 
     @classmethod
     def of(cls, panels: Panels) -> _Far:
@@ -490,23 +505,24 @@ class _Far:
         trace = np.sum(panels.spread**2, axis=(0, 2))[:, None] * square
         height = np.hstack([-panels.normal, np.sum(panels.normal * c, axis=1)[:, None]]) * area
         inverse, solid = 0.5 * (spread - trace), 2.5 * spread - 1.5 * trace
-        square, inverse, solid, height = (np.ascontiguousarray(a.T) for a in (square, inverse, solid, height))
-        return cls(square, inverse, solid, height, panels.normal * area)
+        single = (np.ascontiguousarray(a.T, dtype=np.float32) for a in (inverse, solid, height))
+        return cls(np.ascontiguousarray(square.T), *single, (panels.normal * area).astype(np.float32))
 
-    def with_near(self, targets: Array, panels: Panels, reach: Array, work: Array) -> tuple[Array, Array]:
+    def with_near(
+        self, targets: Array, panels: Panels, reach: Array, work: _Work
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Solid angles (m, n) and the integrals of n / r (m, 3): far panels by their moments, near ones exactly.
 
-        The angles lie in ``work``, (`WORK`, m or more, n): memory that the system has to hand out anew for every block costs
-        more than the sums.
+        The angles lie in ``work``, for at least as many rows.
         """
         m, n = len(targets), panels.count
-        square, root, solid, height, inverse = (one[:m] for one in work)
+        away, (square, root, solid, height, inverse) = work.square[:m], (one[:m] for one in work.rest)
         rows, columns = np.triu_indices(3)
-        lifted = np.hstack([targets[:, rows] * targets[:, columns], targets, np.ones((m, 1))])
-        np.matmul(lifted, self.square, out=square)
-        near = np.flatnonzero((square < reach).ravel())
+        exact = np.hstack([targets[:, rows] * targets[:, columns], targets, np.ones((m, 1))])
+        near = np.flatnonzero((np.matmul(exact, self.square, out=away) < reach).ravel())
+        lifted = exact.astype(np.float32)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # at a centroid, which is near
-            np.reciprocal(square, out=square)
+            np.copyto(square, np.reciprocal(away, out=away), casting="same_kind")
             np.sqrt(square, out=root)
             np.matmul(lifted, self.solid, out=solid)
             np.matmul(lifted, self.inverse, out=inverse)
