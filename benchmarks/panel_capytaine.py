@@ -2,8 +2,8 @@
 
 Usage: python panel_capytaine.py PYTHON [PANELS]
 PYTHON is an interpreter that has capytaine 3; PANELS are 8,000 unless given. A 6:1 spheroid in unbounded fluid; the same one
-diameter and a half below a free surface at infinite frequency, by images; and a body with a fin, which capytaine must have
-as a thin box and we have as dipole panels, as many panels on either side, timed only. Every line is a process of its own,
+diameter and a half below a free surface at infinite frequency, by images; and a body with a fin, which we have as dipole
+panels and capytaine must have as a thin box: our panels on both of its sides, and its rim; timed only, as the bodies differ. Every line is a process of its own,
 for its peak memory. Seconds by the clock suffer from what else the machine does; those of the processor, over all threads,
 do not.
 """
@@ -26,17 +26,30 @@ from coeflab.bodies.added_mass.panel import _rectangle
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.panels.added_mass import Wall, panel_added_mass
 from coeflab.bodies.panels.influence import bisected
-from coeflab.bodies.shape import Box, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.bodies.shape import Ellipsoid, Form, Part, Parts, Plate
 
 PEER = Path(__file__).with_name("capytaine_added_mass.py")
 AXES, DEPTH = (6.0, 1.0, 1.0), 3.0
-FIN, SHARE = (2.0, 4.0, 0.05), 0.1
+FIN, THICK, SHARE = (2.0, 4.0), 0.05, 0.1
 FASTER, MEMORY, EQUAL = 20.0, 0.2, 0.002
 
 
 def triangles(form: Form, panels: int, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> np.ndarray:
     mesh = meshed(Parts((Part("p", form, np.array(at), np.eye(3)),)), panels)
     return mesh.vertices[mesh.faces]
+
+
+def thin_box(plate: np.ndarray) -> np.ndarray:
+    """The closed surface that dipole panels in a plane z = const stand for: they on both sides, and a rim of two a side."""
+    up, down = plate + np.array([0.0, 0.0, THICK / 2.0]), plate - np.array([0.0, 0.0, THICK / 2.0])
+    if np.cross(up[0, 1] - up[0, 0], up[0, 2] - up[0, 0])[2] < 0.0:
+        up, down = up[:, ::-1], down[:, ::-1]
+    sides = np.stack([up, np.roll(up, -1, axis=1)], axis=2).reshape(-1, 2, 3)
+    outer = np.isclose(np.abs(sides[:, :, :2]), [FIN[0] / 2.0, FIN[1] / 2.0]).all(axis=1).any(axis=1)
+    a, b = sides[outer].transpose(1, 0, 2)
+    below = np.array([0.0, 0.0, THICK])
+    rim = [np.stack([b, a, a - below], axis=1), np.stack([b, a - below, b - below], axis=1)]
+    return np.concatenate([up, down[:, ::-1], *rim])
 
 
 def one(path: str, depth: float) -> None:
@@ -61,8 +74,8 @@ def compare(python: str, panels: int) -> None:
     print(f"{'':34s}{'panels':>7s}{'clock s':>9s}{'proc. s':>9s}{'MiB':>7s}")
     body = triangles(Ellipsoid(*AXES), panels)
     hull, fin = triangles(Ellipsoid(*AXES), int((1.0 - SHARE) * panels)), int(SHARE * panels)
-    plate = bisected(_rectangle(Part("fin", Plate(*FIN[:2]), np.array([0.0, 0.0, 5.0]), np.eye(3))), fin)
-    thick = np.concatenate([hull, triangles(Box(*FIN), fin, (0.0, 0.0, 5.0))])
+    plate = bisected(_rectangle(Part("fin", Plate(*FIN), np.array([0.0, 0.0, 5.0]), np.eye(3))), fin)
+    thick = np.concatenate([hull, thin_box(plate)])
     cases = (
         ("unbounded", body, None, np.inf, body),
         ("free surface, infinite frequency", body, None, DEPTH, body),
