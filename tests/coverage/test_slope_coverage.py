@@ -7,7 +7,9 @@ import re
 
 import numpy as np
 import pytest
+from scipy import stats
 
+from coeflab.core.types import Array
 from tests.coverage.slope_campaigns import (
     DESIGNS,
     FAMILIES,
@@ -125,3 +127,30 @@ def test_what_people_read_is_what_the_table_says(rows: list[dict[str, str]], pag
 def test_what_is_printed_covers_as_the_ends_of_the_mixture_do(rows: list[dict[str, str]]) -> None:
     printed, ends = (np.array([float(r[c]) for r in rows]) for c in ("cover %", "lower to upper %"))
     assert printed.mean() >= ends.mean() - 0.3
+
+
+def test_no_interval_is_shorter_than_the_page_says() -> None:
+    """Pratt's bound: 2 (p z + density(z)) standard deviations, z the quantile of p, of least squares with all terms."""
+    text = (TABLE.parents[2] / "docs" / "slope_at_origin.md").read_text()
+
+    def deviation(x: Array, columns: list[Array]) -> float:
+        r = np.linalg.qr(np.stack(columns, 1), mode="r")
+        return float(np.linalg.norm(np.linalg.solve(r.T, np.eye(len(columns))[0])))
+
+    def shortest(p: float) -> float:
+        z = stats.norm.ppf(p)
+        return float((p * z + stats.norm.pdf(z)) / stats.norm.ppf(0.975))
+
+    for name, own in (("line", ()), ("v\\|v\\|", (1,)), ("v^3", (2,))):
+        cells = []
+        for p in (0.95, 0.9):
+            for low in (-1.0, 0.0):
+                ratios = []
+                for n in (9, 23):
+                    x = np.linspace(low, 1.0, n)
+                    every = [x, x * np.abs(x), x**3, np.ones(n), *([x**2] if low else [])]
+                    ratios.append(deviation(x, every) / deviation(x, [x, *(every[i] for i in own)]))
+                cells.append(" to ".join(f"{shortest(p) * r:#.2g}".rstrip(".") for r in sorted(ratios)))
+        assert f"| {name} | " + " | ".join(cells) + " |" in text
+    x = np.linspace(-1.0, 1.0, 15)
+    assert f"a line needs {shortest(0.95) * deviation(x, [x, x * np.abs(x)]) / deviation(x, [x]):.1f} times" in text
