@@ -57,6 +57,26 @@ _SUMMARY = re.compile(
 )
 
 
+class WithPlugin(TyperCommand):
+    """A command that hands further options to a plugin: a shell is offered those of the plugin that is named."""
+
+    registry, parameter = "", ""
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        """The command's own options, then the plugin's."""
+        found = super().shell_complete(ctx, incomplete)
+        if not incomplete.startswith("--") or not self.registry:
+            return found
+        from coeflab.cli.complete import options_of
+
+        own = {item.value for item in found}
+        named = str(ctx.params.get(self.parameter) or "")
+        click = TyperCommand.__mro__[1].__module__.rpartition(".")[0]  # typer brings its own, older ones the library
+        kind = import_module(f"{click}.shell_completion").CompletionItem
+        more = options_of(self.registry, named, incomplete)
+        return [*found, *(kind(option, help=meaning) for option, meaning in more if option not in own)]
+
+
 class Commands(TyperGroup):
     """The commands, each imported when it is asked for; their list shows the first line of what each file says of itself."""
 
@@ -98,7 +118,8 @@ def _built(name: str) -> Any:
     if one is None:
         one = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)
         settings = getattr(module, "CONTEXT", None)
-        one.command(name=name, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
+        kind = type("WithPlugin", (WithPlugin,), getattr(module, "PLUGIN", {}))
+        one.command(name=name, cls=kind, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
     out = typer.main.get_command(one)
     out.name = name
     if name not in WITHOUT_TABLES:

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 
+DIRECTIONS = (("forward", "aft"), ("starboard", "port"), ("down", "up"))
+LANGUAGES = ("c", "python", "latex", "octave")
+
 
 def names(words: Iterable[str], begun: str) -> list[str]:
     """Words that begin so, in order."""
@@ -162,6 +165,72 @@ def integrators(incomplete: str) -> list[str]:
 def kernels(incomplete: str) -> list[str]:
     """Kernels of many motions."""
     return names(("auto", "compiled", "numpy"), incomplete)
+
+
+def accelerations(incomplete: str) -> list[str]:
+    """Where coefficients of acceleration come from."""
+    from coeflab.vehicle.inertia import ACCELERATIONS
+
+    return names(ACCELERATIONS, incomplete)
+
+
+def units(incomplete: str) -> list[str]:
+    """Units of a mesh file."""
+    return names(("m", "cm", "mm", "in", "ft"), incomplete)
+
+
+def axes(incomplete: str) -> list[str]:
+    """Axes of a mesh file; behind a comma directions that are left."""
+    ahead, comma, last = incomplete.rpartition(",")
+    taken = set(ahead.split(","))
+    left = [word for pair in DIRECTIONS if not taken & set(pair) for word in pair]
+    words = left if comma else ("FRD", "FLU", "CFD", *left)
+    return [f"{ahead}{comma}{word}" for word in names(words, last)]
+
+
+def symbols(incomplete: str) -> list[str]:
+    """Derivatives of forces and moments by velocities, rates and control angles, without primes."""
+    from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
+
+    return names((f"{force}{motion}" for force in COMPONENTS for motion in (*MOTIONS, *CONTROLS)), incomplete)
+
+
+def languages(incomplete: str) -> list[str]:
+    """Languages of derived equations."""
+    return names(LANGUAGES, incomplete)
+
+
+def arms(incomplete: str) -> list[str]:
+    """Shipped vehicles with an arm, and paths."""
+    from coeflab.core.files import shipped
+    from coeflab.motion.multibody.arm_file import is_arm
+
+    return _or_paths(
+        [name for name in _shipped("geometry", "body.toml") if is_arm(shipped("geometry") / name)], incomplete
+    )
+
+
+def options_of(registry: str, name: str, begun: str) -> list[tuple[str, str]]:
+    """Options of a plugin as they are typed, with their meaning; none where no plugin has that name.
+
+    Parameters
+    ----------
+    registry : str
+        Module below coeflab, a dot, its registry: ``fits.FITS``.
+    name : str
+        Of the plugin.
+    begun : str
+        What stands on the command line, from ``--`` on.
+    """
+    from coeflab.core.options import described
+
+    package, _, known = registry.rpartition(".")
+    plugins = getattr(import_module(f"coeflab.{package}"), known)
+    if name not in plugins.names():
+        return []
+    of_plugin = described(plugins.load(name).Options)
+    typed = {f"--{o.name.replace('_', '-')}": o.meaning for o in of_plugin}
+    return [(option, typed[option]) for option in names(typed, begun)]
 
 
 def optimizers(incomplete: str) -> list[str]:

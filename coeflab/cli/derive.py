@@ -20,10 +20,16 @@ def command(
     body: str = typer.Argument(
         ...,
         metavar="BODY",
-        autocompletion=complete.bodies,
+        autocompletion=complete.arms,
         help="A body.toml of a vehicle with an arm, its folder, or a shipped one: urv_puma.",
     ),
-    to: str = typer.Option(..., "--to", metavar="c|python|latex|octave", help="Language; octave is MATLAB too."),
+    to: str = typer.Option(
+        ...,
+        "--to",
+        metavar="c|python|latex|octave",
+        autocompletion=complete.languages,
+        help="Language; octave is MATLAB too.",
+    ),
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder for the files; default NAME.LANGUAGE in the current folder."
     ),
@@ -44,9 +50,8 @@ def command(
     from coeflab.core.wording import identifier
     from coeflab.motion.multibody.arm_file import BODY, read_chain
 
-    languages = ("c", "python", "latex", "octave")
-    if to not in languages:
-        raise InputError(shown(to), ", ".join(languages), column="--to")
+    if to not in complete.LANGUAGES:
+        raise InputError(shown(to), ", ".join(complete.LANGUAGES), column="--to")
     place = located(body, "geometry")
     file = place / BODY if place.is_dir() else place
     chain = read_chain(file)

@@ -18,8 +18,16 @@ def command(
         autocompletion=complete.bodies,
         help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
     ),
-    unit: str = typer.Option("", "--unit", metavar="UNIT", help="Of a mesh file: m, mm, in ..."),
-    axes: str = typer.Option("", "--axes", metavar="AXES", help="Of a mesh file: FRD, FLU, CFD or forward,port,up."),
+    unit: str = typer.Option(
+        "", "--unit", metavar="UNIT", autocompletion=complete.units, help="Of a mesh file: m, mm, in ..."
+    ),
+    axes: str = typer.Option(
+        "",
+        "--axes",
+        metavar="AXES",
+        autocompletion=complete.axes,
+        help="Of a mesh file: FRD, FLU, CFD or forward,port,up.",
+    ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
     fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
     sheets: bool = typer.Option(

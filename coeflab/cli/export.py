@@ -24,7 +24,9 @@ def command(
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although the target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
-    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Write what a simulator loads, and say what is lost.

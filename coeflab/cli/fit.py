@@ -46,7 +46,10 @@ def command(
         [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
     ),
     symbol: list[str] = typer.Option(
-        [], metavar="SYMBOL", help="Only this coefficient, by largest setting and by other forms; repeatable."
+        [],
+        metavar="SYMBOL",
+        autocompletion=complete.symbols,
+        help="Only this coefficient, by largest setting and by other forms; repeatable.",
     ),
     length: str = typer.Option(
         "", metavar="LENGTH", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'

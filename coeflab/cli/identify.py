@@ -45,7 +45,9 @@ def command(
     ),
     asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
     fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
-    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
     optimizer: str = typer.Option(
         "stlsq", metavar="NAME", autocompletion=complete.optimizers, help="stlsq or sr3 of pysindy."
     ),

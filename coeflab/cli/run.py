@@ -35,11 +35,11 @@ def command(
     Prints the answer first; --wide prints every table.
     """
     from coeflab.core.errors import InputError
-    from coeflab.core.files import named, typed
-    from coeflab.study.plan import read_plan
+    from coeflab.core.files import typed
+    from coeflab.study.plan import plan_at, read_plan
 
     plan = typed(plan)
-    file = plan / "plan.toml" if plan.is_dir() else named(plan, "plan.toml")
+    file = plan_at(plan)
     try:
         carry_out(read_plan(file), out, json, strict, str(plan))
     except InputError as why:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
+PLUGIN = {"registry": "motion.manoeuvres.MANOEUVRES", "parameter": "manoeuvre"}  # whose options it takes as well
 TABLES = ("csv", "parquet")
 TAKEN_BY_ARM = {"file", "manoeuvre", "current", "record", "to", "out", "json"}
 
@@ -50,7 +51,9 @@ def command(
         0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
     to: str = typer.Option(
         "csv", metavar="FORMAT", autocompletion=complete.tables, help="Format of the motion: csv or parquet."
     ),

@@ -47,7 +47,9 @@ def command(
         "for tells.",
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
     starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
     seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),

@@ -51,7 +51,9 @@ def command(
         help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
     out: Path | None = typer.Option(
         None, metavar="FOLDER", help="Folder for members and figure; nothing is written without it."
     ),

@@ -33,9 +33,14 @@ def command(
     inertia: str = typer.Option(
         "", metavar="IX,IY,IZ", help="About the centre of gravity, kg m^2.", show_default=False
     ),
-    unit: str = typer.Option("", metavar="UNIT", help="Unit of a mesh file: m, mm, in ..."),
+    unit: str = typer.Option(
+        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
+    ),
     axes: str = typer.Option(
-        "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
+        "",
+        metavar="AXES",
+        autocompletion=complete.axes,
+        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
     ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),

@@ -14,7 +14,7 @@ from math import isfinite, isnan
 from textwrap import wrap
 from typing import NamedTuple
 
-from coeflab.core.types import brief
+from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import Verbatim
 
 
@@ -294,7 +294,6 @@ class Severity(StrEnum):
     FAIL = "fail"
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Check:
     """One finding.
@@ -320,6 +319,13 @@ class Check:
     statistic: str
     rule: str
     comment: str
+
+    def __repr__(self) -> str:
+        return in_angles(self, f"{self.severity}, {self.name}: {self.subject}: {self.statistic}")
+
+    def _repr_html_(self) -> str:
+        """What was found and what it means, for notebooks."""
+        return html_by("finding", self)
 
 
 def html_by(renderer: str, noun: object) -> str:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.core.errors import CoeflabError
+from coeflab.core.several import labels
 from coeflab.core.table import ABSENT, Severity, Table, number, percent
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
@@ -27,8 +28,11 @@ from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
+    from coeflab.core.several import Several
+    from coeflab.core.table import Check
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.fits.uncertainty.budget import Budget
     from coeflab.law.added_mass import AddedMass
     from coeflab.motion.manoeuvre import Simulation
     from coeflab.motion.trajectory import Trajectory
@@ -65,7 +69,7 @@ STYLE = """
 OF_SEVERITY = {Severity.PASS: "#1f9370", Severity.NOTE: "#8a97a5", Severity.WARN: "#c98a1b", Severity.FAIL: "#d6453a"}
 OURS, AGAINST = "#2f86c5", "#d2691e"
 DRAWN = "noun"
-LONG, MOST_ROWS, MOST_NOTES = 34, 24, 4
+LONG, MOST_ROWS, MOST_NOTES, MOST_PICTURES = 34, 24, 4, 2
 WIDE, TALL, REACH = 100.0, 14.0, 2.0
 ACROSS = 1.12  # pixels a point of a drawing at the most
 DRAFT = "coeflab-draft"  # stands for the digest of the card, which ids begin with
@@ -324,6 +328,93 @@ def model(found: FittedModel) -> tuple[Part, ...]:
 
     drawn = next(iter(model_figures(found, DRAWN)), None)
     return (_parts(_picture(drawn), f"<div>{_shown(tables.terms(found))}</div>"),)
+
+
+@_card
+def budget(found: Budget) -> tuple[Part, ...]:
+    """The parts of a U95 as bars and in a table."""
+    from coeflab.report.sections.campaign import tornado_figure
+    from coeflab.report.tables.uncertainty import budget as of_budget
+
+    figure = replace(tornado_figure(found, DRAWN), caption="") if found.parts else None
+    return (_parts(_picture(figure), f"<div>{_shown(of_budget(found))}</div>"),)
+
+
+@_card
+def finding(found: Check) -> tuple[Part, ...]:
+    """What a check found, what it was held against, and what it means."""
+    return (
+        _heading(f"{found.severity.capitalize()}: {found.subject}", found.name.replace("_", " ")),
+        _notes([t for t in (found.statistic, f"Rule: {found.rule}" if found.rule else "", found.comment) if t]),
+    )
+
+
+@_card
+def several(found: Several[Any]) -> tuple[Part, ...]:
+    """Nouns of one kind in a table, a row each; the first of those that have a picture with it."""
+    kinds = {type(noun).__name__ for noun in found}
+    made = _TOGETHER.get(next(iter(kinds)), _lines) if len(kinds) == 1 else _lines
+    return made(found)
+
+
+def _lines(found: Sequence[Any]) -> tuple[Part, ...]:
+    """Of other nouns what each says in a line."""
+    rows = tuple((next(iter(labels(noun)), ABSENT), str(noun)) for noun in found)
+    return (_shown(Table(f"{len(found)} together", ("", "what it holds"), rows, (), frozenset({0, 1}))),)
+
+
+def _coefficients(found: Sequence[Coefficient]) -> tuple[Part, ...]:
+    valued = sum(c.value is not None for c in found)
+    return (_coefficient_grid(found, f"{_many(len(found), 'coefficient')}, {valued} with a value"),)
+
+
+def _tables(found: Sequence[ForceTable]) -> tuple[Part, ...]:
+    from coeflab.report.figures.nouns import table_figure
+
+    rows = tuple(
+        (t.name, f"{len(t)}", " ".join(t.forces), " ".join(t.varies) or ABSENT, t.body, t.source.citation)
+        for t in found
+    )
+    shown = Table(_many(len(found), "table"), ("", "rows", "components", "over", "body", "source"), rows, (),
+                  frozenset({0, 2, 3, 4, 5}))  # fmt: skip
+    return (_parts(*_pictures(table_figure, found), f"<div>{_shown(shown)}</div>"),)
+
+
+def _files(found: Sequence[ParameterFile]) -> tuple[Part, ...]:
+    from coeflab.report.figures.nouns import law_figure
+
+    rows = []
+    for p in found:
+        valued = sum(c.value is not None for c in p.coefficients)
+        held = ("mass", p.mass), ("added mass", p.added_mass), ("hydrostatics", p.hydrostatics)
+        rows.append((p.name, p.body, f"{valued} of {len(p.coefficients)}", f"{len(p.models)}",
+                     ", ".join(name for name, value in held if value) or ABSENT))  # fmt: skip
+    headers = ("", "body", "coefficients with a value", "fitted tables", "with")
+    shown = Table(_many(len(found), "parameter file"), headers, tuple(rows), (), frozenset({0, 1, 4}))
+    return (_parts(*_pictures(law_figure, found), f"<div>{_shown(shown)}</div>"),)
+
+
+def _pictures(draw: Callable[[Any, str], Figure | None], found: Sequence[Any]) -> list[Part]:
+    """Of the first nouns, each with an anchor and the name of its own."""
+    drawn = [(noun.name, draw(noun, f"{DRAWN}-{i}")) for i, noun in enumerate(found[:MOST_PICTURES])]
+    return [_picture(replace(figure, caption=name)) for name, figure in drawn if figure is not None]
+
+
+def _findings(found: Sequence[Check]) -> tuple[Part, ...]:
+    from coeflab.report.tables.results import checks
+
+    return (_shown(replace(checks(found), title=_many(len(found), "finding"))),)
+
+
+def _budgets(found: Sequence[Budget]) -> tuple[Part, ...]:
+    from coeflab.report.tables.uncertainty import overview
+
+    return (_shown(overview(found)),)
+
+
+_TOGETHER: dict[str, Callable[[Any], tuple[Part, ...]]] = {
+    "Coefficient": _coefficients, "ForceTable": _tables, "ParameterFile": _files, "Check": _findings, "Budget": _budgets,
+}  # fmt: skip
 
 
 @_card

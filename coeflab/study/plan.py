@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located, named
+from coeflab.core.files import located, named, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.formats.export import PlannedExport
@@ -402,6 +402,22 @@ def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
     return PlannedTow(
         keys.name, keys.body, campaign, tuple(absent), keys.fourfold, keys.experiment, keys.columns, keys.note, added
     )
+
+
+def plan_at(place: str | Path) -> Path:
+    """The plan.toml that a person means: its path, its folder, or a shipped name such as suboff.
+
+    Parameters
+    ----------
+    place : str or Path
+
+    Raises
+    ------
+    InputError
+        No path of a file, and no shipped name.
+    """
+    path = typed(place)
+    return path / "plan.toml" if path.is_dir() else named(path, "plan.toml")
 
 
 def read_plan(path: Path) -> Plan:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import InputFile
+from coeflab.core.several import ByName, Several
 from coeflab.core.table import Check, Severity, html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.fits.results.fit_result import FitResult
@@ -164,6 +164,10 @@ class FromShape:
     carried: tuple[Carried, ...] = ()
 
 
+TOGETHER = ("tables", "fits", "missing", "references", "comparisons", "inputs", "budgets", "checks", "exports", "refused",
+            "manoeuvres")  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.
@@ -171,6 +175,9 @@ class Study:
     ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
     planned exports that were not made; all else stands. ``unfitted`` says of the campaign of a tow why a fit of it could not
     be made. ``shape`` is there where no table is: then the fit is that of the estimates.
+
+    Nouns of one kind are `Several` and `ByName`, whatever tuple or mapping they were given as: a tuple and a mapping that
+    take names as well, ``study.coefficients["Yv"]``, and show themselves in a notebook.
     """
 
     plan: Plan
@@ -192,9 +199,10 @@ class Study:
     shape: FromShape | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "unfitted", MappingProxyType(dict(self.unfitted)))
-        object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
-        object.__setattr__(self, "hulls", MappingProxyType(dict(self.hulls)))
+        for name in TOGETHER:
+            object.__setattr__(self, name, Several(getattr(self, name)))
+        for name in ("unfitted", "parameter_files", "hulls"):
+            object.__setattr__(self, name, ByName(getattr(self, name)))
 
     def __repr__(self) -> str:
         judged = [c.passed for c in self.comparisons if c.passed is not None]
@@ -208,9 +216,9 @@ class Study:
         return html_by("study", self)
 
     @property
-    def coefficients(self) -> tuple[Coefficient, ...]:
+    def coefficients(self) -> Several[Coefficient]:
         """All fitted coefficients in the plan's order, then those that no table gives."""
-        return tuple(c for f in self.fits for c in f.coefficients.coefficients) + self.missing
+        return Several((*(c for f in self.fits for c in f.coefficients.coefficients), *self.missing))
 
     @property
     def by_body(self) -> Mapping[str, tuple[str, ...]]:

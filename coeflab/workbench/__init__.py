@@ -32,6 +32,7 @@ from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
+from coeflab.study.plan import plan_at, read_plan
 from coeflab.study.study import Plan, PlannedJoint, Study
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
@@ -78,12 +79,13 @@ COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at o
 
 
 @one_thread()
-def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
+def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     """Carry out a plan.
 
     Parameters
     ----------
-    plan : Plan
+    plan : Plan, str or Path
+        A plan, the path of a plan.toml or of its folder, or the name of a shipped one: ``coeflab.run("suboff")``.
     progress : callable, optional
         Means in words what happens.
 
@@ -97,6 +99,8 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     CoeflabError
         Input that cannot be used.
     """
+    if not isinstance(plan, Plan):
+        return _of_file(plan, progress)
     refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
         return checked(_of_shape(plan, progress), progress)
@@ -167,6 +171,22 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         unfitted=unfitted,
     )
     return checked(study, progress)
+
+
+def _of_file(place: str | Path, progress: Progress) -> Study:
+    """The study of the plan at a path; what an option of a fit is to blame for names the file."""
+    if not isinstance(place, (str, Path)):
+        raise InputError(
+            f"run({type(place).__name__})", "a Plan, the path of a plan.toml, or the name of a shipped plan",
+            advice="A publication that coeflab.validation reproduces is done already; a campaign or a body goes into a Plan.",
+        )  # fmt: skip
+    file = plan_at(place)
+    try:
+        return run(read_plan(file), progress)
+    except InputError as why:
+        if why.file is None:
+            why.file = file
+        raise
 
 
 def _of_shape(plan: Plan, progress: Progress) -> Study:

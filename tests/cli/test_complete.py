@@ -25,6 +25,15 @@ from tests.cli.conftest import Run
         (complete.reports, "html,pd", ["html,pdf"]),
         (complete.methods, "pan", ["panel"]),
         (schema.kinds, "camp", ["campaign"]),
+        (complete.accelerations, "comp", ["computed"]),
+        (complete.units, "m", ["m", "mm"]),
+        (complete.axes, "F", ["FLU", "FRD"]),
+        (complete.axes, "forward,p", ["forward,port"]),
+        (complete.axes, "forward,port,", ["forward,port,down", "forward,port,up"]),
+        (complete.symbols, "Yd", ["Ydb", "Ydr", "Yds"]),
+        (complete.languages, "la", ["latex"]),
+        (complete.arms, "urv_", ["urv_puma"]),
+        (complete.arms, "remus", []),
     ],
 )
 def test_names_that_begin_so(offer, begun: str, offered: list[str]) -> None:
@@ -44,6 +53,25 @@ def test_a_shell_is_answered(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setenv("COMP_WORDS", "coeflab export a.json --to xd")
     monkeypatch.setenv("COMP_CWORD", "4")
     assert coeflab().stdout.split() == ["xdyn"]
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("coeflab simulate a.json --manoeuvre zigzag --rud", ["--rudder"]),
+        ("coeflab simulate a.json --integ", ["--integrator"]),
+        ("coeflab simulate a.json --manoeuvre nothing --rud", []),
+        ("coeflab derive urv_puma --to o", ["octave"]),
+        ("coeflab fit suboff_roddy_2 --symbol Yd", ["Ydb", "Ydr", "Yds"]),
+    ],
+)
+def test_a_shell_is_offered_values_and_options(
+    coeflab: Run, monkeypatch: pytest.MonkeyPatch, line: str, offered: list[str]
+) -> None:
+    monkeypatch.setenv("_COEFLAB_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", line)
+    monkeypatch.setenv("COMP_CWORD", str(len(line.split()) - 1))
+    assert coeflab().stdout.split() == offered
 
 
 def test_every_plan_and_parameter_file_is_offered() -> None:

@@ -13,7 +13,8 @@ from coeflab.bodies.readers import read_body
 from coeflab.cli.show import plain_lines
 from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
-from coeflab.core.table import Table
+from coeflab.core.several import ByName, Several
+from coeflab.core.table import Check, Severity, Table
 from coeflab.fits import FITS
 from coeflab.law.added_mass import AddedMass
 from coeflab.motion.simulation import simulate
@@ -59,6 +60,8 @@ def nouns():
     matrix = AddedMass(np.diag([1.0, 20.0, 20.0, 0.0, 5.0, 5.0]), np.zeros(3), Datum(HOSTILE), "body", "panel")
     body = read_body(shipped("geometry") / "spheroid_example" / "body.toml")
     fit = study.fits[0]
+    checks = Several((Check("symmetry", HOSTILE, Severity.PASS, "even", "", "as it should be"),
+                      Check("signs", f"{HOSTILE} Yv'", Severity.FAIL, "Yv' = 0.1", "below zero", "axes")))  # fmt: skip
     return {
         "study": (study, "<Study small: ", "<svg"),
         "answer": (answer(study), "<Answer ", "<svg"),
@@ -74,11 +77,21 @@ def nouns():
         "trajectory": (run.trajectory, "<Trajectory 2 s in ", "<svg"),
         "simulation": (run, "<Simulation straight_run of ", "<svg"),
         "figure": (answer(study).slope, "Figure(", "<svg"),
+        "check": (checks[1], "<Check fail, signs: ", "axes"),
+        "budget": (study.budgets[0], "<Budget Yv' = -0.02981 +- 0.00013 by 2 parts, most of it ", "<svg"),
+        "coefficients": (study.coefficients, "<Several ", "<svg"),
+        "tables": (study.tables, "<Several 1 ForceTable: ", "<svg"),
+        "checks": (checks, "<Several 2 Check: symmetry, signs>", "below zero"),
+        "budgets": (study.budgets, "<Several ", "not assessed"),
+        "fits": (study.fits, "<Several 1 FitResult: ", "FitResult slope_at_origin"),
+        "files": (ByName({file.name: file}), "<ByName 1 ParameterFile: ", "coefficients with a value"),
+        "nothing": (Several(), "()", "0 together"),
     }
 
 
 NAMES = ("study", "answer", "coefficient", "set", "fit", "models", "model", "force table", "body", "added mass",
-         "parameters", "trajectory", "simulation", "figure")  # fmt: skip
+         "parameters", "trajectory", "simulation", "figure", "check", "budget", "coefficients", "tables", "checks", "budgets",
+         "fits", "files", "nothing")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -97,6 +110,44 @@ def test_a_noun_is_a_line_and_a_card(nouns, name):
 
 def test_every_noun_of_the_contract_is_here(nouns):
     assert set(nouns) == set(NAMES)
+
+
+@pytest.mark.parametrize("name", ["check", "budget", "coefficients", "tables", "checks", "budgets", "fits", "files"])
+def test_what_a_study_holds_prints_a_short_line(nouns, name):
+    assert len(repr(nouns[name][0])) < 200
+
+
+def test_nouns_together_are_asked_by_name_and_stay_a_tuple(nouns):
+    study = nouns["study"][0]
+    assert isinstance(study.coefficients, tuple)
+    assert study.coefficients["Yv"] is study.coefficients["Yv'"] is study.fits[0].coefficients["Yv"]
+    assert study.coefficients[0] is study.coefficients[:1][0]
+    assert "Yv" in study.coefficients
+    assert study.coefficients[0] in study.coefficients
+    assert "Zw" not in study.coefficients
+    assert study.tables[HOSTILE] is study.tables[0]
+    assert study.fits["slope_at_origin"] is study.fits[0]
+    twice = Several((*study.coefficients, *study.coefficients))
+    assert len(twice.of("Yv'")) == 2
+    with pytest.raises(KeyError, match=r"2 go by .Yv.: \.of\(.*Yv.*\) has them all"):
+        twice["Yv"]
+    with pytest.raises(KeyError, match=r"no .Zw. among Yv, Nv"):
+        study.coefficients["Zw"]
+    both = (*nouns["checks"][0], *study.budgets)
+    assert "Several" not in repr(both[:0])
+    assert "symmetry" in Several(both)._repr_html_()
+
+
+def test_nouns_by_name_cannot_be_changed(nouns):
+    files = nouns["files"][0]
+    (name,) = files
+    assert dict(files) == {name: files[name]}
+    with pytest.raises(KeyError, match=r"no .x. among "):
+        files["x"]
+    with pytest.raises(TypeError):
+        files["x"] = files[name]
+    assert files.get("x") is None
+    assert repr(ByName({})) == "{}"
 
 
 def test_cards_of_one_notebook_share_no_id(nouns):

@@ -17,7 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.table import html_by, plus_minus
+from coeflab.core.types import Array, in_angles
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
@@ -208,7 +209,6 @@ class BudgetPart:
     share: float | None
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Budget:
     """The budget of one coefficient.
@@ -250,6 +250,16 @@ class Budget:
     window: float | None
     unassessed: tuple[str, ...]
     studies: tuple[VariantStudy, ...] = ()
+
+    def __repr__(self) -> str:
+        largest = max(self.parts, key=lambda p: p.half_width, default=None)
+        most = "" if largest is None else f", most of it {largest.name}"
+        said = plus_minus(self.value, self.u95)
+        return in_angles(self, f"{primed(self.symbol)} = {said} by {len(self.parts)} parts{most}, {self.campaign}")
+
+    def _repr_html_(self) -> str:
+        """Its parts as bars and in a table, for notebooks."""
+        return html_by("budget", self)
 
     def part(self, name: str) -> float | None:
         """Half-width of a part; None where it was not assessed."""

@@ -1,0 +1,61 @@
+"""A plan by its path, its folder or its shipped name is the plan itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import coeflab
+from coeflab.core.errors import InputError
+
+PLAN = """[study]
+name = "one"
+
+[[table]]
+campaign = "campaign"
+"""
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    template = Path(coeflab.__file__).parent / "cli" / "template" / "campaign"
+    (tmp_path / "campaign").mkdir()
+    for file in template.iterdir():
+        (tmp_path / "campaign" / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "plan.toml").write_text(PLAN)
+    return tmp_path
+
+
+def test_a_plan_is_carried_out_by_its_path_and_by_its_folder(place: Path) -> None:
+    expected = coeflab.run(coeflab.read_plan(place / "plan.toml"))
+    for given in (place / "plan.toml", str(place / "plan.toml"), str(place)):
+        study = coeflab.run(given)
+        assert study.plan.name == "one"
+        assert [c.value for c in study.coefficients] == [c.value for c in expected.coefficients]
+
+
+@pytest.mark.slow
+def test_a_plan_is_carried_out_by_its_shipped_name() -> None:
+    assert coeflab.run("huuv_synthetic").plan.name == "huuv_synthetic"
+
+
+def test_a_fault_of_an_option_names_the_file(place: Path) -> None:
+    (place / "plan.toml").write_text(
+        PLAN + 'fits = ["slope_at_origin"]\n\n[table.options.slope_at_origin]\nnothing = 3\n'
+    )
+    with pytest.raises(InputError) as why:
+        coeflab.run(place)
+    assert "plan.toml" in str(why.value)
+
+
+def test_what_is_not_there_is_told_with_the_shipped_names() -> None:
+    with pytest.raises(InputError, match=r"no file .*suboff_nothing.*or a shipped name \(.*suboff"):
+        coeflab.run("suboff_nothing")
+
+
+@pytest.mark.parametrize("given", [None, 3, ["plan.toml"]])
+def test_anything_else_is_refused_with_advice(given: object) -> None:
+    with pytest.raises(InputError, match=r"expected a Plan, the path of a plan.toml") as why:
+        coeflab.run(given)  # type: ignore[arg-type]
+    assert why.value.advice
