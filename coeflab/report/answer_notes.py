@@ -107,9 +107,20 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
     names = [r.name for r in reports]
     heads = {n.rpartition(" ")[0] for n in names}
     same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
-    whose = f"{same} {', '.join(n.rpartition(' ')[2] for n in names)}" if same else listed(names)
+    whose = _several(same, [n.rpartition(" ")[2] for n in names]) if same else listed(names)
     whose = whose or "the authors' values, same points"
     return f"{column.name}: {whose}{each}."
+
+
+NOUNS = ("configuration", "condition", "model", "series", "table", "test")
+
+
+def _several(head: str, last: Sequence[str]) -> str:
+    """Names with the same beginning: ``Roddy, configurations 1 and 2``."""
+    first, _, noun = head.rpartition(" ")
+    if not first or noun not in NOUNS:
+        return listed([f"{head} {n}" for n in last])
+    return f"{first}, {noun if noun.endswith('s') else f'{noun}s'} {listed(last)}"
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:

@@ -25,17 +25,17 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope is the weighted median of many fits to the whole sweep, each a line plus v|v|, cubic and smooth parts. The better a fit "
+    "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "For a slope, no form and no range is chosen. For a term of higher degree the form is chosen; the notes below the tables name these terms.",
+    "A slope averages over all forms and ranges. A term of higher degree depends on one chosen form; the notes below the tables name these terms.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
     "Form: unknown shape of the curve.",
     "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
-    "to all runs that its law covers, also some in which two motions vary. A dash: does not apply or not assessed, so not in U95.",
+    "to all runs that its law covers, also some in which two motions vary. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."
-OPEN = "Sign open: U95 exceeds the value. Do not use such a value alone: it holds only together with the other terms of its law."
+OPEN = "Sign open: U95 exceeds the value. Do not use it alone, only together with the other terms of the same fit."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
@@ -99,7 +99,7 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     if not without:
         return ""
     named = listed([primed(c.symbol) for c in without])
-    return f"U95 of {named} holds only the scatter and the uncertainty of the slope. The form is chosen, its error is not assessed."
+    return f"U95 of {named} holds only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
 
 
 def coefficients_section(study: Study) -> Section:

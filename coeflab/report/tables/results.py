@@ -39,7 +39,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 NO_DATA, NO_VALUE = "no data", "no value"
 ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-WEAK = f"the root sum of squares of U95 and the source's own uncertainty exceeds {100.0 * WIDE:.0f} % of the published value"
+WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"
 
 
 def coefficients(study: Study, campaign: str | None = None) -> Table:
@@ -222,7 +222,7 @@ def verdicts(study: Study) -> Table:
             primed(c.coefficient.symbol),
             c.coefficient.campaign or ABSENT,
             *with_u95(c.coefficient.value, c.coefficient.u95),
-            as_printed(c.published),
+            c.shown or as_printed(c.published),
             *with_u95(None if c.difference is None else abs(c.difference), c.combined),
             "weak pass" if is_weak(c) else VERDICTS[c.passed],
             c.reference,
@@ -233,7 +233,7 @@ def verdicts(study: Study) -> Table:
     headers = ("", "campaign", "ours", "U95", "published", "|difference|", "combined", "verdict", "reference")
     notes = (
         f"{Relation.RE_ANALYSIS}: {Relation.RE_ANALYSIS.meaning}.",
-        *([f"weak pass: {WEAK}."] if any(row[-2] == "weak pass" for row in rows) else []),
+        *([f"weak pass: {WEAK} (root sum of squares)."] if any(row[-2] == "weak pass" for row in rows) else []),
         "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
     )
     return Table(
@@ -251,10 +251,10 @@ def side_by_side(study: Study) -> Table:
         dict.fromkeys((c.reference, c.reading) for c in study.comparisons if c.relation is not Relation.RE_ANALYSIS)
     )
     twice = {name for name, _ in columns if sum(n == name for n, _ in columns) > 1}
-    beside: dict[tuple[str | None, str], dict[tuple[str, str], float]] = {}
+    beside: dict[tuple[str | None, str], dict[tuple[str, str], str]] = {}
     for made in study.comparisons:
         key = (made.coefficient.campaign, made.coefficient.symbol)
-        beside.setdefault(key, {})[made.reference, made.reading] = made.published
+        beside.setdefault(key, {})[made.reference, made.reading] = made.shown or as_printed(made.published)
     rows = []
     quoted = {r.body for r in study.references if r.relation is Relation.QUOTED}
     for symbol in study.plan.wanted:
@@ -269,7 +269,7 @@ def side_by_side(study: Study) -> Table:
                     *((NO_DATA, ABSENT) if c.status is Status.NO_TABLE else noun_tables.with_status(c)),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
-                    *(as_printed(published.get(k)) for k in columns),
+                    *(published.get(k, ABSENT) for k in columns),
                 )
             )
     given = {r.name for r in study.references if r.relation is Relation.QUOTED}
@@ -285,7 +285,7 @@ def side_by_side(study: Study) -> Table:
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
-        digits = "The first page shows the digits that the test report prints, where the project holds it."
+        digits = "The first page gives the test report's own digits where we have that report."
         return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
     another = "another method" if r.body in ours else "another body"
     return f"{r.name}: {another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
