@@ -60,13 +60,19 @@ def told(start: str, parts: Sequence[str], end: str = ".", join: Callable[[Seque
     join : callable
         Of the parts of one sentence: with semicolons, or `listed`.
     """
+    room = THREE_LINES - len(start) - len(end)
+    return " ".join(f"{start}{join(group)}{end}" for group in grouped(parts, room, join))
+
+
+def grouped(parts: Sequence[str], room: int, join: Callable[[Sequence[str]], str] = "; ".join) -> list[list[str]]:
+    """Parts of a listing in groups that are at most ``room`` letters long when they are joined; a long part is alone."""
     groups: list[list[str]] = []
     for part in parts:
-        if groups and len(join((*groups[-1], part))) + len(start) + len(end) <= THREE_LINES:
+        if groups and len(join((*groups[-1], part))) <= room:
             groups[-1].append(part)
         else:
             groups.append([part])
-    return " ".join(f"{start}{join(group)}{end}" for group in groups)
+    return groups
 
 
 def repeated(items: Iterable[Item]) -> list[Item]:

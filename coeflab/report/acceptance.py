@@ -261,7 +261,7 @@ def on_predictions(study: Study) -> tuple[str, ...]:
         most = max(len(one) for one in numbers)
         by, every = ("two", "both do") if most == 2 else ("several", "all do")
         out.append(
-            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured coefficients. A coefficient computed by {by} campaigns "
+            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured coefficient{'s' * (len(numbers) > 1)}. A coefficient computed by {by} campaigns "
             f"counts once; it passes only if {every}."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
@@ -285,9 +285,9 @@ def _without_verdict(found: Sequence[Validation]) -> str:
         if set(those) == set(pairs):
             each.append(why)
         elif set(those) == {pair for pair in pairs if pair[0] in mine}:
-            each.append(f"{why} ({listed(mine)})")
+            each.append(f"for {listed(mine)}, {why}")
         else:
-            each.append(f"{why} ({listed([f'{s} of {campaign}' for s, campaign in those])})")
+            each.append(f"for {listed([f'{s} of {campaign}' for s, campaign in those])}, {why}")
     verb, get = ("was", "gets") if len(symbols) == 1 else ("were", "get")
     return told(f"{listed(symbols)} {verb} also computed and measured, but {get} no verdict: ", each)
 

@@ -500,7 +500,8 @@ def _next(study: Study) -> list[str]:
     out = [told("To measure next: ", runs, join=listed)] if runs else []
     if wide:
         every = [primed(s) for s in study.plan.wanted]
-        each = [f"{'all of them' if s == every else listed(s)} of {place}" for place, s in wide.items()]
+        whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
+        each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
         among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
         out.append(
             f"{told(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the runs "
@@ -569,7 +570,7 @@ def _comparison(study: Study) -> tuple[Section, ...]:
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f"{r.name} has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or "
+                f'"{r.name}" has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or '
                 f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(
@@ -606,12 +607,18 @@ def _provenance(study: Study) -> Section:
     said = PROVENANCE
     if many := (files := sum(len(t.rows) for t in inputs)) > MANY:
         said = f"{files} input files; --full lists their sha256."
-    text = (said, *dict.fromkeys(f"Settings of the fit {f.fit}{_about(f)}." for f in study.fits if f.settings))
+    text = (said, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))
     whole = (Section("inputs", "All inputs", tables=inputs, appendix=True),) if many else ()
     return Section("provenance", "Provenance", text, () if many else inputs, subsections=whole)
 
 
-def _about(fit: FitResult) -> str:
+def _settings(fit: FitResult) -> str:
     """What a fit is, and its settings; estimates are no plugin of their own."""
-    summary = f" ({FITS.load(fit.fit).summary})" if fit.fit in FITS.names() else ""
-    return f"{summary}: {', '.join(_setting(k, v) for k, v in sorted(fit.settings.items()))}"
+    summary = FITS.load(fit.fit).summary if fit.fit in FITS.names() else ""
+    each = [_setting(k, v) for k, v in sorted(fit.settings.items())]
+    whole = f"Settings of the fit {fit.fit}{f' ({summary})' * bool(summary)}: {', '.join(each)}."
+    if len(whole) <= THREE_LINES:
+        return whole
+    return (
+        f"{f'The fit {fit.fit}: {summary}. ' * bool(summary)}{told(f'Settings of {fit.fit}: ', each, join=', '.join)}"
+    )

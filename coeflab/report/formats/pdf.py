@@ -33,7 +33,7 @@ FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
 FINER = 4
 FILE = re.compile(r"/?(?:[\w-]+[./])+[A-Za-z]\w{0,7}[,;:.]?")
 _UNIT = r"(?:kg|km|mm|cm|kn|ft|lb|Hz|rad|m|s|N|W)"
-MEASURED = re.compile(rf"(?<!\S)([(]?[−+]?\d[\d.,]* (?:%|{_UNIT}(?:[/·* ]{_UNIT})*)(?![\w/]))")
+MEASURED = re.compile(rf"(?<!\S)((?:[<>≤≥±] )?[(]?[−+]?\d[\d.,]* (?:%|{_UNIT}(?:[/·* ]{_UNIT})*)(?![\w/]))")
 PLACES = re.compile(r"(?<=[/_])(?=.)|(?<=\.)(?=[A-Za-z]\w*\.)")
 
 
@@ -250,7 +250,10 @@ def _longest(cells: list[list[Any]]) -> list[list[Any]]:
     """The four longest cells of a column as they are set: what its width is measured by."""
 
     def length(cell: list[Any]) -> int:
-        return sum(len(p) if isinstance(p, str) else len(p.get("up") or p["text"]) for p in cell)
+        return sum(
+            len(p) if isinstance(p, str) else length(p["whole"]) if "whole" in p else len(p.get("up") or p["text"])
+            for p in cell
+        )
 
     return sorted(cells, key=length, reverse=True)[:4]
 
@@ -264,7 +267,7 @@ def _word(table: Table, column: int) -> str:
 
 def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
     pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, kept()))]
-    return pieces if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
+    return _with_units(pieces) if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
 
 
 def _text(text: str) -> list[Any]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
-from coeflab.core.wording import listed, told
+from coeflab.core.wording import grouped, listed, told
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.motion.manoeuvre import Simulation
@@ -121,8 +121,9 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     out: list[str] = []
     for index, senses in said.items():
         each = [
-            _of_one_sense(index, v, senses[v], lacking, with_values)
+            said
             for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
+            for said in _of_one_sense(index, v, senses[v], lacking, with_values)
         ]
         if each:
             start = (
@@ -134,6 +135,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
 
 
+PLACES = 130  # letters of the parameter files that one sentence names beside its verdict
 SOURCES = {"experiment": "test", "cfd": "CFD"}
 
 
@@ -154,15 +156,17 @@ def _one_body(study: Study) -> list[str]:
 
 def _of_one_sense(
     index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
-) -> str:
-    """The parameter files that one verdict holds for; at high speed also what is open at their own."""
-    each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
+) -> list[str]:
+    """The parameter files that one verdict holds for, so many at a time; at high speed also what is open at their own."""
+    each = [f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items()]
+    open_at = ""
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-        each += f". {index} gives no verdict at {speeds} m/s, because BG is unknown" if speeds else ""
+        open_at = f". {index} gives no verdict at {speeds} m/s, because BG is unknown" if speeds else ""
     undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
     said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
-    return f"{said}: {each}"
+    groups = [f"{said}: {', '.join(group)}" for group in grouped(each, PLACES, ", ".join)]
+    return [*groups[:-1], groups[-1] + open_at]
 
 
 def _by_others(study: Study) -> list[str]:

@@ -22,7 +22,7 @@ from coeflab.core.table import (
     with_u95,
 )
 from coeflab.core.types import Array
-from coeflab.core.wording import listed
+from coeflab.core.wording import listed, told
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
@@ -113,6 +113,14 @@ def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
     str
         What entered only some of the slopes is followed by their symbols.
     """
+    every, some = covered(study, among)
+    return ", ".join((*every, *(f"{name} (only {'; '.join(places)})" for name, places in some.items())))
+
+
+def covered(
+    study: Study, among: Collection[Coefficient] | None = None
+) -> tuple[tuple[str, ...], dict[str, tuple[str, ...]]]:
+    """The same apart: what is in U95 of every slope, and what is in some, with their symbols by campaign."""
     slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
     wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
@@ -122,19 +130,17 @@ def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
         for name in (*names, *(s.name for s in b.studies)):
             entered.setdefault(name, []).append(b)
     several = len({campaign for campaign, _ in wanted}) > 1
-    said = [
-        name if len(those) == len(wanted) else f"{name} (only {_by_campaign(those, several=several)})"
-        for name, those in entered.items()
-    ]
-    return ", ".join((COVERS, *said))
+    every = tuple(name for name, those in entered.items() if len(those) == len(wanted))
+    some = {name: _by_campaign(those, several=several) for name, those in entered.items() if name not in every}
+    return (COVERS, *every), some
 
 
-def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> str:
+def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> tuple[str, ...]:
     """Symbols of budgets, followed by their campaign where a study has several."""
     by: dict[str, dict[str, None]] = {}
     for b in budgets:
         by.setdefault(b.campaign if several else "", {})[primed(b.symbol)] = None
-    return "; ".join(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
+    return tuple(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
 
 
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
@@ -317,7 +323,7 @@ def campaigns(study: Study) -> Table:
         if configuration is not None and configuration.title:
             notes.append(f"{body}: {configuration.title}")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
-    notes = [f"{'; '.join(notes)}."] if notes else []
+    notes = [told("", notes)] if notes else []
     angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
@@ -543,7 +549,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
         for why, rows in by.items()
     ]
     what = "Readings left out (point, components)" if parts else "Points left out"
-    return f"{what}: {'; '.join(said)}." if said else ""
+    return told(f"{what}: ", said) if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:
