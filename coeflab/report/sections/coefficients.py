@@ -28,7 +28,7 @@ TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
     "A slope averages over all forms and ranges. A term of higher degree depends on one chosen form; the notes below the tables name these terms.",
-    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} Its parts are given in % of the value. "
+    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
     "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
     "to all runs that its law covers, also some in which two motions vary. A dash: not applicable or not assessed; not in U95.",
