@@ -211,7 +211,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (
-        " An arrow means that the bar continues outside the plot."
+        " Arrow: it continues outside the plot."
         if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1]
         else ""
     )
