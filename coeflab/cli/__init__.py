@@ -152,7 +152,7 @@ def _wide() -> Any:
 app = typer.Typer(
     name="coeflab",
     cls=Commands,
-    help="Hydrodynamic coefficients from force tables: slopes at the origin with honest uncertainty, parameter files "
+    help="Hydrodynamic coefficients from force tables: slopes at the origin with a 95 % interval, parameter files "
     "and reports.",
     epilog="Example: coeflab validate suboff",
     no_args_is_help=True,

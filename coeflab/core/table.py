@@ -205,7 +205,8 @@ def _block(table: Table, chosen: list[int], width: int) -> list[Line]:
 
 ABSENT = "-"
 LEAST_SHARE = 0.1  # per cent; the last digit that is printed
-LARGEST_SHARE = 1000.0  # per cent; beyond, the value is nothing beside its uncertainty
+LARGEST_SHARE = 100.0  # per cent; beyond, the value is nothing beside its uncertainty
+LARGE = f"> {LARGEST_SHARE:.0f} %"
 TINY, HUGE, LONGEST = 5e-5, 1e6, 12  # of numbers with a fixed point, and their decimals
 
 
@@ -234,6 +235,12 @@ def as_printed(value: float | None) -> str:
     """A published coefficient: as `coefficient`, without zeros behind its fourth decimal, which no source prints."""
     shown = coefficient(value)
     return shown if "e" in shown or shown == ABSENT else shown[:-2] + shown[-2:].rstrip("0")
+
+
+def in_digits_of(value: float, printed: str) -> str:
+    """A published value, also one brought to another length, with as many significant digits as its source prints."""
+    mantissa = printed.strip().lower().partition("e")[0]
+    return number(value, max(len(mantissa.lstrip("+-0.").replace(".", "")), 1)) if value else printed.strip()
 
 
 def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:
@@ -277,7 +284,7 @@ def percent(part: float | None, of: float | None) -> str:
     share = 100.0 * abs(part / of)
     if 0.0 < share < LEAST_SHARE / 2.0:
         return f"< {LEAST_SHARE:g} %"
-    return f"{share:.1f} %" if share <= LARGEST_SHARE else f"> {LARGEST_SHARE:.0f} %"
+    return f"{share:.1f} %" if share <= LARGEST_SHARE else LARGE
 
 
 def probability(value: float) -> str:

@@ -13,7 +13,7 @@ import keyword
 import re
 import sys
 from collections import Counter
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from functools import cache
 from math import isfinite
@@ -36,6 +36,43 @@ class Verbatim(str):
 def listed(names: Sequence[str]) -> str:
     """One or more names as a sentence lists them: ``a``, ``a and b``, ``a, b and c``."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+THREE_LINES = 240  # letters of a paragraph in a report
+
+
+def spelled_out(count: int) -> str:
+    """A small number as a word: ``three``; a larger one in digits."""
+    return COUNTS[count] if count < len(COUNTS) else str(count)
+
+
+def told(start: str, parts: Sequence[str], end: str = ".", join: Callable[[Sequence[str]], str] = "; ".join) -> str:
+    """A listing as sentences: one where it fits three lines, else several with the same beginning.
+
+    Parameters
+    ----------
+    start : str
+        What every sentence begins with: ``No value: ``.
+    parts : sequence of str
+        One that is too long alone stays whole.
+    end : str
+    join : callable
+        Of the parts of one sentence: with semicolons, or `listed`.
+    """
+    room = THREE_LINES - len(start) - len(end)
+    return " ".join(f"{start}{join(group)}{end}" for group in grouped(parts, room, join))
+
+
+def grouped(parts: Sequence[str], room: int, join: Callable[[Sequence[str]], str] = "; ".join) -> list[list[str]]:
+    """Parts of a listing in groups that are at most ``room`` letters long when they are joined; a long part is alone."""
+    groups: list[list[str]] = []
+    for part in parts:
+        if groups and len(join((*groups[-1], part))) <= room:
+            groups[-1].append(part)
+        else:
+            groups.append([part])
+    return groups
 
 
 def repeated(items: Iterable[Item]) -> list[Item]:

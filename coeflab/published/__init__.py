@@ -33,7 +33,7 @@ def validation(name: str) -> Plan | Acceptance:
     if name not in validations():
         near = difflib.get_close_matches(name, validations(), n=1)
         raise InputError(
-            f"the validation {shown(name)}",
+            f"no validation {shown(name)}",
             f"one of {', '.join(validations())}",
             advice=f"Did you mean {near[0]}?" if near else "",
         )

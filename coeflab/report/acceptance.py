@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from coeflab.core.table import ABSENT, Table, html_by
 from coeflab.core.types import brief, in_angles
-from coeflab.core.wording import listed
+from coeflab.core.wording import listed, told
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
-from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
+from coeflab.study.validation import WIDE, Validation, by_measured_number, printed_indices, validations
 
 if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile
@@ -258,20 +258,38 @@ def on_predictions(study: Study) -> tuple[str, ...]:
     numbers = by_measured_number(found)
     out = []
     if len(judged) > len(numbers):
+        most = max(len(one) for one in numbers)
+        by, every = ("two", "both do") if most == 2 else ("several", "all do")
         out.append(
-            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured numbers; a number counts once, and holds where every "
-            "computation of it does."
+            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured coefficient{'s' * (len(numbers) > 1)}. A coefficient computed by {by} campaigns "
+            f"counts once; it passes only if {every}."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
-        out.append(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: {listed(weak)}.")
-    none: dict[tuple[str, str], list[str]] = {}
-    for v in found:
-        if v.within is None:
-            none.setdefault((v.why_none, v.simulation), []).append(primed(v.symbol))
-    if none:
-        each = " ".join(f"No verdict on {listed(s)} of {campaign}: {why}." for (why, campaign), s in none.items())
-        out.append(f"Other coefficients are both computed and measured. {each}")
+        out.append(told(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: ", weak, join=listed))
+    if none := [v for v in found if v.within is None]:
+        out.append(_without_verdict(none))
     return tuple(out)
+
+
+def _without_verdict(found: Sequence[Validation]) -> str:
+    """Coefficients that are computed and measured but not judged, a clause a reason; campaigns where it is not one of all."""
+    pairs = [(primed(v.symbol), v.simulation) for v in found]
+    symbols = list(dict.fromkeys(s for s, _ in pairs))
+    by: dict[str, list[tuple[str, str]]] = {}
+    for v, pair in zip(found, pairs, strict=True):
+        for why in v.reasons:
+            by.setdefault(why, []).append(pair)
+    each = []
+    for why, those in by.items():
+        mine = list(dict.fromkeys(s for s, _ in those))
+        if set(those) == set(pairs):
+            each.append(why)
+        elif set(those) == {pair for pair in pairs if pair[0] in mine}:
+            each.append(f"for {listed(mine)}, {why}")
+        else:
+            each.append(f"for {listed([f'{s} of {campaign}' for s, campaign in those])}, {why}")
+    verb, get = ("was", "gets") if len(symbols) == 1 else ("were", "get")
+    return told(f"{listed(symbols)} {verb} also computed and measured, but {get} no verdict: ", each)
 
 
 KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")

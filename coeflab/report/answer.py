@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import Severity, Table, number, plus_minus, with_u95
-from coeflab.core.wording import listed
+from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, plus_minus, with_u95
+from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
@@ -36,7 +36,6 @@ LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 6  # letters of a difference that is as large as U95
 HALF_WIDTH = "U95: half-width of the 95 % interval."
-COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
@@ -105,14 +104,15 @@ def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
     judged = {(x.coefficient.symbol, x.coefficient.campaign): x for x in study.comparisons if x.passed is not None}
     known = sorted((c for c in found if c.value is not None), key=lambda c: (c.symbol, c.campaign) not in judged)
     among = _set(study, known[0].campaign if known else None) or beside.among
-    published = tuple(_published(study, r, beside.body, symbol, among) for r in beside.columns)
+    pairs = [_published(study, r, beside.body, symbol, among) for r in beside.columns]
+    published, printed = tuple(value for value, _ in pairs), tuple(text for _, text in pairs)
     if not known:
-        return _towed_row(study, beside, symbol, published, found)
+        return replace(_towed_row(study, beside, symbol, published, found), printed=printed)
     c = known[0]
     rejected = c.status is Status.FORM_REJECTED
     row = AnswerRow(
         symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
-        c.campaign or "", published, anchor=_place(study, c),
+        c.campaign or "", published, anchor=_place(study, c), printed=printed,
     )  # fmt: skip
     mine = judged.get((symbol, c.campaign))
     return _judged(row, mine if mine is not None and mine.coefficient.value == c.value else None)
@@ -164,25 +164,29 @@ def _tows(study: Study, beside: Beside) -> tuple[Towed, ...]:
 
 def _published(
     study: Study, reference: Reference, body: str, symbol: str, among: CoefficientSet | None
-) -> float | None:
-    """A printed value by our length, as it is read first; of a quoted column in the digits of the report that it rounds."""
+) -> tuple[float | None, str]:
+    """A printed value by our length, as it is read first, and as text; of a quoted column in the digits of the report that it rounds."""
     if among is None or not _about_ours(reference, among):
-        return None
+        return None, ""
     read = reference.readings(symbol, among.scaling)
     printed = reference.printed(symbol)
     if not read or printed is None:
-        return None
+        return None, ""
     value = read[0][1]
+    text = in_digits_of(value, printed.printed)
     if reference.relation is Relation.QUOTED:
         reports = [
             r
             for r in study.references
             if r.relation is Relation.RE_ANALYSIS and r.body == body and _about_ours(r, among)
         ]
-        whole = [v for r in reports for _, v in r.readings(symbol, among.scaling)]
         places = len(printed.printed.partition(".")[2])
-        return next((v for v in whole if round(v, places) == round(value, places)), value)
-    return value
+        for r in reports:
+            stated = r.printed(symbol)
+            for _, v in r.readings(symbol, among.scaling):
+                if stated is not None and round(v, places) == round(value, places):
+                    return v, in_digits_of(v, stated.printed)
+    return value, text
 
 
 def _about_ours(reference: Reference, among: CoefficientSet) -> bool:
@@ -199,10 +203,6 @@ def _short(title: str) -> str:
     return head if len(head) <= LONGEST // 3 else head[: LONGEST // 3].rsplit(" ", 1)[0].rstrip(",") + " ..."
 
 
-def _counted(n: int) -> str:
-    return COUNTS[n] if n < len(COUNTS) else str(n)
-
-
 def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
     name = _short(study.plan.title or study.plan.name)
     judged = [r for r in rows if r.agrees is not None]
@@ -215,25 +215,25 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
         apart = [primed(r.symbol) for r in judged if not r.agrees]
         column = beside.columns[0].name
         if apart:
-            some = f"{_counted(len(apart))} of {_counted(len(judged))} {kind}"
+            some = f"{spelled_out(len(apart))} of {spelled_out(len(judged))} {kind}"
             first = (
                 f"{name}: our fits to the data of {column} differ from its {listed(apart)} by more than U95 ({some})"
             )
         else:
             found = listed([primed(r.symbol) for r in judged])
-            found = f"its {found}" if len(judged) <= MOST_NAMED else f"all {_counted(len(judged))} {kind}"
+            found = f"its {found}" if len(judged) <= MOST_NAMED else f"all {spelled_out(len(judged))} {kind}"
             first = f"{name}: our fits to the data of {column} reproduce {found} within U95"
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
         bounded = sum(r.u95 is not None for r in valued)
         of = (
-            {1: "the", 2: "both"}.get(len(rows), f"all {_counted(len(rows))}")
+            {1: "the", 2: "both"}.get(len(rows), f"all {spelled_out(len(rows))}")
             if len(valued) == len(rows)
-            else f"{_counted(len(valued))} of {_counted(len(rows))}"
+            else f"{spelled_out(len(valued))} of {spelled_out(len(rows))}"
         )
         s = "s" * (len(rows) > 1)
-        first = f"{name}: {of} wanted coefficient{s} found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
+        first = f"{name}: {of} wanted coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
         first += _open(valued)
         inside, printed = printed_inside(study.fits)
         said = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
@@ -248,7 +248,9 @@ def _open(valued: Sequence[AnswerRow]) -> str:
     if not names:
         return ""
     return (
-        f", sign open of {listed(names)}" if len(names) <= MOST_ROWS // 2 else f", sign open of {_counted(len(names))}"
+        f", sign open of {listed(names)}"
+        if len(names) <= MOST_ROWS // 2
+        else f", sign open of {spelled_out(len(names))}"
     )
 
 
@@ -383,7 +385,7 @@ def _of_models(study: Study) -> Answer:
     """Of a study whose fits give no wanted coefficient but laws and tables of forces."""
     models = tuple(m for f in study.fits for m in f.models)
     name = _short(study.plan.title or study.plan.name)
-    n = _counted(len(models))
+    n = spelled_out(len(models))
     sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
     return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
 
@@ -441,7 +443,7 @@ def answer_table(found: Answer) -> Table:
     Returns
     -------
     Table
-        Symbol; ours with U95, also in per cent; each published column in digits that go with them; the difference to the
+        Symbol; ours with U95, also in per cent; each published column in the digits of its source; the difference to the
         compared column over U95 as a number and a bar of `BAR` letters for one U95, ``!`` beyond. Of a publication, and of
         models, the table that stands in the place of rows.
     """
@@ -476,27 +478,14 @@ def _cut(text: str) -> str:
 
 
 def _cells(r: AnswerRow) -> tuple[str, ...]:
-    """Ours, and the published values with no more decimals than ours and than they have."""
+    """Ours, and the published values with the digits of their sources."""
     value, u95 = with_u95(r.value, r.u95)
     ours = (
         f"{value} +- {u95} ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})"
         if r.u95
         else f"{value} {r.status}".strip()
     )
-    printed = [p for p in r.published if p is not None]
-    places = max((_places(p) for p in printed), default=0)
-    if r.u95 and "e" not in value:
-        places = min(places, len(value.partition(".")[2]))
-    shown = (f"{p:.{places}f}" if p is not None and round(p, places) else number(p, 3) for p in r.published)
-    return (r.status if r.value is None else ours, *shown)
-
-
-def _places(value: float) -> int:
-    """Decimals that a value has, two digits at least."""
-    if not value:
-        return 0
-    least = 1 - int(np.floor(np.log10(abs(value))))
-    return next((d for d in range(max(least, 0), 12) if abs(round(value, d) - value) <= 1e-6 * abs(value)), 12)
+    return (r.status if r.value is None else ours, *(text or ABSENT for text in r.shown))
 
 
 def _bar(r: AnswerRow) -> str:

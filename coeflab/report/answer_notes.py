@@ -107,9 +107,20 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
     names = [r.name for r in reports]
     heads = {n.rpartition(" ")[0] for n in names}
     same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
-    whose = f"{same} {', '.join(n.rpartition(' ')[2] for n in names)}" if same else listed(names)
+    whose = _several(same, [n.rpartition(" ")[2] for n in names]) if same else listed(names)
     whose = whose or "the authors' values, same points"
     return f"{column.name}: {whose}{each}."
+
+
+NOUNS = ("configuration", "condition", "model", "series", "table", "test")
+
+
+def _several(head: str, last: Sequence[str]) -> str:
+    """Names with the same beginning: ``Roddy, configurations 1 and 2``."""
+    first, _, noun = head.rpartition(" ")
+    if not first or noun not in NOUNS:
+        return listed([f"{head} {n}" for n in last])
+    return f"{first}, {noun if noun.endswith('s') else f'{noun}s'} {listed(last)}"
 
 
 def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -121,17 +132,16 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
         for name in (n for n in b.unassessed if n not in (SET if b.kind == "cfd" else ())):
             lacking.setdefault(name.removeprefix("error of "), set()).add(b.symbol.removesuffix("'"))
     whole = {b.symbol.removesuffix("'") for b in budgets}
-    names = [n for n, of in lacking.items() if of == whole]
-    names += [
-        f"{n} ({listed([primed(r.symbol) for r in rows if r.symbol in of])})"
-        for n, of in lacking.items()
-        if of != whole
-    ]
+    names = sorted(lacking, key=lambda n: lacking[n] != whole)
     stated = _as_stated(study, rows)
     if not names:
         return f"U95 is without rig and balance; {stated}." if stated else ""
     more = " and others (Coefficients)" if len(names) > MOST_NAMED else ""
-    shown = names[: MOST_NAMED - 1] if more else names
+    by: dict[tuple[str, ...], list[str]] = {}
+    for n in names[: MOST_NAMED - 1] if more else names:
+        of = () if lacking[n] == whole else tuple(primed(r.symbol) for r in rows if r.symbol in lacking[n])
+        by.setdefault(of, []).append(n)
+    shown = [*by.pop((), []), *(f"{listed(those)} ({listed(of)})" for of, those in by.items())]
     said = f"; {stated}" if stated else ""
     which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (Coefficients)"
     return f"Not in U95: errors of {which}{said}."

@@ -23,7 +23,7 @@ from typing import TypeVar
 from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
-from coeflab.core.wording import Verbatim, listed
+from coeflab.core.wording import THREE_LINES, Verbatim, listed, spelled_out, told
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import Coefficient, Status
@@ -35,6 +35,7 @@ from coeflab.report.document import Document, Section, digest_of, reproduction, 
 from coeflab.report.figures.answer import share_text
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
+from coeflab.report.sections.acceptance import PROVENANCE
 from coeflab.report.sections.body import added_mass_sections, body_sections
 from coeflab.report.sections.campaign import (
     anchor,
@@ -64,8 +65,8 @@ Part = TypeVar("Part")
 MOST = 4
 NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
-    ("at_rest", "law"): "a fitted Z0 or M0, force or moment at zero angle, stays in the force law",
-    ("at_rest", "apart"): "a fitted Z0 or M0, force or moment at zero angle, is taken out of the force law",
+    ("at_rest", "law"): "the force law keeps the fitted Z0 and M0",
+    ("at_rest", "apart"): "the force law leaves out the fitted Z0 and M0",
 }
 _JOBS: list[Callable[[], object]] = []
 
@@ -124,6 +125,7 @@ def _safe() -> bool:
 
 
 FEW = 8
+SEVERAL = 3  # campaigns that a sentence names; of more it says how many, and the table has them
 MANY = 20  # input files, whose list is in the appendix alone
 
 
@@ -155,19 +157,20 @@ def core(document: Document) -> Document:
     return replace(document, sections=sections, answer=answer)
 
 
-LINES = 240  # letters of three lines
+# Ends of sentences, not of abbreviations; an initial such as that of R. F. Roddy ends none.
+_SENTENCES = re.compile(r"(?<=[.!?])(?<!\b[A-Zp]\.)(?<!\bpp\.)(?<!\bFig\.)(?<!\be\.g\.)(?<!\bi\.e\.) (?=\S)")
 
 
 def three_lines(texts: Sequence[str]) -> tuple[str, ...]:
-    """Texts of at most three lines: a longer one ends at a sentence, else at a part of one; what a user wrote stays whole."""
+    """Texts of at most three lines: a longer one is parted between sentences; a sentence and what a user wrote stay whole."""
     out: list[str] = []
     for text in texts:
-        if isinstance(text, Verbatim) or len(text) <= LINES:
+        if isinstance(text, Verbatim) or len(text) <= THREE_LINES:
             out.append(text)
             continue
         piece = ""
-        for part in (p for s in re.split(r"(?<=[.;]) (?=\S)", text) for p in _parted(s)):
-            if piece and len(piece) + 1 + len(part) > LINES:
+        for part in _SENTENCES.split(text):
+            if piece and len(piece) + 1 + len(part) > THREE_LINES:
                 out.append(piece)
                 piece = part
             else:
@@ -176,14 +179,9 @@ def three_lines(texts: Sequence[str]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _parted(sentence: str) -> list[str]:
-    """The sentence, or its parts between commas where it is longer than three lines."""
-    return re.split(r"(?<=,) (?=\S)", sentence) if len(sentence) > LINES else [sentence]
-
-
 def first_lines(text: str) -> str:
     """The first sentences of a caption, three lines at most; the whole report has the rest."""
-    return text if len(text) <= LINES else re.sub(r"[;,]$", ".", three_lines((text,))[0])
+    return three_lines((text,))[0]
 
 
 def _setting(name: str, value: object) -> str:
@@ -315,8 +313,8 @@ def _named(c: Comparison) -> str:
 
 WHAT_COUNTS = (
     "Prediction: a coefficient from CFD against the one measured on the same body; tolerance U_V, the validation uncertainty of both "
-    "together. Re-analysis: our coefficient from the authors' data against theirs; tolerance U95. Recomputed index: from their printed "
-    "derivatives against their printed index; tolerance the rounding of the digits. The checks of --full list the recomputed indices.",
+    "together. Re-analysis: our coefficient from the authors' data against theirs; tolerance U95. Recomputed index: we compute G from their "
+    "printed derivatives and compare with their printed G, within rounding. The checks of --full list the recomputed indices.",
 )
 TWO_KINDS = (
     "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
@@ -334,44 +332,47 @@ def _re_analysis(study: Study) -> list[str]:
     failed = [c for c in judged if c.passed is False]
     count = _counted(len(judged), "comparison")
     if failed:
-        out = [
-            f"{len(failed)} of {count} with the authors' own evaluation of the same data failed, beyond U95: "
-            f"{listed([_named(c) for c in failed])}."
-        ]
+        start = f"{len(failed)} of {count} with the authors' own evaluation of the same data failed, beyond U95: "
+        out = [told(start, [_named(c) for c in failed], join=listed)]
     else:
         every, verb = ("The one", "passes") if len(judged) == 1 else ("All", "pass")
         out = [
             f"{every} {count} with the authors' own evaluation of the same data {verb}: every difference lies within U95."
         ]
     if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
-        out.append(f"Weak passes, as {tables.WEAK}: {listed(wide)}.")
+        one = len(wide) == 1
+        passes = (
+            f"{'One pass is' if one else f'{spelled_out(len(wide)).capitalize()} passes are'} weak, as {tables.WEAK}: "
+        )
+        out.append(told(passes, wide, join=listed))
     if len(ours) > len(judged):
-        out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
+        out.append(told("No verdict without U95: ", [_named(c) for c in ours if c.passed is None], join=listed))
     predicted = [v for v in validations(study, study.budgets) if v.within is not None]
     head = headline_of_study(study)
     out += [*head[:1], *WHAT_COUNTS, *head[1:], TWO_KINDS[not predicted]]
     missed = [v for v in predicted if v.within is False]
     if missed:
-        each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
+        each = [f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed]
         out.append(
-            f"Predictions beyond U_V: {each}. This does not fail the study: U_V leaves out the error of the turbulence model, and the "
+            f"{told('Predictions beyond U_V: ', each, join=listed)} This does not fail the study: U_V leaves out the error of the turbulence model, and the "
             'errors listed under "Not in U95" below the tables of both campaigns.'
         )
-    return [*out, *_beyond_without_verdict(study)]
+    return [*out, *_beyond_without_verdict(study, also=bool(missed))]
 
 
-def _beyond_without_verdict(study: Study) -> list[str]:
-    """Coefficients of own tows beyond U_V that do not count, one sentence a tow and reason."""
+def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
+    """Coefficients of own tows beyond U_V that do not count, and why; ``also``: others that count are beyond it as well."""
     out = []
     for tow in towed(study):
-        reasons: dict[str, list[str]] = {}
+        reasons: dict[tuple[str, ...], list[str]] = {}
         for r in tow.rows:
             if r.verdict is None and r.validation is not None and r.validation.beyond:
-                reasons.setdefault(r.why_none, []).append(primed(r.symbol))
-        out += [
-            f"Also beyond U_V, but not counted: {listed(symbols)} of {tow.tow.campaign}, as {why}."
-            for why, symbols in reasons.items()
-        ]
+                reasons.setdefault(r.reasons, []).append(primed(r.symbol))
+        for why, symbols in reasons.items():
+            differ, them = ("differs", "it") if len(symbols) == 1 else ("differ", "them")
+            out.append(
+                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} by more than U_V. We do not count {them}: {listed(why)}."
+            )
     return out
 
 
@@ -383,8 +384,12 @@ def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
         names = by.setdefault("body" if bodies.get(c.reference) != c.coefficient.body else "method", [])
         if c.reference not in names:
             names.append(c.reference)
-    each = "; ".join(f"{listed(names)} (another {what})" for what, names in by.items())
-    return f"No verdict on {each}: a difference need not be an error of either side."
+    differ = {"body": "the bodies differ", "method": "the methods differ"}
+    each = [
+        f"No verdict on {listed(names)}: {differ[what]}, so a difference proves no error in either."
+        for what, names in by.items()
+    ]
+    return " ".join(each)
 
 
 def verdict(study: Study) -> Section:
@@ -417,7 +422,8 @@ def _harvest(study: Study) -> str:
     if not campaigns:
         return "The study holds no tables."
     rows = _counted(sum(len(t) for t in study.tables if not t.by_symmetry), "row")
-    source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {listed(campaigns)}."
+    named = f": {listed(campaigns)}" * (len(campaigns) <= SEVERAL)
+    source = f"{rows} of {_counted(len(campaigns), 'campaign')}{named}."
     models = sum(len(f.models) for f in study.fits)
     if not found and models:
         return (
@@ -430,7 +436,8 @@ def _harvest(study: Study) -> str:
     alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
     each += f" U95 of {alone} is scatter alone." * bool(alone)
     copies = len(every) - len(found)
-    return each + f" {copies} more {'is a copy' if copies == 1 else 'are copies'} of these by symmetry." * bool(copies)
+    more = "Another one follows" if copies == 1 else f"Another {copies} follow"
+    return each + f" {more} from these by symmetry." * bool(copies)
 
 
 def _is_copied(study: Study, c: Coefficient) -> bool:
@@ -461,16 +468,16 @@ def _without_value(study: Study) -> list[str]:
             if c.status is status:
                 places.setdefault(c.campaign or c.body, []).append(c.symbol)
         is_untabled = status is Status.NO_TABLE
-        names = "; ".join(
+        names = [
             f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
             for place, symbols in places.items()
-        )
+        ]
         reason = (
             ""
             if is_untabled
             else f" ({'reason in its section' if status is Status.NOT_DETERMINED else status.replace('_', ' ')})"
         )
-        out.append(f"No value{reason}: {names}. {'' if is_untabled else status.advice}".strip())
+        out.append(f"{told(f'No value{reason}: ', names)} {'' if is_untabled else status.advice}".strip())
     return out
 
 
@@ -490,12 +497,15 @@ def _next(study: Study) -> list[str]:
     for c in study.coefficients:
         if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
             wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
-    out = [f"To measure next: {listed(runs)}."] if runs else []
+    out = [told("To measure next: ", runs, join=listed)] if runs else []
     if wide:
+        every = [primed(s) for s in study.plan.wanted]
+        whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
+        each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
+        among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
         out.append(
-            f"Among {listed([primed(s) for s in study.plan.wanted])}, U95 exceeds {100.0 * WIDE:.0f} % of the value for "
-            f"{'; '.join(f'{listed(s)} of {place}' for place, s in wide.items())}. `coeflab fit TABLE --next 3` names the runs that "
-            "narrow U95 most."
+            f"{told(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the runs "
+            "that narrow U95 most."
         )
     return out
 
@@ -535,14 +545,22 @@ def _laws(study: Study) -> tuple[Section, ...]:
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
         "law misses a point by more, its range ends before that point. If at least half of the tested range remains, this is a warning. "
-        "If less remains, the study fails, except for X and for a law of slopes alone.",
+        "If less remains, the study fails. X, and laws that have only slopes, do not fail it.",
         format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
-        text += (f"In no parameter file, so not compared: {listed(none)}.",)
+        text += (_not_in_a_file(none),)
     shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
     return (Section("law-at-points", "The law at the measured points", text, shown),)
+
+
+def _not_in_a_file(campaigns: Sequence[str]) -> str:
+    """Which campaigns are not compared with a law."""
+    if len(campaigns) > SEVERAL:
+        return f"{len(campaigns)} campaigns are not compared, because they have no parameter file (What was tested and computed)."
+    have = "it has" if len(campaigns) == 1 else "they have"
+    return f"Not compared, because {have} no parameter file: {listed(campaigns)}."
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:
@@ -552,8 +570,8 @@ def _comparison(study: Study) -> tuple[Section, ...]:
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f'"{r.name}" stands twice in the table, as its source does not say which length made its values dimensionless: {r.scaling} '
-                f"(values as printed) or {r.other_scaling} (every value rescaled)."
+                f'"{r.name}" has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or '
+                f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(
         tables.campaigns(study),
@@ -586,15 +604,21 @@ def _checks(study: Study) -> Section:
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
     inputs = filled(tables.provenance(study))
-    said = "The files below are identified by the sha256 of their bytes."
+    said = PROVENANCE
     if many := (files := sum(len(t.rows) for t in inputs)) > MANY:
-        said = f"{files} files went in, identified by the sha256 of their bytes; --full lists them."
-    text = (said, *dict.fromkeys(f"Settings of the fit {f.fit}{_about(f)}." for f in study.fits if f.settings))
+        said = f"{files} input files; --full lists their sha256."
+    text = (said, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))
     whole = (Section("inputs", "All inputs", tables=inputs, appendix=True),) if many else ()
     return Section("provenance", "Provenance", text, () if many else inputs, subsections=whole)
 
 
-def _about(fit: FitResult) -> str:
+def _settings(fit: FitResult) -> str:
     """What a fit is, and its settings; estimates are no plugin of their own."""
-    summary = f" ({FITS.load(fit.fit).summary})" if fit.fit in FITS.names() else ""
-    return f"{summary}: {', '.join(_setting(k, v) for k, v in sorted(fit.settings.items()))}"
+    summary = FITS.load(fit.fit).summary if fit.fit in FITS.names() else ""
+    each = [_setting(k, v) for k, v in sorted(fit.settings.items())]
+    whole = f"Settings of the fit {fit.fit}{f' ({summary})' * bool(summary)}: {', '.join(each)}."
+    if len(whole) <= THREE_LINES:
+        return whole
+    return (
+        f"{f'The fit {fit.fit}: {summary}. ' * bool(summary)}{told(f'Settings of {fit.fit}: ', each, join=', '.join)}"
+    )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Severity, Table, html_by
+from coeflab.core.table import Severity, Table, as_printed, html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.core.version import VERSION
 from coeflab.report.acceptance import Acceptance
@@ -213,6 +213,8 @@ class AnswerRow:
         Whether it lies within U95, where a verdict is allowed; None without one.
     anchor : str
         Of the section that derives it; empty without one.
+    printed : tuple of str
+        The published values with the digits of their sources, empty for None; without these, as `as_printed` has them.
     """
 
     symbol: str
@@ -224,6 +226,13 @@ class AnswerRow:
     difference: float | None = None
     agrees: bool | None = None
     anchor: str = ""
+    printed: tuple[str, ...] = ()
+
+    @property
+    def shown(self) -> tuple[str | None, ...]:
+        """The published values for people, in the digits of their sources; None where a column has none."""
+        texts = self.printed or tuple(as_printed(p) for p in self.published)
+        return tuple(None if p is None else text for p, text in zip(self.published, texts, strict=True))
 
     @property
     def share(self) -> float | None:

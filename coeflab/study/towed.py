@@ -59,6 +59,8 @@ class TowedRow:
         Whether |E| lies within U_V; None where no verdict can be given.
     why_none : str
         Why not.
+    reasons : tuple of str
+        The same as clauses of a sentence, where there is a comparison error.
     no_grid : str
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
     """
@@ -73,6 +75,7 @@ class TowedRow:
     verdict: bool | None = None
     why_none: str = ""
     no_grid: str = ""
+    reasons: tuple[str, ...] = ()
 
     @property
     def value(self) -> float | None:
@@ -136,7 +139,8 @@ def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
     if not copies:
         return ()
     own, sources = (listed(names) for names in zip(*copies, strict=True))
-    return (f"{own}: no runs of their own, but copies of {sources}, turned by 90 deg about x.",)
+    were, are = ("was", "it is") if len(copies) == 1 else ("were", "they are")
+    return (f"{own} {were} not run; {are} {sources} rotated by 90 deg about x.",)
 
 
 def _row(
@@ -176,9 +180,11 @@ def _row(
     if made is None:
         lacking = "no budget" if budget is None else "no test of it" if tests else ""
         return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking, no_grid=no_grid)
-    found, other = made
-    none = "; ".join(filter(None, (other, found.why_none)))
-    return TowedRow(symbol, own, u_grid, "", why, published, found, None if none else found.within, none, no_grid)
+    found, others = made
+    none = "; ".join(filter(None, (*others, found.why_none)))
+    verdict = None if none else found.within
+    reasons = (*others.values(), *found.reasons)
+    return TowedRow(symbol, own, u_grid, "", why, published, found, verdict, none, no_grid, reasons)
 
 
 def _coefficient(fits: tuple[FitResult, ...], symbol: str) -> Coefficient | None:
@@ -219,11 +225,11 @@ def _literature(reference: Reference, symbol: str) -> tuple[float, float, str] |
 
 def _against(
     study: Study, budget: Budget, own: Coefficient, fits: tuple[FitResult, ...], tests: tuple[Reference, ...]
-) -> tuple[Validation, str] | None:
-    """The comparison with the first test that has the derivative, and why it has no verdict."""
+) -> tuple[Validation, dict[str, str]] | None:
+    """The comparison with the first test that has the derivative, and why it has no verdict: in short, and as a clause."""
     ours = next(f.coefficients for f in fits if own.symbol in f.coefficients and f.coefficients[own.symbol] is own)
     for r in tests:
-        other = f"another body: {r.body}" if r.body != own.body else ""
+        others = {f"another body: {r.body}": f"the test was of another body ({r.body})"} if r.body != own.body else {}
         for campaign in r.campaigns:
             measured = _budget(study, campaign, own.symbol)
             theirs = next((f.coefficients for f in study.fits if f.campaign == campaign and f.sweeps), None)
@@ -232,7 +238,7 @@ def _against(
             if np.allclose(theirs.reference_point, ours.reference_point, atol=1e-6):
                 length = ours.scaling.length
                 reynolds = (reynolds_of(study, budget.campaign, length), reynolds_of(study, campaign, length))
-                return validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling), reynolds), other
+                return validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling), reynolds), others
         stated = _literature(r, own.symbol)
         if stated is not None and _published(study, fits, r, own.symbol, ours.scaling) is not None:
             value, share, method = stated
@@ -241,9 +247,8 @@ def _against(
                 budget, campaign=f"{r.name}, {method}{AS_PRINTED}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
             )  # fmt: skip
             ratio = r.scaling.ratio(own.symbol, ours.scaling)
-            return validation(budget, test, ratio), "; ".join(
-                filter(None, (other, f"the test is by another method, {method}"))
-            )
+            by_method = {f"the test is by another method, {method}": f"the test used another method ({method})"}
+            return validation(budget, test, ratio), others | by_method
     return None
 
 
@@ -254,7 +259,7 @@ def _missing(study: Study, tow: PlannedTow, symbol: str, own: Coefficient | None
     variable = _variable(symbol)
     left_out = _left_out(study, tow.campaign, symbol)
     if not any(np.any(_moving(t, variable)) for t in _tables(study, tow.campaign)):
-        return NOT_RUN, f"no run with {variable}"
+        return NOT_RUN, f"no run varies {variable}" if variable else "no straight run"
     if left_out:
         return OPEN, left_out
     refused = study.unfitted.get(tow.campaign, "")

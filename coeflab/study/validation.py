@@ -165,7 +165,24 @@ class Validation:
         )
         return ", ".join(filter(None, reasons))
 
-    def _friction(self) -> str:
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """The same as clauses of a sentence, without the Reynolds numbers."""
+        lacking = without_grid(self.lacking)
+        state = lacking.removeprefix("grid study ")
+        grid = {
+            "": "",
+            "no grid study": "there is no grid study",
+            "divergent": "the grid study diverged",
+        }.get(state, f"the grid study gives no error ({state})")
+        clauses = (
+            "the test has no U95" if self.u_measured is None else "",
+            grid,
+            self._friction("the Reynolds numbers of both"),
+        )
+        return tuple(filter(None, clauses))
+
+    def _friction(self, between: str = "") -> str:
         """Why drag has no verdict at these Reynolds numbers; empty for other coefficients and where it has one."""
         if self.symbol[:1] != "X" or set(derivative(self.symbol).factors) - {"u"}:
             return ""
@@ -175,7 +192,8 @@ class Validation:
         ratio = friction_line(computed) / friction_line(measured) - 1.0
         if abs(ratio) <= FRICTION:
             return ""
-        return f"friction differs by {100.0 * abs(ratio):.0f} % between Re {in_millions(computed)} and {in_millions(measured)} (ITTC 1957)"
+        between = between or f"Re {in_millions(computed)} and {in_millions(measured)}"
+        return f"friction differs by {100.0 * abs(ratio):.0f} % between {between} (ITTC 1957)"
 
     @property
     def within(self) -> bool | None:

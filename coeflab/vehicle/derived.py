@@ -122,7 +122,7 @@ def without_restoring(parameters: ParameterFile) -> str:
     said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
     if parameters.hydrostatics is None:
         speed = number(parameters.conditions.speed, 3)
-        said += f"; at {speed} m/s, the speed of the parameter file, there is no verdict: BG is not known"
+        said += f"; it gives no verdict at {speed} m/s, the speed of the parameter file, because BG is unknown"
     return f"{said}."
 
 

@@ -212,14 +212,13 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
         if i < j and other != value:
             unit = "kg m^2" if i > 2 else "kg m" if j > 2 else "kg"
             said.append(
-                f"{primed(name)} and {primed(mirror)} of the file should be equal: as added mass they are {value:.4g} and {other:.4g} {unit}, "
-                f"and their mean, {(value + other) / 2.0:.4g} {unit}, is used for both"
+                f"the added-mass matrix must be symmetric, but {primed(name)} and {primed(mirror)} of the file give {value:.4g} and "
+                f"{other:.4g} {unit}; their mean is used"
             )
             across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
             if (size := float(np.sqrt(abs(np.prod(list(across)))))) > 0.0:
-                said[-1] += (
-                    f" (difference: {100.0 * abs(value - other) / size:.2g} % of the geometric mean of their diagonal entries)"
-                )
+                apart = f"{100.0 * abs(value - other) / size:.2g} % of the geometric mean of their diagonal entries"
+                said[-1] += f". They differ by {apart}"
     return out, tuple(said)
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
+from coeflab.core.table import in_digits_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.units import quantity
@@ -126,6 +127,8 @@ class Comparison:
         Root of the squares of our U95 and of the uncertainty that the source states.
     passed : bool or None
         Only a re-analysis has a verdict.
+    shown : str
+        The published value with the digits of its source.
     """
 
     coefficient: Coefficient
@@ -136,6 +139,7 @@ class Comparison:
     difference: float | None
     combined: float | None
     passed: bool | None
+    shown: str = ""
 
 
 def compare_set(among: CoefficientSet, references: tuple[Reference, ...]) -> tuple[Comparison, ...]:
@@ -181,7 +185,9 @@ def compare(
                 if r.relation is Relation.RE_ANALYSIS and difference is not None and c.u95 is not None:
                     verdict = abs(difference) <= c.u95
                 combined = None if c.u95 is None else _combined(c.u95, published, r.stated(c.symbol))
-                out.append(Comparison(c, r.name, r.relation, reading, published, difference, combined, verdict))
+                printed = r.printed(c.symbol)
+                text = "" if printed is None else in_digits_of(published, printed.printed)
+                out.append(Comparison(c, r.name, r.relation, reading, published, difference, combined, verdict, text))
     return tuple(out)
 
 

@@ -94,6 +94,7 @@ def test_unknown_validation_names_the_near_one(coeflab: Run) -> None:
     done = coeflab("validate", "subof")
     assert done.returncode == 2
     assert "Did you mean suboff?" in done.stderr
+    assert 'found no validation "subof"' in done.stderr
 
 
 def test_failed_check_is_exit_code_one(coeflab: Run, study: Path) -> None:

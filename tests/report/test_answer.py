@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 
 from coeflab.cli.show import plain_lines
-from coeflab.core.table import Severity
+from coeflab.core.table import Severity, in_digits_of, percent
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table, study_summary
+from coeflab.report.answer_notes import _several
 from coeflab.report.content import document, verdict
-from coeflab.report.document import Answer, AnswerRow, Section
-from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
+from coeflab.report.document import Answer, AnswerRow, Document, Section
+from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, slope_figure
 from coeflab.report.figures.panel import SIZE
 from coeflab.report.figures.svg import text_width
+from coeflab.report.formats import html, pdf
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.checks import coverage
 from coeflab.study.study import PlannedTow, Study
@@ -70,6 +72,48 @@ def test_a_quoted_column_has_the_digits_of_the_report_that_it_rounds(beside: Ans
     assert beside.rows[0].published[0] == -0.029834
     rounded_otherwise = reference(Relation.RE_ANALYSIS, {"Yv": "-0.0271"}, "report")
     assert answer(compared(rounded_otherwise, QUOTED), drawn=False).rows[0].published[0] == -0.0298
+
+
+def test_published_values_keep_the_digits_of_their_sources_wherever_they_are_shown(beside: Answer):
+    """No digits of our U95, which would make -0.0303 and -0.0040 other numbers."""
+    assert [r.shown for r in beside.rows] == [("-0.029834", "-0.0303"), ("-0.0128", None), ("-0.0044", "-0.0040")]
+    assert [row[2:4] for row in answer_table(beside).rows] == [
+        ("-0.029834", "-0.0303"), ("-0.0128", "-"), ("-0.0044", "-0.0040"),
+    ]  # fmt: skip
+    made = document(compared(OTHER, REPORT, QUOTED))
+    rows = pdf.content(made)["answer"]["rows"]
+    said = [[None if p is None else "".join(p).replace("\u2212", "-") for p in r["published"]] for r in rows]
+    assert said == [["-0.029834", "-0.0303"], ["-0.0128", None], ["-0.0044", "-0.0040"]]
+    page = html.render(made)["report.html"].decode()
+    cells = re.findall(r'<td role="cell" class="published[^>]*>(.*?)</td>', page)
+    texts = [re.sub("<[^>]+>", "", c).replace("\u2212", "-") for c in cells]
+    assert texts == ["-0.029834", "-0.0303", "-0.0128", "no data", "-0.0044", "-0.0040"]
+
+
+@pytest.mark.parametrize(
+    ("value", "printed", "shown"),
+    [(-0.01391, "-0.013910", "-0.013910"), (-0.0281 * 1.045, "-0.0281", "-0.0294"), (-1.9e-5, "-0.000019", "-1.9e-05"),
+     (0.0, "0.000", "0.000"), (0.02, "+0.0200", "0.0200"), (0.5, ".5", "0.5")],
+)  # fmt: skip
+def test_digits_of_a_source(value: float, printed: str, shown: str):
+    assert in_digits_of(value, printed) == shown
+
+
+def test_a_u95_above_the_value_has_one_text_everywhere():
+    row = AnswerRow("Yr", -0.00173, 0.01087)
+    made = Answer("One sentence.", rows=(row,))
+    page = Document("T", "", (), answer=made)
+    assert percent(row.u95, row.value) == share_text(row.u95 / row.value) == "> 100 %"
+    assert "(> 100 %)" in answer_table(made).rows[0][1]
+    assert pdf.content(page)["answer"]["rows"][0]["within"] == [{"whole": ["> 100 %"]}]
+    assert html.row_of(row).share == "> 100 %"
+    assert percent(0.999, 1.0) == "99.9 %"
+
+
+def test_names_of_one_source_are_one_name():
+    assert _several("Roddy configuration", ["1", "2"]) == "Roddy, configurations 1 and 2"
+    assert _several("Roddy", ["1", "2"]) == "Roddy 1 and Roddy 2"
+    assert _several("Smith body", ["A", "B"]) == "Smith body A and Smith body B"
 
 
 def test_difference_share_and_verdict_belong_together(beside: Answer):
@@ -275,7 +319,7 @@ def test_a_forest_says_what_lies_outside():
 def test_a_bar_cut_at_the_frame_has_an_arrow(value: float, way: str):
     half = {"><": 0.35, "": 1e-3}[way]
     made = forest_figure((AnswerRow("Yv", value, half),), (), "")
-    assert ("goes on beyond the frame" in made.caption) == bool(way)
+    assert ("continues outside the plot" in made.caption) == bool(way)
     plain = forest_figure((AnswerRow("Yv", value, half / 1e4),), (), "")
     assert (made.svg.count("<use ") - plain.svg.count("<use ")) == len(way)
 
@@ -387,7 +431,7 @@ def test_suboff(suboff: Study):
     made = answer(suboff)
     said = verdict(suboff).paragraphs
     assert said[1] == (
-        "Weak passes, as the root sum of squares of U95 and the source's own uncertainty exceeds 25 % of the published value: Zw' of "
+        "Three passes are weak, as our U95 and the source's uncertainty together exceed 25 % of the published value: Zw' of "
         "suboff_roddy_1 (44 %), Yv' of suboff_roddy_3 (53 %) and Kv' of suboff_roddy_3 (45 %)."
     )
     assert said[2] == (
@@ -395,18 +439,23 @@ def test_suboff(suboff: Study):
         "of the authors' data, 3 of 3 recomputed stability indices."
     )
     assert said[3].startswith("Prediction: a coefficient from CFD against the one measured")
-    assert said[4].startswith("Predictions: 5 comparisons of 3 measured numbers")
+    assert said[4] == (
+        "Predictions: 5 comparisons of 3 measured coefficients. A coefficient computed by two campaigns counts once; it passes only if "
+        "both do."
+    )
     assert said[5].startswith(
         "Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull (84 %) and Yv' of suboff_tow_bare_hull"
     )
-    assert said[6].startswith(
-        "Other coefficients are both computed and measured. No verdict on X0' of suboff_cfd_barehull: grid study divergent"
+    assert said[6] == (
+        "X0' and Xvv' were also computed and measured, but get no verdict: the grid study diverged; for X0', friction differs by 9 % "
+        "between the Reynolds numbers of both (ITTC 1957)."
     )
     assert said[7].startswith("Only the predictions are independent evidence.")
     assert said[8].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")
     assert "This does not fail the study" in said[8]
-    assert said[9].startswith(
-        "Also beyond U_V, but not counted: Yr' and Nr' of suboff_tow_bare_hull, as the test is by another method"
+    assert said[9] == (
+        "Yr' and Nr' of suboff_tow_bare_hull also differ by more than U_V. We do not count them: the test used another method (PMM) "
+        "and the grid study diverged."
     )
     assert said[-1].startswith("The study does not fail: ")
     assert (
@@ -427,7 +476,7 @@ def test_suboff(suboff: Study):
         "0.0027",
         "(10",
         "%)",
-        "-0.0278",
+        "-0.027834",
         "-0.0281",
         "-0.0303",
         "+0.59",

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from coeflab.core.table import Check, Severity
-from coeflab.core.wording import Verbatim
+from coeflab.core.wording import Verbatim, listed, told
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
@@ -60,11 +60,35 @@ def test_nothing_in_the_core_is_longer_than_three_lines(angles):
 
 
 def test_three_lines_lose_no_word_and_leave_what_users_wrote():
-    long = "One sentence of a few words. " * 12 + ", ".join(["a list that goes on"] * 20) + "."
-    pieces = three_lines((long, "short"))
+    long = "One sentence of a few words; and a part of it. See p. 19 of R. F. Roddy, Fig. 12. " * 6
+    pieces = three_lines((long.strip(), "short"))
     assert max(map(len, pieces)) <= 240
-    assert " ".join(pieces) == f"{long} short"
+    assert " ".join(pieces) == f"{long}short"
     assert three_lines((Verbatim(long),)) == (long,)
+
+
+def test_a_paragraph_ends_with_a_sentence():
+    listing = ", ".join(["a list that goes on (only; here)"] * 20) + "."
+    pieces = three_lines((f"A sentence, of parts; first. {'Another, and more. ' * 14}{listing} The last.",))
+    assert all(p.endswith(".") for p in pieces)
+    assert listing in pieces
+    assert all(
+        not p.endswith(("p. 19", "p.", "F.", "Fig."))
+        for p in three_lines(("See p. 19 and Fig. 2 of R. F. Roddy " * 20,))
+    )
+
+
+def test_a_long_listing_is_several_sentences_and_a_short_one_is_one():
+    names = [f"campaign {i}" for i in range(60)]
+    said = told("Not found: ", names, join=listed)
+    assert said.startswith("Not found: campaign 0, ")
+    pieces = three_lines((said,))
+    assert len(pieces) > 1
+    assert max(map(len, pieces)) <= 240
+    assert all(p.startswith("Not found: ") and p.endswith(".") for p in pieces)
+    assert all(f"{n}" in said for n in names)
+    assert told("Not found: ", names[:3], join=listed) == "Not found: campaign 0, campaign 1 and campaign 2."
+    assert told("Of ", ["a", "b"], end=" no value.") == "Of a; b no value."
 
 
 def test_an_answer_leads_to_sections_that_are_there():
@@ -117,9 +141,10 @@ def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():
     both = replace(fit.coefficients, coefficients=(*others, tied))
     study = replace(study, fits=(replace(fit, coefficients=both, sweeps=fit.sweeps[:-1]),))
     table = next(s for s in document(study).sections if s.anchor == "coefficients").tables[0]
-    said = [n for n in table.notes if "form is chosen" in n]
+    said = [n for n in table.notes if "choosing this form" in n]
     assert said == [
-        "U95 of Yv|v|' holds only the scatter and the uncertainty of the slope. The form is chosen, its error is not assessed."
+        "U95 of Yv|v|' holds only the scatter and the uncertainty of the slope. The error from choosing this form is not "
+        "included."
     ]
     assert form_not_assessed([replace(tied, parts=Parts(random=1e-5, model_form=0.0))]) == ""
 
@@ -149,10 +174,10 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
-    joined = "the root sum of squares of U95 and the source's own uncertainty exceeds 25 % of the published value"
-    assert (f"Weak passes, as {joined}: Yv' of tow (26 %)." in text) == is_weak
+    joined = "our U95 and the source's uncertainty together exceed 25 % of the published value"
+    assert (f"One pass is weak, as {joined}: Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
-    assert "Weak" not in words(failed, "verdict")
+    assert "weak" not in words(failed, "verdict")
 
 
 def test_a_failure_is_named():

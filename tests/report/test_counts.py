@@ -28,7 +28,7 @@ def test_copies_by_symmetry_do_not_count_and_kinds_are_named():
     turned = tuple(replace(s, by_symmetry="tow/other") if s.symbol == "Nv" else s for s in fit.sweeps)
     copied = harvest(replace(study, fits=(replace(fit, sweeps=turned), *study.fits[1:])))
     assert copied.startswith("Found: 1 coefficient (")
-    assert copied.endswith("1 more is a copy of these by symmetry.")
+    assert copied.endswith("Another one follows from these by symmetry.")
 
 
 def test_the_first_page_says_what_the_source_states_where_rig_and_balance_are_left_out():

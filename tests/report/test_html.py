@@ -197,14 +197,16 @@ def test_the_first_mention_of_a_term_leads_to_its_definition():
 def test_a_row_of_the_answer_has_the_digits_of_its_u95():
     row = AnswerRow("Yv", -0.026224, 0.002682, published=(-0.0139, 0.02), difference=0.00161, agrees=True)
     made = row_of(row)
-    assert (made.own, made.share, made.difference, made.against) == ("-0.0262 +- 0.0027", "10", "+0.0016", "+0.60")
+    assert (made.own, made.share, made.difference, made.against) == ("-0.0262 +- 0.0027", "10 %", "+0.0016", "+0.60")
     assert (made.verdict, bar_of(row)) == ("agrees", Ends(50.0, 15.0, False))
-    assert [published(v) for v in row.published] == [("-0.0139", 2), ("0.0200", 2)]
+    assert [published(v) for v in row.shown] == [("-0.0139", 2), ("0.0200", 2)]
+    exact = replace(row, printed=("-0.013910", "0.02"))
+    assert [published(v) for v in exact.shown] == [("-0.013910", 0), ("0.02", 4)]
     far = replace(row, difference=-0.02, agrees=False)
     assert (row_of(far).verdict, bar_of(far)) == ("differs", Ends(0.0, 50.0, True))
     empty = AnswerRow("Yr", None, None)
     assert (row_of(empty).status, row_of(empty).verdict, bar_of(empty)) == ("no data", "missing", None)
-    assert row_of(replace(row, value=1e-9)).share == "> 1000"
+    assert row_of(replace(row, value=1e-9)).share == "> 100 %"
 
 
 def test_no_path_of_this_machine_is_in_it():

@@ -292,6 +292,39 @@ def test_the_bar_is_as_long_as_its_share_of_u95():
     assert bar.x0 == pytest.approx((shade.x0 + shade.x1) / 2.0, abs=0.3)
 
 
+def test_a_value_and_its_unit_stay_on_one_line():
+    """Wherever the line ends: one word more in front of it moves the break by a few letters."""
+    for n in range(40):
+        text = f"{'of ' * 25}{'i' * n} at 3.34 m/s, 65.1 kg m^2 and 25 % of (12 kg/m^3) it."
+        made = opened(Document("T", "", (Section("one", "One", (text,)),)))
+        lines = [line for page in made for line in page.get_text().splitlines()]
+        assert any("3.34 m/s" in line for line in lines), lines
+        assert any("65.1 kg m" in line for line in lines), lines
+        assert any("25 %" in line for line in lines), lines
+        assert any("12 kg/m" in line for line in lines), lines
+    assert pdf.MEASURED.findall("version 3 runs, 14 fits with 7 m of it, 9 min") == ["7 m"]
+
+
+def test_one_line_above_a_table_stays_with_it():
+    """A head with a line of words is not left at the foot of a page."""
+    rows = tuple((f"row {i}", "found", "a rule of some length") for i in range(30))
+    table = Table("Failures", ("check", "found", "meaning"), rows, (), frozenset({0, 1, 2}))
+    for n in range(20, 60, 2):
+        before = Section("before", "Before", ("A line. " * 10,) * n)
+        made = opened(Document("T", "", (before, Section("checks", "Checks", ("0 fail, 17 warn.",), (table,)))))
+        (at,) = [i for i, page in enumerate(made) if "0 fail, 17 warn." in page.get_text()]
+        assert "row0" in squeezed(made[at].get_text()), n
+        assert "Failures" in made[at].get_text(), n
+
+
+def test_the_heads_of_the_first_page_have_their_subscripts():
+    row = AnswerRow("Yv", 1.0, 0.2, "", "", (0.9,), 0.1, True)
+    made = opened(Document("T", "", (), answer=Answer("S", ("experiment",), "experiment", (row,))))
+    spans = [s for b in made[0].get_text("dict")["blocks"] for line in b.get("lines", ()) for s in line["spans"]]
+    assert not any("U95" in s["text"] for s in spans)
+    assert sum(s["text"].strip().startswith("95") and s["size"] < 8.0 for s in spans) >= 3
+
+
 def test_an_appendix_begins_on_a_page_of_its_own():
     made = opened(small(published=True)[0])
     (at,) = [i for i, page in enumerate(made) if "Appendix" in page.get_text()]

@@ -104,7 +104,9 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
-    assert said.endswith(" These indices take published derivatives, not ours: Yr' and Nr' of synthetic.")
+    assert said.endswith(
+        " The data of these files give no value, so the indices use published ones: Yr' and Nr' of synthetic."
+    )
     assert "published" not in in_words(with_files(file))[0]
 
 
@@ -167,8 +169,8 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     )
     assert said.startswith(start)
     assert vertical in said
-    assert said.endswith(". At 1.50 m/s, the speed of the parameter file, there is no verdict: BG is not known.")
-    assert "BG is not known" in in_words(study, with_values=False)[0]
+    assert said.endswith(". G_v gives no verdict at 1.50 m/s, because BG is unknown.")
+    assert "BG is unknown" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)
     assert vertical in known
@@ -178,7 +180,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
-    assert "BG is not known" in found.comment
+    assert "BG is unknown" in found.comment
 
 
 def test_no_parameter_file_no_stability():

@@ -149,7 +149,7 @@ def test_what_did_not_converge_is_open_with_its_reason(bodies: tuple[Towed, ...]
     assert by["Yr"].missing == OPEN
     assert by["Yr"].why == "2 of 6 turning runs used: 1 diverged, 3 still drifting"
     assert by["Zw"].missing == NOT_RUN
-    assert by["Zw"].why == "no run with w"
+    assert by["Zw"].why == "no run varies w"
 
 
 def test_runs_left_out_are_counted_beside_a_value_too(bodies: tuple[Towed, ...]) -> None:

@@ -89,8 +89,11 @@ def test_a_measured_number_counts_once(
         assert held_of_study(study)[Basis.PREDICTED] == (good, 1)
         said = " ".join(headline_of_study(study))
         assert f"{good} of 1 measured numbers predicted by CFD" in said
-        assert "Predictions: 2 comparisons of 1 measured numbers" in said
-        assert "No verdict on Nv' of cfd: no grid study" in said
+        assert (
+            "Predictions: 2 comparisons of 1 measured coefficient. A coefficient computed by two campaigns counts once"
+            in said
+        )
+        assert "Nv' was also computed and measured, but gets no verdict: there is no grid study." in said
         assert f"CFD agrees with {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 

@@ -285,7 +285,7 @@ def test_a_motion_whose_every_run_crashed_is_open_and_says_so(whole: tuple[Tow, 
     rows = {r.symbol: (r.missing, r.why) for r in lost.six}
     assert rows["Yr"] == rows["Nr"] == ("open", "no turning run used (of 2, 2 crashed)")
     waiting = [replace(r, state=JobState.WAITING) if r.condition.turns else r for r in crashed]
-    assert {r.why for r in replace(lost, runs=tuple(waiting)).six if r.symbol == "Yr"} == {"no run with r"}
+    assert {r.why for r in replace(lost, runs=tuple(waiting)).six if r.symbol == "Yr"} == {"no run varies r"}
 
 
 def test_conditions_taken_out_of_the_matrix_are_left_on_disk(tmp_path: Path) -> None:

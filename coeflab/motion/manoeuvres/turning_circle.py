@@ -122,7 +122,7 @@ def _steady(trajectory: Trajectory, length: float) -> list[Figure]:
         ("steady turning diameter", "m", "of the circle seen from above, through the water (ITTC 7.5-02-06-01)"),
         ("steady yaw rate", "rad/s", "of the heading, once it is steady"),
         ("steady drift", "rad", "asin(v/U), once it is steady"),
-        ("speed in the turn", "1", "over the approach speed"),
+        ("speed in turn / approach speed", "1", "once it is steady"),
     )
     return [
         judged(Figure(n, v, u, d, status, why), trajectory, float(t[-1]))

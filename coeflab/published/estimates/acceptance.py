@@ -224,11 +224,8 @@ def _beside() -> tuple[str, ...]:
         for s, p in pairs.items()
         if printed.get(p) is not None
     ]
-    said.append(
-        "REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins: "
-        + ", ".join(parts)
-        + "."
-    )
+    said.append("REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins.")
+    said.append(f"REMUS 100: {', '.join(parts)}.")
     return tuple(said)
 
 

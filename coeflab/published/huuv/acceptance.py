@@ -7,6 +7,7 @@ import numpy as np
 from coeflab.bodies.closed_forms import plate_coefficient
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
+from coeflab.core.wording import THREE_LINES, grouped
 from coeflab.motion import steady_state
 from coeflab.motion.marching import idle, integrated_forces
 from coeflab.motion.tune.tuning import Tuning, largest_correlations
@@ -72,13 +73,15 @@ def acceptance() -> Acceptance:
 
 
 def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
-    pairs = ", ".join(f"{IN_WORDS[a]} with {IN_WORDS[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB]))
+    pairs = [f"{IN_WORDS[a]} with {IN_WORDS[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB])]
+    start = "Correlations on the MATLAB half: "
+    several = grouped(pairs, THREE_LINES - len(start) - 1, ", ".join)
     reach = max(float(np.degrees(np.nanmax(t.figures[:, 1]))) for t in huuv.turns.values())
     return (
         "m_x, m_y, m_yr, the thruster arm and the moments of inertia are chosen: the paper prints none of them.",
         f"Incidence reaches {reach:.3g} deg; the paper's tables end at 25 deg. Astern the hull is its own mirror image.",
         f"Standard errors of u, beta and radius are chosen, about what the fits leave: {_weights()}. No turn was left out.",
-        f"Correlations on the MATLAB half: {pairs}.",
+        *(f"{start}{', '.join(group)}." for group in several),
         "The paper scaled C_S, C_m and M_mr by 2 by hand; here they are least squares with intervals where there are any.",
         "Five degrees of freedom: C_L, C_m(alpha), M_mq, elevators, z_CG, buoyancy and geometry are assumed, see five_dof.toml.",
         *(f"Cannot be made. {text}" for text in CANNOT),

@@ -307,8 +307,8 @@ def _carried(glider: Glider) -> ComparedTable:
         "carried", "The dive as a parameter file, in the rigid body of every simulator", tuple(rows), "Equations 8 to 13",
         (
             "Largest force over the net weight, or moment over that of the masses, which the parameter file of a dive leaves in the "
-            "state of our equations: other code, products of velocities in place of the polar, and the centre of gravity in the "
-            "inertia.",
+            "state of our equations.",
+            "The file has other code, products of velocities in place of the polar, and the centre of gravity in the inertia.",
         ),
     )  # fmt: skip
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, PathPatch, Polygon
 from matplotlib.path import Path
 
-from coeflab.core.table import coefficient, plus_minus
+from coeflab.core.table import LARGE, LARGEST_SHARE, coefficient, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
@@ -201,7 +201,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
             inside = (at >= across[0]) & (at <= across[1])
             tagged(axes.plot(at[inside], high[inside], zorder=2.5, **look), f"column{i}")
             handles.append(tagged(Line2D([], [], label=column, **look), f"column{i}"))
-            notes = [f"{primed(r.symbol)}: {coefficient(r.published[i])}" for _, _, r in pairs]
+            notes = [f"{primed(r.symbol)}: {r.shown[i]}" for _, _, r in pairs]
             series.append(points(f"column{i}", column, at, high, notes))
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - legend_rows * ROW)
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
@@ -211,7 +211,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (
-        " A bar with an arrow goes on beyond the frame."
+        " Arrow: it continues outside the plot."
         if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1]
         else ""
     )
@@ -257,7 +257,7 @@ def _ours(
 def share_text(share: float) -> str:
     """A part of a value: whole per cent, below ten with one decimal; above the value itself only that."""
     share = 100.0 * abs(share)
-    return "> 100 %" if share > 100.0 else f"{share:.0f} %" if share >= 9.95 else f"{share:.1f} %"
+    return LARGE if share > LARGEST_SHARE else f"{share:.0f} %" if share >= 9.95 else f"{share:.1f} %"
 
 
 def _beside(r: AnswerRow, by: float, columns: Sequence[str]) -> str:
@@ -432,7 +432,7 @@ def shares_figure(found: Acceptance) -> Figure:
         svg = svg_text(figure, "answer-shares", title, said)
     caption = "A bar is the worst number of a table, at the right how many are within the tolerance; the dotted line is the tolerance."
     if np.any(cut):
-        caption += f" A bar with an arrow goes on beyond {WIDEST:g}: the table has its length."
+        caption += f" An arrow means that the bar continues beyond {WIDEST:g}; the table has its length."
     return Figure("answer-shares", svg, title, caption, said, (panel,))
 
 

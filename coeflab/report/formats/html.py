@@ -23,9 +23,10 @@ from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from coeflab.core.table import ABSENT, LARGEST_SHARE, as_printed, coefficient, plus_minus, with_u95
+from coeflab.core.table import ABSENT, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.figures.answer import share_text
 from coeflab.report.figures.svg import size_of
 from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
@@ -189,7 +190,7 @@ def row_of(row: AnswerRow) -> Row:
     sign = "+" * (row.difference is not None and row.difference > 0.0)
     against = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
     verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
-    share = _in_percent(row.u95, row.value)
+    share = share_text(row.u95 / row.value) if row.u95 is not None and row.value else ABSENT
     return Row(
         primed(row.symbol),
         own,
@@ -206,10 +207,10 @@ def filename(text: str) -> str:
     return re.sub(r"[^A-Za-z0-9_-]+", "_", text)[:60]
 
 
-def published(value: float) -> tuple[str, int]:
-    """A published number without zeros behind its fourth decimal, and how many places it is short of six."""
-    shown = as_printed(value)
-    return shown, 0 if "e" in shown else len(coefficient(value)) - len(shown)
+def published(shown: str) -> tuple[str, int]:
+    """A published number in the digits of its source, and how many places it is short of six decimals."""
+    decimals = len(shown.partition(".")[2])
+    return shown, 0 if "e" in shown else max(PRINTED - decimals, 0) + ("." not in shown)
 
 
 def rows_json(answer: Answer) -> str:
@@ -228,13 +229,6 @@ def rows_json(answer: Answer) -> str:
         for r in answer.rows
     ]
     return _inside_a_page({"rows": rows})
-
-
-def _in_percent(u95: float | None, value: float | None) -> str:
-    if u95 is None or not value:
-        return ABSENT
-    share = 100.0 * abs(u95 / value)
-    return f"> {LARGEST_SHARE:.0f}" if share > LARGEST_SHARE else f"{share:.0f}" if share >= 9.95 else f"{share:.1f}"
 
 
 @dataclass(frozen=True, slots=True)

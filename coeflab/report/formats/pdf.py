@@ -15,7 +15,6 @@ from coeflab.core.errors import OutputError
 from coeflab.core.table import Table, percent, plus_minus, says_one
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
-from coeflab.report.answer import answer_table
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
@@ -33,6 +32,8 @@ NO_DATA = "no data"
 FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
 FINER = 4
 FILE = re.compile(r"/?(?:[\w-]+[./])+[A-Za-z]\w{0,7}[,;:.]?")
+_UNIT = r"(?:kg|km|mm|cm|kn|ft|lb|Hz|rad|m|s|N|W)"
+MEASURED = re.compile(rf"(?<!\S)((?:[<>≤≥±] )?[(]?[−+]?\d[\d.,]* (?:%|{_UNIT}(?:[/·* ]{_UNIT})*)(?![\w/]))")
 PLACES = re.compile(r"(?<=[/_])(?=.)|(?<=\.)(?=[A-Za-z]\w*\.)")
 
 
@@ -136,7 +137,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "sentence": _text(answer.sentence),
         "compared": _text(answer.compared),
         "columns": [_text(shortened(c, LONGEST_COLUMN)) for c in answer.columns],
-        "rows": [_answer_row(r, cells) for r, cells in zip(answer.rows, _digits(answer), strict=True)],
+        "rows": [_answer_row(r, len(answer.columns)) for r in answer.rows],
         "chips": [{"name": glyphs(c.name), "text": _text(c.text), "severity": c.severity.value} for c in answer.chips],
         "notes": [_text(n) for n in answer.notes],
         "table": None if answer.table is None else _table(answer.table, 1),
@@ -144,19 +145,10 @@ def _answer(answer: Answer) -> dict[str, Any]:
     }
 
 
-def _digits(answer: Answer) -> list[list[str | None]]:
-    """The published values of each row as the answer's table prints them, None where there is none."""
-    out = []
-    printed = answer_table(replace(answer, table=None)).rows
-    for row, cells in zip(answer.rows, printed, strict=True):
-        found = [None if p is None else text for p, text in zip(row.published, cells[2:], strict=False)]
-        out.append([*found, *[None] * len(answer.columns)][: len(answer.columns)])
-    return out
-
-
-def _answer_row(row: AnswerRow, published: list[str | None]) -> dict[str, Any]:
+def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
     """Its cells as texts; the share of U95 that the difference is, which the bar shows, or None."""
     ours = row.status if row.value is None else plus_minus(row.value, row.u95)
+    published = [*row.shown, *[None] * columns][:columns]
     within = percent(row.u95, row.value) if row.value is not None and row.u95 is not None else ""
     return {
         "symbol": _text(primed(row.symbol)),
@@ -258,7 +250,10 @@ def _longest(cells: list[list[Any]]) -> list[list[Any]]:
     """The four longest cells of a column as they are set: what its width is measured by."""
 
     def length(cell: list[Any]) -> int:
-        return sum(len(p) if isinstance(p, str) else len(p.get("up") or p["text"]) for p in cell)
+        return sum(
+            len(p) if isinstance(p, str) else length(p["whole"]) if "whole" in p else len(p.get("up") or p["text"])
+            for p in cell
+        )
 
     return sorted(cells, key=length, reverse=True)[:4]
 
@@ -272,11 +267,26 @@ def _word(table: Table, column: int) -> str:
 
 def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
     pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, kept()))]
-    return pieces if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
+    return _with_units(pieces) if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
 
 
 def _text(text: str) -> list[Any]:
-    return [_piece(p) for p in runs(text, kept())]
+    return _with_units([_piece(p) for p in runs(text, kept())])
+
+
+def _with_units(pieces: list[Any]) -> list[Any]:
+    """The pieces, those of a number and a unit that could part at its slash or its space in one that stays on a line."""
+    out: list[Any] = []
+    for piece in pieces:
+        last = out[-1] if out else None
+        if isinstance(piece, dict) and "up" in piece and isinstance(last, dict) and "whole" in last:
+            last["whole"].append(piece)
+        elif isinstance(piece, str):
+            parts = MEASURED.split(piece)
+            out += [{"whole": [part]} if i % 2 else part for i, part in enumerate(parts) if part]
+        else:
+            out.append(piece)
+    return out
 
 
 def _folding(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.table import ABSENT, Table, percent
-from coeflab.core.wording import listed
+from coeflab.core.wording import listed, told
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
@@ -25,17 +25,17 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope is the weighted median of many fits to the whole sweep, each a line plus v|v|, cubic and smooth parts. The better a fit "
+    "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "For a slope, no form and no range is chosen. For a term of higher degree the form is chosen; the notes below the tables name these terms.",
-    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table. Its parts are given in % of the value. Random: scatter of the points. "
-    "Form: unknown shape of the curve.",
+    "A slope averages over all forms and ranges. A term of higher degree depends on one chosen form; the notes below the tables name these terms.",
+    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
+    "Random: scatter of the points. Form: unknown shape of the curve.",
     "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
-    "to all runs that its law covers, also some in which two motions vary. A dash: does not apply or not assessed, so not in U95.",
+    "to all runs that its law covers, also some in which two motions vary. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."
-OPEN = "Sign open: U95 exceeds the value. Do not use such a value alone: it holds only together with the other terms of its law."
+OPEN = "Sign open: U95 exceeds the value. Do not use it alone, only together with the other terms of the same fit."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
@@ -98,14 +98,21 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     without = [c for c in found if c.status is Status.FORM_ASSUMED and c.u95 is not None and c.parts.model_form is None]
     if not without:
         return ""
-    named = listed([primed(c.symbol) for c in without])
-    return f"U95 of {named} holds only the scatter and the uncertainty of the slope. The form is chosen, its error is not assessed."
+    end = " holds only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
+    return told("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
+
+
+def _covered(study: Study) -> tuple[str, str]:
+    """What U95 of slopes covers, and in sentences what only some of the slopes have in it."""
+    every, some = tables.covered(study)
+    only = [f" {told(f'Only some U95 also cover the {name}: ', places)}" for name, places in some.items()]
+    return ", ".join(every), "".join(only)
 
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
     text: tuple[str, ...] = (
-        tuple(t.format(tables.covers(study)) for t in TEXT)
+        tuple(t.format(*_covered(study)) if "{}" in t else t for t in TEXT)
         if any(f.sweeps for f in study.fits)
         else FIXED
         if study.coefficients
@@ -194,8 +201,8 @@ def _of_some(name: str, budgets: Sequence[Budget]) -> str:
 def _wrong(study: Study, campaign: str) -> str:
     """Rows that the fits of a campaign left out as they do not fit the others; empty without any."""
     found = [s for f in study.fits if f.campaign == campaign for s in f.sweeps if len(s.wrong)]
-    each = "; ".join(f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found)
-    return f"Left out by the fit, as they do not fit the other points: {each}." if each else ""
+    each = [f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found]
+    return told("Left out by the fit, as they do not fit the other points: ", each) if each else ""
 
 
 def _without_value(study: Study) -> tuple[str, ...]:
@@ -204,5 +211,5 @@ def _without_value(study: Study) -> tuple[str, ...]:
     for c in study.coefficients:
         if c.status is Status.NO_TABLE:
             missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
-    each = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in missing.items())
-    return (f"No value, as no table varies the motion: {each}.",) if each else ()
+    each = [f"{listed(symbols)} of {place}" for place, symbols in missing.items()]
+    return (told("No value, as no table varies the motion: ", each),) if each else ()

@@ -233,14 +233,14 @@ CONTROLS = (
     "A control angle keeps the sign of its table. Example: in Roddy's tests of SUBOFF (1990, Table 4) a positive rudder gives Y to "
     "starboard (Ydr' = 0.005929), a positive stern plane gives Z up (Zds' = -0.005603)."
 )
-MOVED = "The rows of the tables are moved there and then fitted: slopes that are moved after a fit about another point differ a little."
+MOVED = "The rows of the tables are moved there and then fitted. Moving slopes after the fit gives slightly different values."
 POTENTIAL = (
     "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
     "simulator that adds -C_A(nu) nu itself must get them without these parts, or it counts the parts twice."
 )
 REST = (
-    "A curve has a constant (force at zero angle) unless its table declares symmetry. With points on both sides of zero, a fit may "
-    "add the even or odd part that symmetry would forbid."
+    "Each curve has a constant (force at zero angle), unless the table declares symmetry. With points on both sides of zero, the fit may "
+    "also include the part that symmetry forbids."
 )
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
-from coeflab.core.wording import listed
+from coeflab.core.wording import grouped, listed, told
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.motion.manoeuvre import Simulation
@@ -103,9 +103,9 @@ def _said(part: str, values: Array) -> str:
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
-    "Positive: stable. Negative: unstable. Interval with zero in it: sign open.",
-    "U95 comes from the U95 of the four derivatives, fitted or published, without mass and centre of gravity. It is linearised and "
-    "decides the verdict; Monte Carlo limits show how asymmetric the interval is.",
+    "Positive: stable. Negative: unstable. If the interval contains zero, the sign is open.",
+    "U95 comes from the U95 of the four derivatives, fitted or published, without mass and centre of gravity. The verdict uses this "
+    "linearised U95. Monte Carlo limits show how asymmetric the interval is.",
     "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
     "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
 )
@@ -121,8 +121,9 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     out: list[str] = []
     for index, senses in said.items():
         each = [
-            _of_one_sense(index, v, senses[v], lacking, with_values)
+            said
             for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
+            for said in _of_one_sense(index, v, senses[v], lacking, with_values)
         ]
         if each:
             start = (
@@ -134,6 +135,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
 
 
+PLACES = 130  # letters of the parameter files that one sentence names beside its verdict
 SOURCES = {"experiment": "test", "cfd": "CFD"}
 
 
@@ -146,27 +148,25 @@ def _one_body(study: Study) -> list[str]:
             kinds = dict.fromkeys(SOURCES.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
             by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
     return [
-        f"{listed([f'{name} ({kind})' for name, kind in files.items()])} are parameter files of one body."
-        for files in by.values()
+        f"{listed([f'{name} (from {kind})' for name, kind in files.items()])} describe the same body, {body.replace('_', ' ')}."
+        for body, files in by.items()
         if len(files) > 1
     ]
 
 
 def _of_one_sense(
     index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
-) -> str:
-    """The parameter files that one verdict holds for; at high speed also what is open at their own."""
-    each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
+) -> list[str]:
+    """The parameter files that one verdict holds for, so many at a time; at high speed also what is open at their own."""
+    each = [f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items()]
+    open_at = ""
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
-        each += (
-            f". At {speeds} m/s, the speed of the parameter file, there is no verdict: BG is not known"
-            if speeds
-            else ""
-        )
+        open_at = f". {index} gives no verdict at {speeds} m/s, because BG is unknown" if speeds else ""
     undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
     said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
-    return f"{said}: {each}"
+    groups = [f"{said}: {', '.join(group)}" for group in grouped(each, PLACES, ", ".join)]
+    return [*groups[:-1], groups[-1] + open_at]
 
 
 def _by_others(study: Study) -> list[str]:
@@ -176,7 +176,8 @@ def _by_others(study: Study) -> list[str]:
         stated = [from_literature(p, d.name) for d in stability(p)]
         symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
         each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
-    return [f"These indices take published derivatives, not ours: {'; '.join(each)}."] if each else []
+    start = "The data of these files give no value, so the indices use published ones: "
+    return [told(start, each)] if each else []
 
 
 def from_literature(parameters: ParameterFile, index: str) -> list[str]:
@@ -398,8 +399,8 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
 
 EXPORTED = (
     "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
-    "those of the parameter file. The difference is the error of a simulation with that target (simulator).",
-    "A simulator that adds -C_A(nu) nu itself gets linear derivatives without their potential part, so that nothing counts twice.",
+    "those of the parameter file. The difference is the error that the target simulator adds.",
+    "A simulator that adds -C_A(nu) nu itself gets linear derivatives without their potential part, so that added mass is not counted twice.",
 )
 
 
@@ -426,7 +427,9 @@ def added_masses(study: Study) -> tuple[str, ...]:
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
     said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
-        f"Added mass of {name}, for roots, motions and exports: {words}." for name, words in said.items() if words
+        f"Added mass of {name}, for roots, motions and exports: {words[:1].lower()}{words[1:]}."
+        for name, words in said.items()
+        if words
     )
 
 

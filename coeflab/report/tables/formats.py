@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.stored import FIRST_VERSION
-from coeflab.core.table import ABSENT, LARGEST_SHARE, Table, coefficient, number, with_u95
+from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
@@ -27,8 +27,9 @@ from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFi
 from coeflab.vehicle.second_order import ROUNDING, products_once
 
 NAMED = 3
+MOST_APART = 1000.0  # per cent of a force; a larger difference is not told from this one
 IN_PERCENT = (
-    "Largest and rms: difference of law and points, in % of the largest force of the component in that table; where: the point of the largest. Two offsets of the set-up are subtracted from the points first: a force "
+    "Largest and rms: difference of law and points, in % of the largest force of the component in that table; where: the point with the largest difference. Two offsets of the set-up are subtracted from the points first: a force "
     "at zero angle and rate that the law does not have, and the part of X that changes its sign with the drift."
 )
 
@@ -121,9 +122,7 @@ def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:
 def percent(share: float) -> str:
     """A relative difference in per cent, 0 where it is rounding."""
     value = 100.0 * share if share > LOSSLESS else 0.0
-    return (
-        f"> {LARGEST_SHARE:.0f} %" if value > LARGEST_SHARE else f"{value:.0f} %" if value >= 99.5 else f"{value:.2g} %"
-    )
+    return f"> {MOST_APART:.0f} %" if value > MOST_APART else f"{value:.0f} %" if value >= 99.5 else f"{value:.2g} %"
 
 
 def in_short(loss: Loss) -> str:

@@ -22,7 +22,7 @@ from coeflab.core.table import (
     with_u95,
 )
 from coeflab.core.types import Array
-from coeflab.core.wording import listed
+from coeflab.core.wording import listed, told
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
@@ -39,7 +39,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 NO_DATA, NO_VALUE = "no data", "no value"
 ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-WEAK = f"the root sum of squares of U95 and the source's own uncertainty exceeds {100.0 * WIDE:.0f} % of the published value"
+WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"
 
 
 def coefficients(study: Study, campaign: str | None = None) -> Table:
@@ -113,6 +113,14 @@ def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
     str
         What entered only some of the slopes is followed by their symbols.
     """
+    every, some = covered(study, among)
+    return ", ".join((*every, *(f"{name} (only {'; '.join(places)})" for name, places in some.items())))
+
+
+def covered(
+    study: Study, among: Collection[Coefficient] | None = None
+) -> tuple[tuple[str, ...], dict[str, tuple[str, ...]]]:
+    """The same apart: what is in U95 of every slope, and what is in some, with their symbols by campaign."""
     slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
     wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
@@ -122,19 +130,17 @@ def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
         for name in (*names, *(s.name for s in b.studies)):
             entered.setdefault(name, []).append(b)
     several = len({campaign for campaign, _ in wanted}) > 1
-    said = [
-        name if len(those) == len(wanted) else f"{name} (only {_by_campaign(those, several=several)})"
-        for name, those in entered.items()
-    ]
-    return ", ".join((COVERS, *said))
+    every = tuple(name for name, those in entered.items() if len(those) == len(wanted))
+    some = {name: _by_campaign(those, several=several) for name, those in entered.items() if name not in every}
+    return (COVERS, *every), some
 
 
-def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> str:
+def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> tuple[str, ...]:
     """Symbols of budgets, followed by their campaign where a study has several."""
     by: dict[str, dict[str, None]] = {}
     for b in budgets:
         by.setdefault(b.campaign if several else "", {})[primed(b.symbol)] = None
-    return "; ".join(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
+    return tuple(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
 
 
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
@@ -222,7 +228,7 @@ def verdicts(study: Study) -> Table:
             primed(c.coefficient.symbol),
             c.coefficient.campaign or ABSENT,
             *with_u95(c.coefficient.value, c.coefficient.u95),
-            as_printed(c.published),
+            c.shown or as_printed(c.published),
             *with_u95(None if c.difference is None else abs(c.difference), c.combined),
             "weak pass" if is_weak(c) else VERDICTS[c.passed],
             c.reference,
@@ -233,7 +239,7 @@ def verdicts(study: Study) -> Table:
     headers = ("", "campaign", "ours", "U95", "published", "|difference|", "combined", "verdict", "reference")
     notes = (
         f"{Relation.RE_ANALYSIS}: {Relation.RE_ANALYSIS.meaning}.",
-        *([f"weak pass: {WEAK}."] if any(row[-2] == "weak pass" for row in rows) else []),
+        *([f"weak pass: {WEAK} (root sum of squares)."] if any(row[-2] == "weak pass" for row in rows) else []),
         "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
     )
     return Table(
@@ -251,10 +257,10 @@ def side_by_side(study: Study) -> Table:
         dict.fromkeys((c.reference, c.reading) for c in study.comparisons if c.relation is not Relation.RE_ANALYSIS)
     )
     twice = {name for name, _ in columns if sum(n == name for n, _ in columns) > 1}
-    beside: dict[tuple[str | None, str], dict[tuple[str, str], float]] = {}
+    beside: dict[tuple[str | None, str], dict[tuple[str, str], str]] = {}
     for made in study.comparisons:
         key = (made.coefficient.campaign, made.coefficient.symbol)
-        beside.setdefault(key, {})[made.reference, made.reading] = made.published
+        beside.setdefault(key, {})[made.reference, made.reading] = made.shown or as_printed(made.published)
     rows = []
     quoted = {r.body for r in study.references if r.relation is Relation.QUOTED}
     for symbol in study.plan.wanted:
@@ -269,7 +275,7 @@ def side_by_side(study: Study) -> Table:
                     *((NO_DATA, ABSENT) if c.status is Status.NO_TABLE else noun_tables.with_status(c)),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
-                    *(as_printed(published.get(k)) for k in columns),
+                    *(published.get(k, ABSENT) for k in columns),
                 )
             )
     given = {r.name for r in study.references if r.relation is Relation.QUOTED}
@@ -285,7 +291,7 @@ def side_by_side(study: Study) -> Table:
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
-        digits = "The first page shows the digits that the test report prints, where the project holds it."
+        digits = "The first page gives the test report's own digits where we have that report."
         return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
     another = "another method" if r.body in ours else "another body"
     return f"{r.name}: {another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
@@ -317,7 +323,7 @@ def campaigns(study: Study) -> Table:
         if configuration is not None and configuration.title:
             notes.append(f"{body}: {configuration.title}")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
-    notes = [f"{'; '.join(notes)}."] if notes else []
+    notes = [told("", notes)] if notes else []
     angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
@@ -543,7 +549,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
         for why, rows in by.items()
     ]
     what = "Readings left out (point, components)" if parts else "Points left out"
-    return f"{what}: {'; '.join(said)}." if said else ""
+    return told(f"{what}: ", said) if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:

@@ -188,7 +188,7 @@ def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str
     said = [*([f"errors of {listed(read)}"] if read else []), *others]
     out = [f"{what}: {'; '.join(said)}."] if said else []
     known = [n for n in fixed if n != COUPLED]
-    return [*out, f"Set in CFD, so without errors of readings: {listed(known)}."] if known else out
+    return [*out, f"In CFD these are prescribed and carry no measurement error: {listed(known)}."] if known else out
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -370,8 +370,8 @@ def predictions(found: Sequence[Validation]) -> Table:
     weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
     notes = (
         "Computed and measured on the same body, independently of each other; D is our fit to the points of the test. E is formed before "
-        f"rounding. U_V: root sum of squares of the uncertainties of S and D. Within U_V no modelling error can be shown.{weak}",
-        "No verdict without the numerical error of a grid study, nor on drag where the Reynolds numbers differ (Verdict).",
+        f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
+        "There is no verdict if the grid study gives no error, or on drag if the Reynolds numbers differ (Verdict).",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
