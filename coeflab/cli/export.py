@@ -44,7 +44,7 @@ def command(
     from coeflab.workbench.exports import export
 
     parameters = read_parameter_file(file)
-    made = export(parameters, to, accelerations)
+    made = export(parameters, to, accelerations, accept_loss=accept_loss and not strict)
     loss = made.loss
     if loss is not None and not json:
         whole = (

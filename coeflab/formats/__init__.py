@@ -118,6 +118,23 @@ class SteeredExporter(SimulatorExporter, Protocol):
         ...
 
 
+@runtime_checkable
+class PartialExporter(SimulatorExporter, Protocol):
+    """A simulator's exporter that leaves out of the law what its target would do the wrong way round.
+
+    What it writes then is for those alone who accept losses.
+    """
+
+    def left_out(self, parameters: ParameterFile) -> tuple[InputError, tuple[str, ...]] | None:
+        """Why the file is refused where no loss is accepted, and what is left out, in words; None where nothing is.
+
+        Parameters
+        ----------
+        parameters : ParameterFile
+        """
+        ...
+
+
 class NoDensityError(InputError):
     """A model file that states no density of the water, where none is given."""
 

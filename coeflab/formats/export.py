@@ -40,6 +40,7 @@ class Kind(StrEnum):
     MISSING = "missing"
     REPLACED = "replaced"
     MISMATCH = "mismatch"
+    LEFT_OUT = "left out"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,8 @@ class Lost:
     ----------
     kind : Kind
         Not held: the target has no place for it. Missing: the target needs it and the parameter file has none. Replaced: another
-        value of the same file stands in its place. Mismatch: two parts of the file are those of two bodies.
+        value of the same file stands in its place. Mismatch: two parts of the file are those of two bodies. Left out: the target
+        would drive a motion with it that the file damps, or damp one that it drives.
     what : str
     """
 

@@ -31,6 +31,7 @@ from coeflab.vehicle.parameter_parts import (
     ParameterThruster,
 )
 
+CLOSED = "A vehicle needs a closed hull; coeflab added-mass takes sheets alone."
 ESTIMATES = "estimates"  # what fit and campaign are called
 ABSURD = 3.0  # of the displacement, either way: no unit and no water in the hull makes that a vehicle
 TRIMMED = 0.005  # of the displacement: less is what a scale reads
@@ -106,7 +107,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     """
     base = _floating(body)
     if not base.volume or base.centre_of_buoyancy is None:
-        raise InputError(f"{body.name} without a volume", "a body with a shape", advice="Name a mesh or a body.toml.")
+        raise InputError(f"{body.name} without a volume", "a body that displaces water", advice=CLOSED)
     own = next((c.mass for c in reversed(body.configurations) if c.mass is not None), None)
     displaced, assumed, said = density * base.volume, [], []
     mass = stated.mass if stated.mass is not None else own.mass if own is not None else None
@@ -186,7 +187,7 @@ def _floating(body: Body) -> Configuration:
     """What the body displaces: of a printed configuration where it has mass and volume, with what only the shape tells."""
     first = next((c for c in body.configurations if c.volume), None)
     if first is None:
-        raise InputError(f"{body.name} without a volume", "a body with a shape", advice="Name a mesh or a body.toml.")
+        raise InputError(f"{body.name} without a volume", "a body that displaces water", advice=CLOSED)
     own = next((c for c in reversed(body.configurations) if c.mass is not None and c.volume), None)
     if own is None or own is first:
         return first

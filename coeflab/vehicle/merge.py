@@ -105,7 +105,10 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
         if c.value is not None and c.status is not Status.ESTIMATE
     }
     if not taken:
-        raise InputError(f"no number of {other.name} that is none of an estimate", "a fitted or measured coefficient")
+        raise InputError(
+            f"estimates only in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
+            advice="Give a campaign, or a parameter file, of measured or computed tables.",
+        )  # fmt: skip
     curved = {_place(s) for s in taken} - {None}
     entries: list[Entry] = []
     replaced = []

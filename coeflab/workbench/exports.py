@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
-from coeflab.formats import EXPORTERS, InertialExporter, SimulatorExporter, SteeredExporter
+from coeflab.formats import EXPORTERS, InertialExporter, PartialExporter, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.force_law import force_law
@@ -18,7 +18,9 @@ LONGEST = 255
 
 
 @one_thread()
-def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED) -> Export:
+def export(
+    parameters: ParameterFile, target: str, accelerations: str = MEASURED, *, accept_loss: bool = False
+) -> Export:
     """Render a parameter file for a target and evaluate the target's own law from the rendered files.
 
     Parameters
@@ -27,13 +29,16 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     target : str
     accelerations : {"measured", "computed"}
         As for `coeflab.motion.simulation.simulate`. The loss is counted from the file with its measured ones.
+    accept_loss : bool
+        Write without the terms that the target would do the wrong way round, and say which, where it has such.
 
     Raises
     ------
     PluginError
         No exporter has that name.
     InputError
-        The target cannot hold the file at all, or a file of it would leave the folder.
+        The target cannot hold the file at all, or not with its signs and ``accept_loss`` is false, or a file of it would leave the
+        folder.
     """
     plugin = EXPORTERS.load(target)
     water = water_inertia(parameters, accelerations)
@@ -43,8 +48,9 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None, plugin.citations)
+    left = _left_out(plugin, given, accept_loss)
     missing = tuple(Lost(Kind.MISSING, said) for said in plugin.missing(given))
-    lost = (*missing, *lost_by_all(parameters, plugin.holds, water))
+    lost = (*left, *missing, *lost_by_all(parameters, plugin.holds, water))
     changes = (
         *dict.fromkeys((*plugin.changes(given), *water.warnings)),
         *converted(parameters),
@@ -57,6 +63,24 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     )  # fmt: skip
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)
+
+
+def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[Lost, ...]:
+    """What the target's files are without, for it would be of the wrong sign there.
+
+    Raises
+    ------
+    InputError
+        Something is, and no loss is accepted.
+    """
+    found = plugin.left_out(given) if isinstance(plugin, PartialExporter) else None
+    if found is None:
+        return ()
+    why, words = found
+    if not accept_loss:
+        advice = f"{why.advice} Or accept the loss: it is written without, and the loss report says of what."
+        raise InputError(why.found, why.expected, file=why.file, column=why.column, advice=advice)
+    return tuple(Lost(Kind.LEFT_OUT, said) for said in words)
 
 
 def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
@@ -145,7 +169,7 @@ def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
         Names the plan's file and key.
     """
     try:
-        made = export(parameters, p.to, p.accelerations)
+        made = export(parameters, p.to, p.accelerations, accept_loss=p.accept_loss and not p.strict)
     except InputError as why:
         found = f"{why.found} in {parameters.name} for {p.to}"
         raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None

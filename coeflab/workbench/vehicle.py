@@ -35,7 +35,7 @@ from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tank.declaration import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
-from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
+from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
 from coeflab.workbench.exports import exports_of, parameter_files_rendered
@@ -89,6 +89,12 @@ def from_shape(
     conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
     said = [*mesh_statements(body), *_assumed(plan, conditions)]
     if scaling is None:
+        if not shape.length > 0.0:
+            hollow = "" if any(c.volume for c in body.configurations) else f" It has no volume either. {CLOSED}"
+            raise InputError(
+                f"a body {shape.length:g} m long along x, to make the primes by", "a length above zero",
+                advice=f"State one: --length, length under [prime] in its body.toml, or [scaling] in a plan.{hollow}",
+            )  # fmt: skip
         scaling = Scaling(shape.length, "length over all")
     point = body.reference_point if plan.reference_point is None else plan.reference_point
     body = replace(body, scaling=scaling, reference_point=point)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -209,11 +210,42 @@ def test_small_holes_are_filled_on_request_and_large_ones_are_not() -> None:
     vertices, faces = np.array(ball.vertices), np.asarray(ball.faces)
     around = np.any(faces == 40, axis=1)
     found = sound(vertices, faces[~around], FILE, fill=True)
-    assert found.statements[0] == "1 holes of up to 1% of the surface filled"
+    assert found.statements[0] == "1 hole of up to 1% of the surface filled"
     assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(ball.volume, rel=5e-3)
     cap = vertices[faces].mean(axis=1)[:, 2] > 0.6
-    with pytest.raises(InputError, match=r"not watertight.* --sheets"):
+    with pytest.raises(InputError, match=r"not watertight.* --sheets") as caught:
         sound(vertices, faces[~cap], FILE, fill=True)
+    share = re.search(r"not filled: a hole of ([\d.]+) % of the surface, above the limit of 1 %", str(caught.value))
+    assert share is not None
+    assert float(share[1]) == pytest.approx(
+        100.0 * 0.64 / (4.0 - 0.8), rel=0.05
+    )  # the disc in the cap over what is left
+    assert "--fill" not in str(caught.value)
+
+
+def around(faces: np.ndarray, *corners: int) -> np.ndarray:
+    return np.any(np.isin(faces, corners), axis=1)
+
+
+def test_rims_that_touch_are_left_and_the_others_filled() -> None:
+    """Two faces that meet in a corner are gone, and the faces about another vertex."""
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    vertices, faces = np.array(ball.vertices), np.asarray(ball.faces)
+    one, *rest = np.flatnonzero(around(faces, 40))
+    other = next(k for k in rest if len(np.intersect1d(faces[k], faces[one])) == 1)
+    away = int(np.argmax(np.linalg.norm(vertices - vertices[40], axis=1)))
+    gone = around(faces, away)
+    gone[[one, other]] = True
+    with pytest.raises(
+        InputError, match="6 edges with one face; not filled: rims that touch in a vertex, with 6 edges"
+    ) as caught:
+        sound(vertices, faces[~gone], FILE, fill=True)
+    assert "--fill" not in str(caught.value)
+    found = sound(
+        vertices, np.delete(faces, [one], axis=0)[~around(np.delete(faces, [one], axis=0), away)], FILE, fill=True
+    )
+    assert found.statements[0] == "2 holes of up to 1% of the surface filled"
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(ball.volume, rel=5e-3)
 
 
 def test_a_fin_of_one_sheet_is_a_sheet_on_request() -> None:

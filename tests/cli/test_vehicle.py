@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+import trimesh
 
 from coeflab.core.files import shipped
 from tests.cli.conftest import Run, flat
@@ -68,7 +70,8 @@ def test_a_campaign_replaces_what_it_gives(coeflab: Run, made: tuple[Path, str],
     assert (tmp_path / "merged" / "report.html").is_file()
     done = coeflab("merge", own, own)
     assert done.returncode == 2
-    assert "none of an estimate" in flat(done.stderr)
+    assert f"estimates only in {BODY}, nothing to replace others with" in flat(done.stderr)
+    assert "Give a campaign" in flat(done.stderr)
 
 
 @pytest.mark.slow
@@ -85,6 +88,56 @@ def test_simplified_mesh_and_table_make_a_vehicle_that_moves_without_a_hand_edit
     assert (folder / "report.html").is_file()
     moved = coeflab("simulate", folder / "huuv_mesh_simplified_merged.parameters.json", "--manoeuvre", "straight_run")
     assert moved.returncode == 0, moved.stderr
+
+
+@pytest.mark.slow
+def test_two_shells_that_overlap_are_united_and_it_is_said(coeflab: Run, tmp_path: Path) -> None:
+    """A long hull and a ball that stands out of it."""
+    hull = trimesh.creation.icosphere(3).apply_scale([0.5, 0.08, 0.08])
+    ball = trimesh.creation.icosphere(2, 0.05).apply_translation([0.1, 0.0, 0.08])
+    trimesh.util.concatenate([hull, ball]).export(tmp_path / "pair.stl")
+    typed = ("vehicle", "pair.stl", "--unit", "m", "--axes", "FLU", *QUICK)
+    done = coeflab(*typed)
+    assert done.returncode == 2
+    assert "2 shells of which 1 pairs overlap" in flat(done.stderr)
+    done = coeflab(*typed, "--repair", "--out", "made")
+    assert done.returncode == 0, done.stderr
+    assert "repaired: 2 shells united" in flat(done.stdout)
+    assert "at rest:" not in done.stdout  # centres in one point: nothing to hang from
+    done = coeflab(*typed, "--repair", "--out", "again", "--json")
+    found = json.loads(done.stdout)
+    assert found["mesh"] == ["repaired: 2 shells united"]
+    assert found["at_rest"] is None
+    assert found["volume"] == pytest.approx(hull.union(ball).volume, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_hole_is_filled_and_the_attitude_at_rest_is_said(coeflab: Run, tmp_path: Path) -> None:
+    """The centre of gravity 10 mm ahead of that of buoyancy and 50 mm below hangs 11.3 deg bow down; 1 mm to starboard, over 1.1 deg."""
+    hull = trimesh.creation.icosphere(3).apply_scale([0.5, 0.08, 0.08])
+    around = np.any(hull.faces == 40, axis=1)
+    trimesh.Trimesh(hull.vertices, hull.faces[~around]).export(tmp_path / "holed.stl")
+    typed = ("vehicle", "holed.stl", "--unit", "m", "--axes", "FLU", *QUICK, "--fill", "--cg=0.01,0.001,0.05")
+    done = coeflab(*typed, "--out", "made")
+    assert done.returncode == 0, done.stderr
+    assert "1 hole of up to 1% of the surface filled" in flat(done.stdout)
+    assert "at rest: pitch" in flat(done.stdout)
+    done = coeflab(*typed, "--out", "again", "--json")
+    found = json.loads(done.stdout)
+    assert found["mesh"] == ["1 hole of up to 1% of the surface filled"]
+    away = np.array(found["centre_of_gravity"]) - found["centre_of_buoyancy"]
+    pitch, roll = -np.arctan2(away[0], np.hypot(*away[1:])), np.arctan2(away[1], away[2])
+    assert found["at_rest"] == pytest.approx({"pitch": pitch, "roll": roll}, rel=1e-3)
+
+
+def test_a_plate_across_needs_a_length_of_the_primes(coeflab: Run, tmp_path: Path) -> None:
+    corners = [[0.0, y, z] for y, z in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
+    trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3]]).export(tmp_path / "plate.stl")
+    done = coeflab("vehicle", "plate.stl", "--unit", "m", "--axes", "FLU", "--sheets")
+    assert done.returncode == 2
+    assert "found a body 0 m long along x" in flat(done.stderr)
+    assert "--length" in flat(done.stderr)
+    assert "A vehicle needs a closed hull" in flat(done.stderr)
 
 
 @pytest.mark.parametrize(

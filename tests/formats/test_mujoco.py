@@ -10,8 +10,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
+from coeflab.formats.export import Kind
 from coeflab.formats.mujoco import write as exporter
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.scaling import Conditions, Scaling
@@ -230,6 +232,62 @@ def test_a_damping_of_the_wrong_sign_is_refused() -> None:
     with pytest.raises(InputError, match=said) as caught:
         export(driven, "mujoco")
     assert "fmi, xdyn, mss or gazebo" in caught.value.advice
+
+
+def bluff() -> ParameterFile:
+    """A frame as wide as a third of its length and flat: of one lift, what Yv asks for drives heave."""
+    hull = replace(made.HULL, matrix=np.diag([20.8, 33.4, 143.3, 2.8, 5.4, 2.6]))
+    values = {"X0": -0.2, "Yv": -0.15, "Yv|v|": -0.15, "Zw": -0.28, "Zw|w|": -0.28, "Mq": -0.036, "Nr": -0.023}
+    return with_mass(made.parameters(values, hull), np.zeros(3))
+
+
+def opposite(file: ParameterFile) -> list[str]:
+    """Dampings that the file has the other way round, or that drive a motion of which it says nothing."""
+    law, files = force_law(file), exporter.render(file)
+    ours, theirs = damping(file, law.force), damping(file, lambda nu: exporter.force(files, nu))
+    small = 1e-8 * np.abs(ours).max(axis=1, keepdims=True)
+    bad = ((np.abs(theirs) > small) & (ours * theirs < 0.0)) | ((theirs > small) & (ours <= small))
+    return [f"{'XYZKMN'[i]} {RATES[k]}: {ours[i, k]:.3g}, {theirs[i, k]:.3g}" for i, k in np.argwhere(bad)]
+
+
+def test_a_lift_of_the_wrong_sign_is_left_out_for_those_who_accept_it() -> None:
+    mujoco, file = engine(), bluff()
+    with pytest.raises(InputError, match="Zw does not keep its sign") as caught:
+        export(file, "mujoco")
+    assert "fmi, xdyn, mss or gazebo. Or accept the loss" in caught.value.advice
+    found = export(file, "mujoco", accept_loss=True)
+    assert found.loss is not None
+    (left,) = (x for x in found.loss.lost if x.kind is Kind.LEFT_OUT)
+    assert left.what.startswith("the lift of Yv: with it Zw does not keep its sign: at w' = 0.05")
+    assert "Yv" in found.loss.not_held
+    text = found.files["file.xml"].decode()
+    assert "Left out: the lift of Yv" in text
+    assert opposite(file) == []
+    theirs = damping(file, lambda nu: exporter.force({"file.xml": found.files["file.xml"]}, nu))
+    assert np.all(theirs[[0, 1, 2, 4, 5]] < 0.0)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    data.qvel[:] = [1.0, 0.5, -0.5, 0.2, 0.2, -0.2]
+    mujoco.mj_step(model, data, 1000)
+    assert np.linalg.norm(data.qvel) < 0.5
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_damping_is_ever_the_wrong_way_round(seed: int) -> None:
+    """Random laws that damp some motions and drive others, with bluff bodies among them."""
+    rng = np.random.default_rng(seed)
+    masses = np.diag(ellipsoid_added_mass(rng.uniform(0.1, 1.0, 3), 1000.0))
+    names = ("X0", "Yv", "Zw", "Kp", "Mq", "Nr", "Yv|v|", "Zw|w|", "Nr|r|", "Nv", "Mw", "Yr", "Zq")
+    values = {n: float(rng.choice([-1.0, -1.0, 0.5]) * 10 ** rng.uniform(-3.0, -1.0)) for n in names}
+    hull = replace(made.HULL, matrix=np.diag(masses + 0.1))
+    assert opposite(made.parameters(values, hull)) == []
+
+
+def test_what_drives_a_turn_is_left_out_alone() -> None:
+    loss = export(slender(Nr=4.4e-3), "mujoco", accept_loss=True).loss
+    assert loss is not None
+    assert [x.what.partition(":")[0] for x in loss.lost if x.kind is Kind.LEFT_OUT] == ["Nr"]
+    assert not {"X0", "Yv", "Nv"} & set(loss.not_held)
 
 
 def test_a_table_is_a_loss_and_no_reason_to_refuse() -> None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.solids import Solid, solid, surface
 from coeflab.bodies.mesh.topology import (
+    Filled,
     Labels,
     crossing_faces,
     degenerate,
@@ -42,6 +43,8 @@ PLATE = (
 )
 BY_HAND = "Mend it where it was made; repair does not untangle surfaces."
 SMALL_HOLE = 0.01
+BOTH_SIDES = "where water is on both sides of the wall, set sheets = true, or --sheets."
+NAMED = 3
 FILL = (
     f"Close them where it was made. Or set fill = true under [mesh], or --fill, which closes holes of up to {SMALL_HOLE:.0%} of the "
     "surface each; or, where water is on both sides of the wall, sheets = true, or --sheets."
@@ -59,12 +62,19 @@ class SoundMesh:
     sheets: Faces = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
 
 
-def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
+def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> SoundMesh:
     """The mesh with equal vertices joined, if it is sound.
 
     Sound is: no face without an area, none twice, every edge between two faces that run opposite ways, a volume above
     zero in every shell, no shells that overlap, no faces that cross. Crossing is looked for in meshes of up to 50,000
     faces; the statements say so of larger ones.
+
+    Parameters
+    ----------
+    vertices, faces : (n, 3) and (m, 3) arrays
+    file : Path
+    unfilled : str
+        Holes that were not filled though that was asked for, and why, in words.
 
     Raises
     ------
@@ -90,8 +100,10 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     if border.open or border.crowded:
         what = [f"{border.open} edges with one face"] * bool(border.open)
         what += [f"{border.crowded} edges with more than two"] * bool(border.crowded)
-        advice = NEARLY if _nearly_closed(vertices, faces) else FILL if border.open else BY_HAND
-        raise fail(f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge", advice)
+        found, expected = f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge"
+        if border.open and unfilled:
+            raise fail(f"{found}; not filled: {unfilled}", expected, f"Close them where it was made; or, {BOTH_SIDES}")
+        raise fail(found, expected, NEARLY if _nearly_closed(vertices, faces) else FILL if border.open else BY_HAND)
     if border.turned:
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
@@ -115,6 +127,22 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
         elif crossing:
             raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
     return SoundMesh(vertices, faces, said)
+
+
+def _unfilled(found: Filled) -> str:
+    """What `filled` left open and why, in words; empty for nothing."""
+    said = []
+    if found.large:
+        sizes = ", ".join(f"{100.0 * x:.3g} %" for x in found.large[:NAMED])
+        more = len(found.large) - NAMED
+        sizes += f" and {more} more" if more > 0 else ""
+        several = f"{len(found.large)} holes" if len(found.large) > 1 else "a hole"
+        said.append(f"{several} of {sizes} of the surface, above the limit of {100.0 * SMALL_HOLE:g} %")
+    if found.rims.touching:
+        said.append(f"rims that touch in a vertex, with {found.rims.touching} edges")
+    if found.rims.loose:
+        said.append(f"rims that do not close, with {found.rims.loose} edges")
+    return "; ".join(said)
 
 
 def _thickness(vertices: Array) -> float:
@@ -196,7 +224,7 @@ def sound(
     repair : bool
         See `repaired`.
     fill : bool
-        Close holes of up to 1 % of the surface each; faces are then turned alike as well.
+        Close holes of up to 1 % of the surface each, but for rims that touch in a vertex; faces are then turned alike as well.
     open_sheets : bool
         Take faces with an open edge, and those that have one once they are gone, as sheets with water on both sides.
 
@@ -206,11 +234,14 @@ def sound(
         See `examined`.
     """
     said: tuple[str, ...] = ()
+    unfilled = ""
     if fill:
         vertices, faces = joined(vertices, faces, JOINED)
         turned = oriented(faces)
-        vertices, faces, number = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
-        said = (f"{number} holes of up to {SMALL_HOLE:.0%} of the surface filled",)
+        done = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
+        vertices, faces, unfilled = done.vertices, done.faces, _unfilled(done)
+        said = (f"{done.number} hole{'s' * (done.number != 1)} of up to {SMALL_HOLE:.0%} of the surface filled",)
+        said += (f"not filled: {unfilled}",) if unfilled else ()
     thin = np.zeros((0, 3), dtype=np.int64)
     if open_sheets:
         vertices, faces = joined(vertices, faces, JOINED)
@@ -232,7 +263,7 @@ def sound(
         thin = turned
         if not len(faces):
             return SoundMesh(vertices, faces, said, thin)
-    closed = repaired(vertices, faces, file) if repair else examined(vertices, faces, file)
+    closed = (repaired if repair else examined)(vertices, faces, file, unfilled)
     joint = np.concatenate([closed.vertices, vertices]) if len(thin) else closed.vertices
     return replace(
         closed,
@@ -242,11 +273,18 @@ def sound(
     )
 
 
-def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
+def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> SoundMesh:
     """The mesh mended as far as that is safe, then examined like any other; the statements say what was done.
 
     Vertices within 1e-6 of the size are joined; faces that lost their area or came twice go, both of a pair that look at
     each other; faces are turned alike and outward, which fills cavities; shells are united.
+
+    Parameters
+    ----------
+    vertices, faces : (n, 3) and (m, 3) arrays
+    file : Path
+    unfilled : str
+        As of `examined`.
 
     Raises
     ------
@@ -283,7 +321,7 @@ def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
             said.append(
                 f"{number} shells united" if number > 1 else "faces without an area merged into their neighbours"
             )
-    found = examined(vertices, faces, file)
+    found = examined(vertices, faces, file, unfilled)
     return SoundMesh(
         found.vertices, found.faces, (f"repaired: {', '.join(said) or 'nothing to do'}", *found.statements)
     )

@@ -162,49 +162,98 @@ def edges(faces: Faces) -> Edges:
     )
 
 
-def loops(faces: Faces) -> list[NDArray[np.int64]]:
-    """The rims of the holes of a surface wound alike: each the vertices of a closed loop, as faces that fill it run.
+@dataclass(frozen=True, slots=True)
+class Rims:
+    """The rims of the holes of a surface wound alike.
 
-    Rims that touch in a vertex are left out: which way they go on there is anyone's guess.
+    Attributes
+    ----------
+    rings : list of (k,) arrays of int
+        The vertices of closed loops, as faces that fill them run.
+    touching : int
+        Edges of rims that touch in a vertex: which way they go on there is anyone's guess.
+    loose : int
+        Edges of rims that do not close, as where faces are turned over.
     """
+
+    rings: list[NDArray[np.int64]]
+    touching: int
+    loose: int
+
+
+def rims(faces: Faces) -> Rims:
+    """The rims of the holes of a surface wound alike, with what of its border is no simple rim."""
     start, end = _directed(faces)
     count = int(faces.max()) + 1
     lone = ~np.isin(start * count + end, end * count + start)
-    after = dict(zip(end[lone].tolist(), start[lone].tolist(), strict=True))
-    if len(after) < int(lone.sum()):
-        return []
-    out = []
+    start, end = start[lone], end[lone]
+    graph = coo_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(count, count))
+    number, label = connected_components(graph, directed=False)
+    out, into = np.bincount(start, minlength=count), np.bincount(end, minlength=count)
+    own = label[start]
+    unclosed, branched = np.zeros((2, number), dtype=bool)
+    unclosed[label[out != into]] = True
+    branched[label[out > 1]] = True
+    unclosed |= np.bincount(own, minlength=number) < 3
+    simple = ~(unclosed | branched)[own]
+    after = dict(zip(end[simple].tolist(), start[simple].tolist(), strict=True))
+    rings = []
     while after:
         first, vertex = after.popitem()
         ring = [first]
-        while vertex != first and vertex in after:
+        while vertex != first:
             ring.append(vertex)
             vertex = after.pop(vertex)
-        if vertex == first and len(ring) > 2:
-            out.append(np.array(ring))
-    return out
+        rings.append(np.array(ring))
+    return Rims(rings, int((branched & ~unclosed)[own].sum()), int(unclosed[own].sum()))
 
 
-def filled(vertices: Array, faces: Faces, share: float) -> tuple[Array, Faces, int]:
-    """Holes of less than a share of the surface closed by triangles about the middle of their rims, and how many."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Filled:
+    """A surface whose small holes are closed.
+
+    Attributes
+    ----------
+    vertices : (n, 3) array
+    faces : (m, 3) array of int
+    number : int
+        Of the holes that were closed.
+    large : list of float
+        Shares of the surface of those that were not, the largest first.
+    rims : Rims
+        Of the surface before.
+    """
+
+    vertices: Array
+    faces: Faces
+    number: int
+    large: list[float]
+    rims: Rims
+
+
+def filled(vertices: Array, faces: Faces, share: float) -> Filled:
+    """Holes of up to a share of the surface closed by triangles about the middle of their rims."""
     corner = vertices[faces]
     whole = (
         float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum()) / 2.0
     )
-    points, more, number = [vertices], [faces], 0
-    for ring in loops(faces):
+    found = rims(faces)
+    points, more, large = [vertices], [faces], list[float]()
+    for ring in found.rings:
         rim = vertices[ring]
         spokes, next_ones = rim - rim.mean(axis=0), np.roll(rim, -1, axis=0) - rim.mean(axis=0)
-        if float(np.linalg.norm(np.cross(spokes, next_ones), axis=1).sum()) / 2.0 > share * whole:
+        size = float(np.linalg.norm(np.cross(spokes, next_ones), axis=1).sum()) / 2.0
+        if size > share * whole:
+            large.append(size / whole)
             continue
-        number += 1
         if len(ring) == 3:
             more.append(ring[None])
             continue
         middle = sum(len(p) for p in points)
         points.append(rim.mean(axis=0)[None])
         more.append(np.column_stack([ring, np.roll(ring, -1), np.full(len(ring), middle)]))
-    return np.concatenate(points), np.concatenate(more), number
+    number = len(found.rings) - len(large)
+    return Filled(np.concatenate(points), np.concatenate(more), number, sorted(large, reverse=True), found)
 
 
 def sheets(faces: Faces) -> Mask:

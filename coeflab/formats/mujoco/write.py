@@ -4,7 +4,7 @@ MuJoCo takes the ellipsoid's added masses for -C_A(nu) nu, the Munk moment among
 acceleration: the body moves without added inertia. Five coefficients, the place of the geom and its shape are all that is left:
 they take X0, Yv, Nv, Yr and a mean of Nr. The damping in yaw that is linear in r comes of the place x alone and is x (Yr - m)
 U r with m U v the Munk moment. Where that drives the turn, the ellipsoid gets another Munk moment; where no ellipsoid damps
-every motion as the file does, the export is refused.
+every motion as the file does, terms are left out until none has the wrong sign, for those who accept that loss.
 """
 
 from __future__ import annotations
@@ -52,7 +52,8 @@ class _Geom:
 
     ``hull`` are the semi-axes (3,) of the ellipsoid that has the file's added masses. ``angular`` meets the damping of the motion
     ``turn``, one of Nr, Mq, Kp or none, at the rate times length over speed ``rate``. ``own`` is the x that Nv would need with the
-    Munk moment of that ellipsoid.
+    Munk moment of that ellipsoid. ``refused`` says which damping no whole geom has with its sign, ``left_out`` what this one is
+    without for that reason.
     """
 
     ellipsoid: FluidEllipsoid
@@ -62,6 +63,8 @@ class _Geom:
     turn: str = ""
     rate: float = RATE
     own: float = 0.0
+    refused: str = ""
+    left_out: tuple[str, ...] = ()
 
     @property
     def reshaped(self) -> bool:
@@ -77,12 +80,13 @@ class _Geom:
 
 
 def _fitted(parameters: ParameterFile) -> tuple[_Geom, ForceLaw]:
-    """The first geom, in the order of `_places`, that damps every motion as the file does.
+    """The first geom, in the order of `_places`, that damps every motion as the file does; else the first without the terms that
+    would drive one.
 
     Raises
     ------
     InputError
-        The added masses along x, y and z are not all known, or those of no ellipsoid; no geom damps as the file does.
+        The added masses along x, y and z are not all known, or those of no ellipsoid.
     """
     law = force_law(parameters)
     masses, rho = np.diag(water_inertia(parameters).matrix)[:3], parameters.conditions.density
@@ -92,16 +96,26 @@ def _fitted(parameters: ParameterFile) -> tuple[_Geom, ForceLaw]:
     if miss > HELD:
         raise InputError(f"added masses {', '.join(f'{m:.4g}' for m in masses)} kg", "those of some ellipsoid")
     of = straight_coefficients(law, parameters.conditions.speed)
-    tried = [_geom(*place, hull, of, parameters, law) for place in _places(masses, hull, of, parameters)]
+    places = list(_places(masses, hull, of, parameters))
+    tried = [_geom(*place, hull, of, parameters, law) for place in places]
     for rates in ((SLOW, *RATES), RATES):
         for geom in tried:
             if not _flipped(geom, law, parameters, rates):
                 return geom, law
-    raise InputError(
-        _flipped(tried[-1], law, parameters, RATES), "a damping of the same sign in both: a fluid ellipsoid has one lift, one drag "
-        "and no linear damping of turning", column="coefficients",
-        advice="Use a target that can express the law: fmi, xdyn, mss or gazebo.",
-    )  # fmt: skip
+    why = _flipped(tried[-1], law, parameters, RATES)
+    flat = [
+        _geom(*place, hull, of, parameters, law, lifts=False) for place in (*places, (masses, hull, 0.0, places[-1][3]))
+    ]
+    still = replace(flat[-1], ellipsoid=replace(flat[-1].ellipsoid, slender=0.0, angular=0.0))
+    bare = replace(still, ellipsoid=replace(still.ellipsoid, blunt=0.0))
+    geom = next(
+        g
+        for g in (*tried, *flat, still, bare)
+        if g is bare or not _flipped(g, law, parameters, (SLOW, *RATES), whole=False)
+    )
+    lift = tried[-1].ellipsoid.kutta and not geom.ellipsoid.kutta
+    left = [f"the lift of {geom.plane[0]}: with it {why}; drag alone stands for it"] if lift else []
+    return replace(geom, refused=why, left_out=(*left, *_undamped(geom, law, parameters))), law
 
 
 def _plane(of: Mapping[str, float]) -> tuple[str, str, str, int, float]:
@@ -161,15 +175,17 @@ def _geom(
     of: Mapping[str, float],
     parameters: ParameterFile,
     law: ForceLaw,
+    *,
+    lifts: bool = True,
 ) -> _Geom:
-    """Coefficients for an ellipsoid in its place."""
+    """Coefficients for an ellipsoid in its place, without a Kutta lift where it is not to lift."""
     side_force, _, turning, side, sign = plane = _plane(of)
     rho, (a, b, c), across = parameters.conditions.density, axes, float(axes[side])
     drag, cross = max(0.0, -of.get("X0", 0.0)), max(0.0, -of.get(_drag_of(side_force), 0.0))
     blunt, slender = _drag(axes, side, drag / rho, cross / rho)
     sway = of.get(side_force, 0.0)
     slope = rho * np.pi * b * c * ((a / across) ** 2 - 1.0)
-    lift = 0.0 if not sway or np.isclose(a, across) else float((-sway - drag) / slope)
+    lift = 0.0 if not lifts or not sway or np.isclose(a, across) else float((-sway - drag) / slope)
     arm = forward * (sway if lift else -drag)
     surge = float(masses[0])
     magnus = (sign * of.get(turning, -sign * surge) - arm + surge) / (rho * 4.0 / 3.0 * np.pi * a * b * c)
@@ -205,12 +221,42 @@ def _odd(values: Array) -> Array:
     return np.asarray((first - second) / 2.0)
 
 
-def _flipped(geom: _Geom, law: ForceLaw, parameters: ParameterFile, rates: tuple[float, ...]) -> str:
-    """The first damping that has not the sign of the file's, or drives a motion of which the file says nothing; empty for none.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Damping:
+    """Of one motion, at several rates: the part of a component that is odd in the motion; for u the component itself.
 
-    The ideal fluid's products damp nothing by themselves: where they are all that the file has, the target only must not drive.
-    Fitted tables are a loss of every simulator's: where a damping is in a table alone, the target may have none.
+    Attributes
+    ----------
+    i : int
+        Of the motion and its component.
+    states : (2 n, 6) array
+        Velocities.
+    stated : (n,) array of bool
+        Whether measured terms of the file speak of it.
+    tabled : (n,) array of bool
+        Whether fitted tables of the file do.
+    ours, theirs : (n,) arrays
+        Of the file and of the target, N or N m.
+    scale : float
+        What counts as rounding.
     """
+
+    i: int
+    states: Array
+    stated: NDArray[np.bool_]
+    tabled: NDArray[np.bool_]
+    ours: Array
+    theirs: Array
+    scale: float
+
+    @property
+    def name(self) -> str:
+        """``Nr``, ``Xu``."""
+        return COMPONENTS[self.i] + MOTIONS[self.i]
+
+
+def _dampings(geom: _Geom, law: ForceLaw, parameters: ParameterFile, rates: tuple[float, ...]) -> Iterator[_Damping]:
+    """Of the six motions, yaw first and surge last."""
     measured = replace(law, ideal=np.zeros_like(law.ideal))
     for i in (5, 4, 3, 1, 2, 0):
         states = _states(MOTIONS[i], rates, parameters)
@@ -221,17 +267,44 @@ def _flipped(geom: _Geom, law: ForceLaw, parameters: ParameterFile, rates: tuple
             for f in (measured.force(states), tabled, law.force(states) + tabled, geom.force(states))
         )
         scale = ROUNDING * max(float(np.max(np.abs(ours))), float(np.max(np.abs(theirs))))
-        wrong = np.where(np.abs(stated) > scale, ours * theirs <= 0.0, theirs > np.maximum(ours, 0.0) + scale)
-        wrong |= (np.abs(by_table) > scale) & (np.abs(theirs) > scale) & (ours * theirs < 0.0)
+        yield _Damping(i, states, np.abs(stated) > scale, np.abs(by_table) > scale, ours, theirs, scale)
+
+
+def _flipped(
+    geom: _Geom, law: ForceLaw, parameters: ParameterFile, rates: tuple[float, ...], *, whole: bool = True
+) -> str:
+    """The first damping that has not the sign of the file's, or drives a motion of which the file says nothing; empty for none.
+
+    The ideal fluid's products damp nothing by themselves: where they are all that the file has, the target only must not drive.
+    Fitted tables are a loss of every simulator's: where a damping is in a table alone, the target may have none. Where ``whole``
+    is false, it may have none of any.
+    """
+    for d in _dampings(geom, law, parameters, rates):
+        ours, theirs, scale = d.ours, d.theirs, d.scale
+        driven = theirs > np.maximum(ours, 0.0) + scale
+        against = (np.abs(theirs) > scale) & (ours * theirs < 0.0)
+        wrong = np.where(d.stated, ours * theirs <= 0.0 if whole else against | (driven & (ours <= scale)), driven)
+        wrong |= d.tabled & against
         if np.any(wrong):
-            at = int(np.argmax(wrong))
-            name, unit = COMPONENTS[i] + MOTIONS[i], "N" if i < 3 else "N m"
-            at_rate = f"{MOTIONS[i]}' = {rates[at]:g}" if i else f"{states[at, 0]:.3g} m/s"
-            return (
-                f"{name} does not keep its sign: at {at_rate} the file has {COMPONENTS[i]} = {ours[at]:.4g} {unit}, MuJoCo's fluid ellipsoid "
-                f"{theirs[at]:.4g} {unit}"
-            )
+            return f"{d.name} does not keep its sign: {_both(d, int(np.argmax(wrong)), rates)}"
     return ""
+
+
+def _both(d: _Damping, at: int, rates: tuple[float, ...]) -> str:
+    """The file's damping and MuJoCo's at one of the rates, in words."""
+    component, unit = COMPONENTS[d.i], "N" if d.i < 3 else "N m"
+    at_rate = f"{MOTIONS[d.i]}' = {rates[at]:g}" if d.i else f"{d.states[at, 0]:.3g} m/s"
+    return (
+        f"at {at_rate} the file has {component} = {d.ours[at]:.4g} {unit}, MuJoCo's fluid ellipsoid "
+        f"{d.theirs[at]:.4g} {unit}"
+    )
+
+
+def _undamped(geom: _Geom, law: ForceLaw, parameters: ParameterFile) -> Iterator[str]:
+    """Each motion in which the file states a force and the target has none, in words."""
+    for d in _dampings(geom, law, parameters, RATES):
+        if np.any(d.stated) and np.all(np.abs(d.theirs) <= d.scale):
+            yield f"{d.name}: {_both(d, int(np.argmax(d.stated)), RATES)}"
 
 
 def _drag(axes: Array, side: int, ahead: float, across: float) -> tuple[float, float]:
@@ -256,6 +329,10 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     ------
     InputError
         As `_fitted` says, or an inertia that is not positive.
+
+    See Also
+    --------
+    left_out : What of the law is not in the file, for an ellipsoid would drive a motion with it.
     """
     geom, _ = _fitted(parameters)
     e, name = geom.ellipsoid, identifier(parameters.name)
@@ -283,6 +360,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
         f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
         "Body frame: x forward, y port, z up, origin at the reference point. Weight is balanced (gravcomp), nothing rights it.",
+        *(f"Left out: {one_line(what)}" for what in geom.left_out),
     )
     return {f"{name}.xml": serialised(root, comment)}
 
@@ -318,6 +396,23 @@ def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     return (_LEFT_OUT, *unheld(law, held, ideal=False))
 
 
+def left_out(parameters: ParameterFile) -> tuple[InputError, tuple[str, ...]] | None:
+    """Dampings of which no ellipsoid has the sign of the file's, for it has one lift, one drag and no linear damping of turning.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    """
+    geom, _ = _fitted(parameters)
+    if not geom.refused:
+        return None
+    why = InputError(
+        geom.refused, "a damping of the same sign in both: a fluid ellipsoid has one lift, one drag and no linear damping of turning",
+        column="coefficients", advice="Use a target that can express the law: fmi, xdyn, mss or gazebo.",
+    )  # fmt: skip
+    return why, geom.left_out
+
+
 def missing(parameters: ParameterFile) -> tuple[str, ...]:
     """Mass and moments of inertia, where the file has none."""
     return missing_mass(
@@ -338,10 +433,10 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         else f"the fluid's ellipsoid has semi-axes {a:.4g} {b:.4g} {c:.4g} m: its Munk moment, and with it {moment}, is chosen so that no turn "
         f"is driven. That of the file's added masses ({source}), {' '.join(f'{x:.4g}' for x in geom.hull)} m, would need its centre at "
         f"{geom.own:+.4g} m for {moment}, and its Munk moment would drive the turn there or {moment} would be lost",
-        f"its centre lies {geom.forward:+.4g} m along x from the reference point, where {side_force} and the Munk moment make up the total "
-        f"{moment}",
-        f"fluidcoef: blunt and slender drag {e.blunt:.4g} {e.slender:.4g} from X0 and {_drag_of(side_force)}, Kutta lift {e.kutta:.4g} from "
-        f"{side_force}, Magnus lift {e.magnus:.4g} from {turning}; terms alike on a straight course, such as {side_force} and "
+        f"its centre lies {geom.forward:+.4g} m along x from the reference point"
+        + ("" if geom.left_out else f", where {side_force} and the Munk moment make up the total {moment}"),
+        f"fluidcoef: blunt and slender drag {e.blunt:.4g} {e.slender:.4g} from X0 and {_drag_of(side_force)}, "
+        f"{f'Kutta lift {e.kutta:.4g} from {side_force}' if e.kutta else 'no Kutta lift'}, Magnus lift {e.magnus:.4g} from {turning}; terms alike on a straight course, such as {side_force} and "
         f"{side_force[0]}u{side_force[1]}, count as one",
         f"angular drag {e.angular:.4g}: quadratic in the rate, "
         + (
@@ -349,7 +444,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             if geom.turn
             else "none, for the file has no damping of a turn"
         ),
-        f"each damping has the sign of the file's at v/U, r L/U and so on of {', '.join(f'{r:g}' for r in RATES)}",
+        f"{'no damping has another sign than' if geom.refused else 'each damping has the sign of'} the file's at v/U, r L/U and so on "
+        f"of {', '.join(f'{r:g}' for r in RATES)}",
         "derivatives are met at straight motion; in drift and turning its lift and drag bend away, by the differences in this report",
         "axes: FRD to the body frame x forward, y port, z up",
         "weight is balanced by gravcomp and nothing rights the body: "

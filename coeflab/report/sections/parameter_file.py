@@ -448,6 +448,7 @@ KINDS = {
     Kind.MISSING: "a number that the target needs and the parameter file does not state",
     Kind.REPLACED: "a number of the parameter file in whose place the target gets another",
     Kind.MISMATCH: "a number that the target understands in another way",
+    Kind.LEFT_OUT: "a term with which the target would drive what the file damps, or damp what it drives",
 }
 
 
