@@ -1,6 +1,6 @@
 // Bodies and surfaces in space by three.js (the page's other script), with letters and axes by a plain canvas over them.
 // One drawing board of the graphics card serves all views of a page: a browser gives a page few of them.
-const STEPS = 65535, PNG_GRAIN = 3, CREASE = 35 * Math.PI / 180, FAR = 20;
+const STEPS = 65535, PNG_GRAIN = 3, GRAIN = 1000, CREASE = 35 * Math.PI / 180, FAR = 20;
 const DISC = {
   vertexShader: `uniform float size; void main() {
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_Position.z -= 0.004; gl_PointSize = size; }`,
@@ -15,6 +15,33 @@ const unpacked = (text, Kind) => {
   return new Kind(bytes.buffer);
 };
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const unit = (x, y, z) => { const n = Math.hypot(x, y, z) || 1; return [x / n, y / n, z / n]; };
+
+// Normals at the corners of triangles: the mean of the neighbours that meet gently there, each by its angle.
+function normals(at, index) {
+  const many = index.length, own = new Float32Array(many), angles = new Float32Array(many), out = new Float32Array(3 * many);
+  for (let i = 0; i < many; i += 3) {
+    const [p, q, r] = [at[index[i]], at[index[i + 1]], at[index[i + 2]]], sides = [[p, q], [q, r], [r, p]].map(([f, t]) => unit(t[0] - f[0], t[1] - f[1], t[2] - f[2]));
+    const [a, b] = sides;
+    own.set(unit(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]), i);
+    for (let k = 0; k < 3; k++) angles[i + k] = Math.acos(Math.max(-1, Math.min(1, -dot(sides[k], sides[(k + 2) % 3]))));
+  }
+  const first = new Uint32Array(at.length + 1), around = new Uint32Array(many), least = Math.cos(CREASE);
+  for (const j of index) first[j + 1]++;
+  for (let j = 0; j < at.length; j++) first[j + 1] += first[j];
+  const next = first.slice();
+  index.forEach((j, i) => { around[next[j]++] = i; });
+  index.forEach((j, i) => {
+    const f = i - i % 3;
+    let x = 0, y = 0, z = 0;
+    for (let n = first[j]; n < first[j + 1]; n++) {
+      const i = around[n], g = i - i % 3, like = own[f] * own[g] + own[f + 1] * own[g + 1] + own[f + 2] * own[g + 2];
+      if (like > least) { x += angles[i] * own[g]; y += angles[i] * own[g + 1]; z += angles[i] * own[g + 2]; }
+    }
+    out.set(unit(x, y, z), 3 * i);
+  });
+  return out;
+}
 
 // The board, made when a page has a view; nothing where the browser has no WebGL.
 function drawingBoard() {
@@ -44,7 +71,6 @@ class Picture {
     this.camera.up.set(0, 0, 1);
     this.scene = new THREE.Scene();
     this.lights();
-    this.layers = data.layers.map(layer => this.layer(layer));
   }
 
   // The sun comes over the reader's left shoulder and turns with him; the sky is brighter than the ground.
@@ -65,7 +91,7 @@ class Picture {
     for (let i = 0; i < places.length; i += 3) at.push(this.centred([0, 1, 2].map(k => places[i + k] / STEPS)));
     const corners = new Float32Array(index.length * 3);
     index.forEach((j, i) => corners.set(at[j], 3 * i));
-    const out = {...layer, at: Array.from(index, j => at[j])};
+    const out = {...layer, index, places: at, at: Array.from(index, j => at[j])};
     out.parts = this[layer.kind](out, corners);
     for (const part of out.parts) { part.frustumCulled = false; this.scene.add(part); }
     return out;
@@ -73,8 +99,8 @@ class Picture {
 
   // Smooth where neighbours meet gently, with an edge where they do not; a film lets what is within shine through its near side.
   triangles(layer, corners) {
-    const bare = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(corners, 3));
-    const shape = THREE.toCreasedNormals(bare, CREASE), film = layer.opacity < 1;
+    const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(corners, 3)), film = layer.opacity < 1;
+    shape.setAttribute("normal", new THREE.BufferAttribute(normals(layer.places, layer.index), 3));
     const side = {side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};
     const paint = new THREE.MeshPhongMaterial({...side, shininess: 24, transparent: film, opacity: layer.opacity, depthWrite: !film, vertexColors: !this.data.body});
     if (!this.data.body) shape.setAttribute("color", new THREE.BufferAttribute(new Float32Array(corners.length), 3));
@@ -85,7 +111,9 @@ class Picture {
       out.push(first);
     }
     if (this.data.body) {
-      const edges = this.strokes(new THREE.EdgesGeometry(bare, CREASE * 180 / Math.PI).getAttribute("position").array, 1);
+      // Corners are told apart by four decimals there.
+      const large = shape.clone().scale(GRAIN, GRAIN, GRAIN), sharp = new THREE.EdgesGeometry(large, CREASE * 180 / Math.PI).scale(1 / GRAIN, 1 / GRAIN, 1 / GRAIN);
+      const edges = this.strokes(sharp.getAttribute("position").array, 1);
       if (edges) { edges.renderOrder = film ? 4 : 0; edges.isEdge = true; out.push(edges); }
     }
     return out;
@@ -161,7 +189,7 @@ class Picture {
 
   draw() {
     const {canvas} = this, wide = canvas.clientWidth, tall = canvas.clientHeight;
-    if (!wide) return;
+    if (!wide || !this.near) return;
     Object.assign(this, {wide, tall});
     this.paint(canvas, devicePixelRatio || 1);
     this.seen = this.shown().filter(l => l.kind === "points").flatMap(l => l.at.map((p, i) => ({at: this.flat(p), layer: l, note: l.notes[i]})));
@@ -173,6 +201,7 @@ class Picture {
   paint(canvas, fine) {
     const [across, down] = [this.wide, this.tall].map(v => Math.round(v * fine)), {board, data} = this;
     [canvas.width, canvas.height] = [across, down];
+    this.layers ??= data.layers.map(layer => this.layer(layer));
     this.aim();
     this.colours();
     for (const layer of this.layers) for (const part of layer.parts) {
@@ -194,6 +223,8 @@ class Picture {
 
   // What is seen on a sheet of paper's colour, at a finer grain than a screen's.
   async png() {
+    this.near = true;
+    this.draw();
     const seen = document.createElement("canvas"), out = document.createElement("canvas");
     this.paint(seen, PNG_GRAIN);
     [out.width, out.height] = [seen.width, seen.height];

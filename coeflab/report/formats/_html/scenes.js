@@ -11,7 +11,8 @@ class Space extends Picture {
     this.controls();
     this.listen();
     figure.hidden = false;
-    this.draw();
+    // A view is made when a reader comes near it, so that a page with many opens at once.
+    new IntersectionObserver(([seen], watch) => { if (seen.isIntersecting) { watch.disconnect(); this.near = true; this.draw(); } }, {rootMargin: "100%"}).observe(this.canvas);
   }
 
   legend() {
@@ -73,15 +74,16 @@ class Space extends Picture {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  reset() { this.orbit.reset(); this.draw(); }
+  reset() { this.near = true; this.orbit.reset(); }
 
+  // The controls tell when the view has changed, and then it is drawn.
   move({left = 0, up = 0, closer = 1, pan = null}) {
     const {orbit} = this;
+    this.near = true;
     if (left) orbit.rotateLeft(left);
     if (up) orbit.rotateUp(up);
     if (closer !== 1) orbit.dollyIn(1 / closer);
     if (pan) orbit.pan(...pan);
-    this.draw();
   }
 
   pick(e) {

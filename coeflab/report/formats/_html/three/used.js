@@ -7,10 +7,9 @@ import {OrbitControls} from "three/addons/controls/OrbitControls.js";
 import {LineMaterial} from "three/addons/lines/LineMaterial.js";
 import {LineSegments2} from "three/addons/lines/LineSegments2.js";
 import {LineSegmentsGeometry} from "three/addons/lines/LineSegmentsGeometry.js";
-import {toCreasedNormals} from "three/addons/utils/BufferGeometryUtils.js";
 
 globalThis.THREE = {
   BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry, HemisphereLight, Mesh, MeshBasicMaterial, MeshPhongMaterial,
   OrthographicCamera, Points, Scene, ShaderMaterial, SRGBColorSpace, Vector3, WebGLRenderer,
-  OrbitControls, LineMaterial, LineSegments2, LineSegmentsGeometry, toCreasedNormals,
+  OrbitControls, LineMaterial, LineSegments2, LineSegmentsGeometry,
 };
