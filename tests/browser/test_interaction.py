@@ -162,8 +162,7 @@ def painted(page, where):
     )
 
 
-@pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("body", "scheme"), list(zip(BODIES, ("light", "dark"))))
 def test_a_body_is_shaded_turns_and_is_silent(visit, written, body, scheme):
     page = visit(written("bodies"), scheme=scheme)
     share, colours = painted(page, body)
@@ -182,8 +181,9 @@ def test_a_body_is_shaded_turns_and_is_silent(visit, written, body, scheme):
         page.mouse.move(box["x"] + 160, box["y"] + 120)
         page.mouse.up(button=button)
         seen.add(picture(page, body))
+    before = picture(page, body)
     page.mouse.wheel(0, -200)
-    page.wait_for_function(f"before => document.querySelector('{body} canvas').toDataURL() !== before", arg=picture(page, body))
+    page.wait_for_function(f"before => document.querySelector('{body} canvas').toDataURL() !== before", arg=before)
     assert len(seen) == 7
     page.keyboard.press("Home")
     assert picture(page, body) == home

@@ -129,7 +129,9 @@ def with_a_view() -> str:
     figure = hull_figure(BODY, "b")
     scene = hull_scene(BODY.name, BODY.require_shape(), (), pieces=BODY.pieces)
     twice = tuple(replace(figure, anchor=name, scene=scene) for name in ("b", "c"))
-    return REPORTERS.load("html").render(Document("t", "s", (Section("x", "X", figures=twice),)))["report.html"].decode()
+    return (
+        REPORTERS.load("html").render(Document("t", "s", (Section("x", "X", figures=twice),)))["report.html"].decode()
+    )
 
 
 def test_three_js_stands_once_in_a_page_with_views_and_the_policy_names_it():
@@ -139,7 +141,7 @@ def test_three_js_stands_once_in_a_page_with_views_and_the_policy_names_it():
     assert ["three.js" in s[:20] for s in scripts] == [True, False]
     assert "Permission is hereby granted" in scripts[0]
     digests = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
-    assert f"script-src {digests}\"" in text
+    assert f'script-src {digests}"' in text
     assert len(scripts[0]) < 620_000
     assert "WebGLRenderer" not in text_of(small_study(FULL, published=True)).replace("THREE.WebGLRenderer", "")
 
@@ -148,7 +150,9 @@ def test_three_js_is_the_version_that_its_folder_names():
     folder = files("coeflab.report.formats") / "_html" / "three"
     version = json.loads((folder / "package.json").read_text())["devDependencies"]["three"]
     assert (folder / "three.min.js").read_text().startswith(f"/*! three.js {version},")
-    used = set(re.findall(r"THREE\.(\w+)", "".join(f.read_text() for f in folder.parent.iterdir() if f.name.endswith(".js"))))
+    used = set(
+        re.findall(r"THREE\.(\w+)", "".join(f.read_text() for f in folder.parent.iterdir() if f.name.endswith(".js")))
+    )
     given = (folder / "used.js").read_text().partition("globalThis.THREE = {")[2]
     assert used == set(re.findall(r"\w+", given))
 
