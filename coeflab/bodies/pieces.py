@@ -50,6 +50,8 @@ class Piece:
     regions : callable, optional
         ``regions(points)``: names of patches within the piece, none if it is one, and which of them each of (n, 3) points of
         its surface lies on, m, FRD, from the datum.
+    turned : Revolution, optional
+        What a piece that is round about x is made of.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Piece:
     chord: float
     stern: float | None = None
     regions: Regions | None = None
+    turned: Revolution | None = None
 
 
 def hull_piece(shape: Revolution, area: float, stern: float | None = None) -> Piece:
@@ -72,7 +75,7 @@ def hull_piece(shape: Revolution, area: float, stern: float | None = None) -> Pi
     stern : float, optional
         Where its run begins, x from the datum, m, FRD.
     """
-    return Piece(HULL, HULL, partial(_revolution, shape), area, shape.length, stern)
+    return Piece(HULL, HULL, partial(_revolution, shape), area, shape.length, stern, turned=shape)
 
 
 def _revolution(shape: Revolution, panels: int) -> TriangleMesh:
@@ -98,15 +101,14 @@ def part_pieces(shape: Parts, areas: Iterable[float]) -> tuple[Piece, ...]:
         Of each part's surface, about, m^2.
     """
 
-    def one(k: int) -> Callable[[int], TriangleMesh]:
-        alone = Parts(shape.parts[k : k + 1])
+    def one(k: int, area: float) -> Piece:
+        part, alone = shape.parts[k], Parts(shape.parts[k : k + 1])
         about_x = as_revolution(alone)
-        return partial(meshed, alone) if about_x is None else partial(_revolution, about_x)
+        surface = partial(meshed, alone) if about_x is None else partial(_revolution, about_x)
+        length = 2.0 * float(part.form.half_extents(part.rotation)[0])
+        return Piece(part.name, part.name, surface, area, length, turned=about_x)
 
-    return tuple(
-        Piece(part.name, part.name, one(k), area, 2.0 * float(part.form.half_extents(part.rotation)[0]))
-        for k, (part, area) in enumerate(zip(shape.parts, areas, strict=True))
-    )
+    return tuple(one(k, area) for k, (_, area) in enumerate(zip(shape.parts, areas, strict=True)))
 
 
 @brief

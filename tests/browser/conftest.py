@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
+from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.report.content import document
+from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
+from coeflab.report.sections.body import drawn_body
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import run
 from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
 NAMES = {"plain": "tow", "hostile": HOSTILE, "endless": ENDLESS}
+
+
+def _bodies() -> Document:
+    """A page with a submarine and a vehicle with an arm."""
+    study = SimpleNamespace(parameter_files={}, fits=())
+    shown = [
+        drawn_body(study, read_body(shipped("geometry") / name / "body.toml"), (), name.replace("_", "-"))
+        for name in ("suboff_aff8", "urv_puma")
+    ]
+    return Document("Bodies", "Two of them", (Section("bodies", "Bodies", figures=tuple(shown)),))
 
 
 def _study(kind: str):
@@ -39,6 +54,8 @@ def written(tmp_path_factory, request):
     def page_of(kind: str) -> bytes:
         if kind == "suboff":
             return request.getfixturevalue("suboff_page")
+        if kind == "bodies":
+            return REPORTERS.load("html").render(_bodies())["report.html"]
         return REPORTERS.load("html").render(document(_study(kind)))["report.html"]
 
     def address_of(kind: str) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from importlib.resources import files
+from pathlib import Path
 
 import pytest
 
 ESTIMATORS = "#campaign-tow-yv-estimators"
 DATA = "#campaign-tow-yv-data"
 SPACE = "#campaign-huuv-synthetic-c-d-surface-space"
+BODIES = ("#suboff-aff8-outline-space", "#urv-puma-parts-space")
 SERIOUS = ("serious", "critical")
 LUMINANCE = """names => {
   const channel = c => { const s = c / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4; };
@@ -107,8 +109,11 @@ def test_a_hidden_series_is_not_told(plain):
     assert not probe.get_attribute("aria-valuetext").startswith("points")
 
 
-def picture(page):
-    return page.evaluate(f"document.querySelector('{SPACE} canvas').toDataURL()")
+def picture(page, where=SPACE):
+    """A view is drawn when it is near what is seen."""
+    page.locator(f"{where} canvas").scroll_into_view_if_needed()
+    page.wait_for_function(f"() => document.querySelector('{where} canvas').width !== 300")
+    return page.evaluate(f"document.querySelector('{where} canvas').toDataURL()")
 
 
 def test_a_surface_turns_by_keyboard_button_and_mouse_and_comes_back(models):
@@ -146,6 +151,92 @@ def test_a_view_follows_the_colours_of_the_reader(models):
     light = picture(models)
     models.emulate_media(color_scheme="dark")
     models.wait_for_function(f"before => document.querySelector('{SPACE} canvas').toDataURL() !== before", arg=light)
+
+
+def painted(page, where):
+    """Share of a canvas that is not clear, and how many colours it has."""
+    picture(page, where)
+    return page.evaluate(
+        f"""() => {{ const c = document.querySelector('{where} canvas'), d = new Uint32Array(c.getContext('2d')
+        .getImageData(0, 0, c.width, c.height).data.buffer), on = d.filter(v => v >>> 24); return [on.length / d.length, new Set(on).size]; }}"""
+    )
+
+
+@pytest.mark.parametrize(("body", "scheme"), list(zip(BODIES, ("light", "dark"))))
+def test_a_body_is_shaded_turns_and_is_silent(visit, written, body, scheme):
+    page = visit(written("bodies"), scheme=scheme)
+    share, colours = painted(page, body)
+    assert share > 0.05
+    assert colours > 100
+    home, canvas = picture(page, body), page.locator(f"{body} canvas")
+    canvas.focus()
+    seen = {home}
+    for key in ("ArrowRight", "ArrowDown", "+", "Shift+ArrowLeft"):
+        page.keyboard.press(key)
+        seen.add(picture(page, body))
+    box = canvas.bounding_box()
+    for button in ("left", "right"):
+        page.mouse.move(box["x"] + 100, box["y"] + 100)
+        page.mouse.down(button=button)
+        page.mouse.move(box["x"] + 160, box["y"] + 120)
+        page.mouse.up(button=button)
+        seen.add(picture(page, body))
+    before = picture(page, body)
+    page.mouse.wheel(0, -200)
+    page.wait_for_function(f"before => document.querySelector('{body} canvas').toDataURL() !== before", arg=before)
+    assert len(seen) == 7
+    page.keyboard.press("Home")
+    assert picture(page, body) == home
+    assert page.heard == []
+    assert [url for url in page.fetched if not url.startswith(("file:", "data:"))] == []
+
+
+def test_the_wheel_reads_on_until_a_view_was_chosen(visit, written):
+    page = visit(written("bodies"))
+    home, box = picture(page, BODIES[0]), page.locator(f"{BODIES[0]} canvas").bounding_box()
+    before = page.evaluate("scrollY")
+    page.mouse.move(box["x"] + 60, box["y"] + 60)
+    page.mouse.wheel(0, 120)
+    page.wait_for_function("before => scrollY > before", arg=before)
+    assert picture(page, BODIES[0]) == home
+
+
+def test_fingers_turn_a_body(visit, written):
+    page = visit(written("bodies"), 390, has_touch=True)
+    home = picture(page, BODIES[0])
+    box = page.locator(f"{BODIES[0]} canvas").bounding_box()
+    hand = page.context.new_cdp_session(page)
+    for kind, x in (("touchStart", 100), ("touchMove", 130), ("touchMove", 170), ("touchEnd", None)):
+        points = [] if x is None else [{"x": box["x"] + x, "y": box["y"] + 80}]
+        hand.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    page.wait_for_function(f"home => document.querySelector('{BODIES[0]} canvas').toDataURL() !== home", arg=home)
+
+
+def test_a_view_is_saved_as_it_stands(visit, written):
+    page = visit(written("bodies"))
+    picture(page, BODIES[0])
+    with page.expect_download() as download:
+        page.locator(f"{BODIES[0]} .save button", has_text="PNG").click()
+    png = Path(download.value.path()).read_bytes()
+    wide = page.evaluate(f"document.querySelector('{BODIES[0]} canvas').clientWidth")
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    assert int.from_bytes(png[16:20]) == 3 * wide
+    assert len(png) > 10_000
+
+
+def test_without_webgl_the_drawing_stands_alone(browser, written):
+    page, heard = browser.new_page(), []
+    page.on("console", lambda message: heard.append(message.text))
+    page.on("pageerror", lambda error: heard.append(str(error)))
+    page.add_init_script(
+        """const own = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) { return /webgl/.test(kind) ? null : own.call(this, kind, ...more); };"""
+    )
+    page.goto(written("bodies"))
+    assert page.locator("figure.space:visible").count() == 0
+    assert page.locator("figure:not(.space) .plot > svg:visible").count() == 2
+    assert heard == []
+    page.close()
 
 
 @pytest.mark.parametrize("kind", ["plain", "models"])

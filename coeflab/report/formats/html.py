@@ -122,6 +122,7 @@ def _packed(values: NDArray[Any]) -> str:
 summary = "one HTML file with tables and figures, for browser and printer"
 STYLES = ("style.css", "symbols.css", "contents.css", "answer.css")
 SCRIPTS = ("contents.js", "zooming.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
+THREE = "three/three.min.js"
 citations: tuple[str, ...] = ()
 
 
@@ -163,10 +164,12 @@ def render(document: Document) -> Mapping[str, bytes]:
     }
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
-    script = "\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    scripts = ["\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)]
+    if has_scene(document):
+        scripts.insert(0, (folder / THREE).read_text(encoding="utf-8"))
+    digests = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
     with keeping(document.verbatim):
-        page = template.render(document=document, style=style, script=script, digest=digest)
+        page = template.render(document=document, style=style, scripts=scripts, digests=digests)
     return {"report.html": lighter(page).encode()}
 
 
@@ -269,6 +272,19 @@ def anchors(document: Document) -> frozenset[str]:
             yield from of(section.subsections)
 
     return frozenset(of(document.sections))
+
+
+def has_scene(document: Document) -> bool:
+    """Whether a figure of the page turns in space."""
+
+    def of(sections: tuple[Section, ...]) -> Iterator[Figure]:
+        for section in sections:
+            yield from section.figures
+            yield from of(section.subsections)
+
+    first = document.answer
+    shown = () if first is None else tuple(f for f in (first.slope, first.forest, first.axes) if f is not None)
+    return any(f.scene is not None for f in (*shown, *of(document.sections)))
 
 
 _DRAWING = re.compile(r"<svg .*?</svg>", re.DOTALL)

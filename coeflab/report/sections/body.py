@@ -22,6 +22,7 @@ from coeflab.bodies.forms import Plate
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.solids import Surface
+from coeflab.bodies.pieces import HULL, Piece
 from coeflab.bodies.shape import Parts, Shape
 from coeflab.bodies.triangulation import RULE, Triangulation
 from coeflab.core.types import Array, brief
@@ -110,8 +111,8 @@ def _view(
         )
 
 
-FACES = 3000
-SKIN = 0.5
+FACES, HULL_FACES, FIN_FACES = 9000, 7500, 800
+SKIN = 0.75
 ROOM = 0.04
 
 
@@ -140,7 +141,9 @@ class Mark:
     note: str = ""
 
 
-def hull_scene(name: str, shape: Shape, marks: tuple[Mark, ...], unknown: tuple[str, ...] = ()) -> Scene:
+def hull_scene(
+    name: str, shape: Shape, marks: tuple[Mark, ...], unknown: tuple[str, ...] = (), pieces: tuple[Piece, ...] = ()
+) -> Scene:
     """The body with its marks.
 
     Parameters
@@ -151,8 +154,10 @@ def hull_scene(name: str, shape: Shape, marks: tuple[Mark, ...], unknown: tuple[
     marks : tuple of Mark
     unknown : tuple of str
         What has no mark, and why, in words.
+    pieces : tuple of Piece
+        What a skin is made of, where that is known: each is drawn in even triangles of its own.
     """
-    layers = _parts(shape) if isinstance(shape, Parts) else (_skin(shape),)
+    layers = _parts(shape) if isinstance(shape, Parts) else (_skin(shape, pieces),)
     points = [
         Layer(m.name, m.colour, m.place[None, :], np.arange(1), label=m.label, notes=(m.note or _at(m.place),))
         for m in marks
@@ -194,10 +199,21 @@ def _parts(shape: Parts) -> tuple[Layer, ...]:
     return tuple(out)
 
 
-def _skin(shape: Shape) -> Layer:
-    """The surface in few triangles."""
-    vertices, faces = _few(shape if isinstance(shape, TriangleMesh) else meshed(shape, FACES // 2))
-    return Layer("skin", "band", vertices, faces, SKIN)
+def _skin(shape: Shape, pieces: tuple[Piece, ...]) -> Layer:
+    """The surface in even triangles; pieces reach into one another, which a picture may show as it is."""
+    surfaces = [_even(piece) for piece in pieces] or [
+        _few(shape if isinstance(shape, TriangleMesh) else meshed(shape, HULL_FACES))
+    ]
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces[:-1])])
+    faces = np.concatenate([faces + start for (_, faces), start in zip(surfaces, starts, strict=True)])
+    return Layer("skin", "band", np.concatenate([vertices for vertices, _ in surfaces]), faces, SKIN)
+
+
+def _even(piece: Piece) -> Surface:
+    """A piece in triangles about as long as wide; those of a solver's surface are longer along a hull."""
+    if piece.turned is not None:
+        return _few(meshed(piece.turned, HULL_FACES))
+    return _few(piece.surface(HULL_FACES if piece.name == HULL else FIN_FACES))
 
 
 def _few(mesh: TriangleMesh) -> Surface:
@@ -341,7 +357,7 @@ def drawn_body(study: Study, body: Body, files: tuple[str, ...], anchor: str) ->
         drawn = body_figure(body.name, shape, None, f"{anchor}-parts")
     else:
         drawn = hull_figure(body, f"{anchor}-outline")
-    return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files)))
+    return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files), body.pieces))
 
 
 def added_mass_sections(study: Study) -> tuple[Section, ...]:

@@ -178,6 +178,9 @@ const tableKinds = t => [
 const title = f => said(f.querySelector("figcaption strong").textContent);
 const first = document.querySelector("#answer");
 for (const f of figures) if (!first?.contains(f)) saver(f, "Save", title(f), figureKinds(f));
+for (const f of document.querySelectorAll("figure.space:not([hidden])")) {
+  saver(f, "Save", title(f), [["PNG", async () => save(`${f.id}.png`, "image/png", await f.view.png())]]);
+}
 for (const t of drawnTables) if (!first?.contains(t)) {
   const row = saver(t.parentElement.parentElement, "Save", said(t.caption.textContent), tableKinds(t));
   let after = t.parentElement;

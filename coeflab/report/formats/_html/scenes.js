@@ -1,15 +1,18 @@
-// Views in space: drag, arrow keys or buttons turn them.
-const TURN = Math.PI / 24, ZOOM = 1.2, PICK = 14;
+// Views in space: mouse, fingers, keys or buttons turn them, bring them closer and move them.
+const TURN = Math.PI / 24, ZOOM = 1.2, SHIFT = 24, PICK = 14;
 
 class Space extends Picture {
-  constructor(figure, data) {
-    super(figure, data);
-    this.home = data.body ? [-1.2, 0.3, 1] : [-0.6, 0.45, 1];
+  constructor(figure, data, board) {
+    super(figure, data, board);
+    figure.view = this;
+    const [azimuth, elevation] = data.body ? [-1.2, 0.3] : [-0.6, 0.45], level = Math.cos(elevation);
+    this.camera.position.set(level * Math.cos(azimuth), level * Math.sin(azimuth), Math.sin(elevation)).multiplyScalar(FAR / 2);
     this.legend();
     this.controls();
     this.listen();
     figure.hidden = false;
-    this.reset();
+    // A view is made when a reader comes near it, so that a page with many opens at once.
+    new IntersectionObserver(([seen], watch) => { if (seen.isIntersecting) { watch.disconnect(); this.near = true; this.draw(); } }, {rootMargin: "100%"}).observe(this.canvas);
   }
 
   legend() {
@@ -30,8 +33,8 @@ class Space extends Picture {
     row.setAttribute("role", "group");
     row.setAttribute("aria-label", "Turn the view");
     this.plot.after(row);
-    const moves = [["◀", "Turn left", [-TURN, 0, 1]], ["▶", "Turn right", [TURN, 0, 1]], ["▲", "Turn up", [0, TURN, 1]],
-      ["▼", "Turn down", [0, -TURN, 1]], ["+", "Closer", [0, 0, ZOOM]], ["−", "Farther", [0, 0, 1 / ZOOM]]];
+    const moves = [["◀", "Turn left", {left: TURN}], ["▶", "Turn right", {left: -TURN}], ["▲", "Turn up", {up: TURN}], ["▼", "Turn down", {up: -TURN}],
+      ["+", "Closer", {closer: ZOOM}], ["−", "Farther", {closer: 1 / ZOOM}]];
     const button = (sign, name, act) => {
       const out = made("button", "switch", row);
       out.type = "button";
@@ -39,49 +42,48 @@ class Space extends Picture {
       if (name) { out.setAttribute("aria-label", name); out.title = name; }
       out.addEventListener("click", act);
     };
-    for (const [sign, name, move] of moves) button(sign, name, () => this.move(...move));
+    for (const [sign, name, move] of moves) button(sign, name, () => this.move(move));
     button("Reset", "", () => this.reset());
   }
 
   listen() {
-    const keys = {ArrowLeft: [-TURN, 0, 1], ArrowRight: [TURN, 0, 1], ArrowUp: [0, TURN, 1], ArrowDown: [0, -TURN, 1],
-      "+": [0, 0, ZOOM], "=": [0, 0, ZOOM], "-": [0, 0, 1 / ZOOM]};
-    const {canvas} = this;
+    const keys = {ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}, {canvas} = this;
+    const orbit = this.orbit = new THREE.OrbitControls(this.camera, canvas);
+    Object.assign(orbit, {minZoom: 0.5, maxZoom: 40, zoomSpeed: 1.4});
+    orbit.update();
+    orbit.saveState();
+    canvas.style.touchAction = "pan-y"; // one finger up or down still reads on
+    orbit.addEventListener("change", () => { this.say(null); this.draw(); });
     canvas.addEventListener("keydown", e => {
       if (e.ctrlKey || e.metaKey || e.altKey) return;
-      if (keys[e.key]) this.move(...keys[e.key]);
+      const [left, up] = keys[e.key] ?? [];
+      if (keys[e.key]) this.move(e.shiftKey ? {pan: [left * SHIFT, up * SHIFT]} : {left: left * TURN, up: up * TURN});
+      else if (e.key === "+" || e.key === "=") this.move({closer: ZOOM});
+      else if (e.key === "-") this.move({closer: 1 / ZOOM});
       else if (e.key === "Home" || e.key === "0") this.reset();
       else return;
       e.preventDefault();
     });
-    let from = null;
-    canvas.addEventListener("pointerdown", e => { from = [e.clientX, e.clientY]; canvas.setPointerCapture(e.pointerId); });
-    canvas.addEventListener("pointermove", e => {
-      if (!from) return this.pick(e);
-      this.move((from[0] - e.clientX) / 130, (e.clientY - from[1]) / 130, 1);
-      from = [e.clientX, e.clientY];
-    });
-    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { from = null; });
+    canvas.addEventListener("pointermove", e => { if (!e.buttons) this.pick(e); });
     canvas.addEventListener("pointerleave", () => this.say(null));
-    canvas.addEventListener("wheel", e => {
-      if (document.activeElement !== canvas) return;
-      this.move(0, 0, e.deltaY < 0 ? 1.08 : 1 / 1.08);
-      e.preventDefault();
-    }, {passive: false});
+    // The wheel reads on until the view was chosen.
+    this.plot.addEventListener("wheel", e => { if (document.activeElement !== canvas) e.stopPropagation(); }, {capture: true});
     this.said = made("div", "said", this.plot);
     this.said.style.display = "none";
     new ResizeObserver(() => this.draw()).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  reset() { [this.azimuth, this.elevation, this.zoom] = this.home; this.draw(); }
+  reset() { this.near = true; this.orbit.reset(); }
 
-  move(azimuth, elevation, zoom) {
-    this.azimuth += azimuth;
-    this.elevation = Math.max(-1.55, Math.min(1.55, this.elevation + elevation));
-    this.zoom = Math.max(0.5, Math.min(8, this.zoom * zoom));
-    this.say(null);
-    this.draw();
+  // The controls tell when the view has changed, and then it is drawn.
+  move({left = 0, up = 0, closer = 1, pan = null}) {
+    const {orbit} = this;
+    this.near = true;
+    if (left) orbit.rotateLeft(left);
+    if (up) orbit.rotateUp(up);
+    if (closer !== 1) orbit.dollyIn(1 / closer);
+    if (pan) orbit.pan(...pan);
   }
 
   pick(e) {
@@ -108,4 +110,5 @@ class Space extends Picture {
   }
 }
 
-for (const data of document.querySelectorAll("script.space")) new Space(data.closest("figure"), JSON.parse(data.textContent));
+const spaces = [...document.querySelectorAll("script.space")], board = spaces.length ? drawingBoard() : null;
+if (board) for (const data of spaces) new Space(data.closest("figure"), JSON.parse(data.textContent), board);
