@@ -218,6 +218,18 @@ def on_page_content(html: str, **_: Any) -> str:
     return re.sub(r"formula(\d+)set", lambda found: _formulas[int(found[1])], html)
 
 
+def on_post_page(output: str, **_: Any) -> str:
+    """Name each landmark once: the theme writes the contents of a page twice, for wide and for narrow screens."""
+    seen: set[str] = set()
+
+    def named(found: re.Match[str]) -> str:
+        first = found[2] not in seen
+        seen.add(found[2])
+        return found[0] if first else f'{found[1]}{found[2]} (beside the text)"'
+
+    return re.sub(r'(<nav\b[^>]*\baria-label=")([^"]*)"', named, output)
+
+
 if __name__ == "__main__":
     import os
 

@@ -7,7 +7,7 @@ import runpy
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -75,18 +75,41 @@ def test_a_page_shows_what_its_commands_print(
         assert (DOCS / "pictures" / name).read_bytes() == content, f"python docs/pages.py {page}"
 
 
-@pytest.mark.slow
-def test_the_site_builds_strictly_and_loads_nothing_from_elsewhere(tmp_path: Path) -> None:
-    """Strict: a page, link or anchor that is not there is a warning, and a warning ends the build."""
-    build = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(tmp_path / "site")]
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site. Strict: a page, link or anchor that is not there is a warning, and a warning ends the build."""
+    site = tmp_path_factory.mktemp("built") / "site"
+    build = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(site)]
     done = subprocess.run(build, cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
-    html = sorted((tmp_path / "site").rglob("*.html"))
+    return site
+
+
+@pytest.mark.slow
+def test_the_site_builds_strictly_and_loads_nothing_from_elsewhere(built: Path) -> None:
+    html = sorted(built.rglob("*.html"))
     assert {p.stem for p in html} >= {p.stem for p in DOCS.glob("*.md")}
     elsewhere = re.compile(
         r'<(?:script|img|iframe|source)[^>]+src="?(?:https?:)?//[^>]*|<link[^>]+href="?(?:https?:)?//[^>]*'
     )
     assert not [found for p in html for found in elsewhere.findall(p.read_text(encoding="utf-8"))]
-    for style in (tmp_path / "site").rglob("*.css"):
+    for style in built.rglob("*.css"):
         assert not re.search(r"url\(\s*['\"]?(?:https?:)?//|@import", style.read_text(encoding="utf-8")), style
     assert not [p.name for p in html if "formula0set" in p.read_text(encoding="utf-8")]
+
+
+@pytest.mark.slow
+def test_axe_finds_nothing_on_pages_of_the_site(built: Path, visit: Callable[..., Any]) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    for name, scheme in (
+        ("index", "light"),
+        ("tutorial_cfd", "dark"),
+        ("files", "light"),
+        ("glossary", "dark"),
+        ("gallery", "light"),
+    ):
+        page = visit((built / f"{name}.html").as_uri(), scheme=scheme)
+        assert page.evaluate("document.body.dataset.mdColorScheme") == {"light": "default", "dark": "slate"}[scheme]
+        found = Axe().run(page).response["violations"]
+        assert [(name, v["id"], v["nodes"][0]["html"][:200]) for v in found] == []

@@ -8,6 +8,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from coeflab.report.content import core
+from coeflab.report.formats import REPORTERS
+
 WIDTHS = [1440, 390]
 CLIPPED = """() => {
   const out = [];
@@ -59,6 +62,25 @@ def test_the_script_is_all_that_runs(opened):
         "[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')"
     ) == ["module"]
     assert page.locator("[onload], [onclick], [onerror], iframe, object, embed").count() == 0
+
+
+@pytest.mark.slow
+def test_the_suboff_report_is_small_and_painted_within_a_second(browser, suboff_document, tmp_path):
+    """`coeflab report suboff`. Processor time of the page's own thread, as a busy machine changes it little; the least of three."""
+    path = tmp_path / "report.html"
+    path.write_bytes(REPORTERS.load("html").render(core(suboff_document))["report.html"])
+    assert path.stat().st_size < 1_500_000
+    taken = []
+    for _ in range(3):
+        page = browser.new_page(viewport={"width": 1440, "height": 900})
+        session = page.context.new_cdp_session(page)
+        session.send("Performance.enable", {"timeDomain": "threadTicks"})
+        page.goto(path.as_uri())
+        page.wait_for_function("performance.getEntriesByName('first-contentful-paint').length")
+        known = {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
+        taken.append(known["TaskDuration"])  # parsing, script, style and layout are tasks: all until the page is loaded
+        page.close()
+    assert 0.0 < min(taken) < 1.0
 
 
 @pytest.mark.parametrize("width", WIDTHS)

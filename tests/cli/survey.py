@@ -42,6 +42,8 @@ QUICK = (
     "simulate --help-options SAMPLE",
     "import nothing.csv --out imported",
     "inspect nothing",
+    "mass myring_auv",
+    "mass nothing",
 )
 SLOW = (
     "validate tank",
@@ -91,6 +93,10 @@ SLOW = (
     "tow runs/tank --collect",
     "import DRIFT --out imported",
     "import DRIFT --out imported --yes",
+    "draw myring_auv --out drawn",
+    "derive urv_puma --to c",
+    "derive urv_puma --to latex --out derived",
+    "tow suboff_bare_hull --dry-run",
 )
 
 

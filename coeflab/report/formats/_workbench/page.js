@@ -329,7 +329,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const rows = [["Study", value(before.value, before.u95), apart(before.value)], ...s.published.map(([name, x]) => [name, short(x, 4), apart(x)])];
     const budget = has ? row.parts.map(([name, half]) => `${name} ${Math.round(100 * (half / row.u95) ** 2)} %`).join(", ") : "";
     if (budget) said.append(make("p", { class: "quiet" }, `Variance: ${budget}`));
-    rest.replaceChildren(table("Compared with", ["", "value", "difference"], rows));
+    rest.replaceChildren(table("Compared with", ["source", "value", "difference"], rows));
     const list = [];
     data.files.forEach((f, i) => f.indices.forEach((x, j) => {
       const [now, then] = shown.indices[i][j], uses = x.sources.includes(state.index);
@@ -368,7 +368,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const beyond = [...new Set(motion.figures.filter((x) => x.status === "extrapolated").map((x) => x.why))];
     if (beyond.length) notes.push(make("p", { class: "quiet" }, `Extrapolated, ${beyond[beyond.length - 1]}.`));
     notes.push(make("p", { class: "quiet" }, `Runge-Kutta of order 4, ${short(z.step, 3)} s. Terms tied to a slope follow it; no term is fitted again.`));
-    motionBox.replaceChildren(head, ...notes.splice(0, shown.unknown.length ? 1 : 0), table("", ["", "now", "study"], rows), ...notes);
+    motionBox.replaceChildren(head, ...notes.splice(0, shown.unknown.length ? 1 : 0), table("", ["quantity", "now", "study"], rows), ...notes);
   };
 
   root.replaceChildren(left, centre, right);
