@@ -505,8 +505,8 @@ class _Far:
         trace = np.sum(panels.spread**2, axis=(0, 2))[:, None] * square
         height = np.hstack([-panels.normal, np.sum(panels.normal * c, axis=1)[:, None]]) * area
         inverse, solid = 0.5 * (spread - trace), 2.5 * spread - 1.5 * trace
-        inverse, solid, height = (np.ascontiguousarray(a.T, dtype=np.float32) for a in (inverse, solid, height))
-        return cls(np.ascontiguousarray(square.T), inverse, solid, height, (panels.normal * area).astype(np.float32))
+        first, second, third = (np.ascontiguousarray(a.T, dtype=np.float32) for a in (inverse, solid, height))
+        return cls(np.ascontiguousarray(square.T), first, second, third, (panels.normal * area).astype(np.float32))
 
     def with_near(
         self, targets: Array, panels: Panels, reach: Array, work: _Work
