@@ -72,7 +72,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
-    out += filter(None, (_not_in_u95(study, rows), _independent(study)))
+    out += filter(None, (_independent(study), _not_in_u95(study, rows)))
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
