@@ -65,7 +65,16 @@ def told(start: str, parts: Sequence[str], end: str = ".", join: Callable[[Seque
 
 
 def grouped(parts: Sequence[str], room: int, join: Callable[[Sequence[str]], str] = "; ".join) -> list[list[str]]:
-    """Parts of a listing in groups that are at most ``room`` letters long when they are joined; a long part is alone."""
+    """Parts of a listing in groups that are at most so long when they are joined; a longer part is alone.
+
+    Parameters
+    ----------
+    parts : sequence of str
+    room : int
+        Letters of a group.
+    join : callable, optional
+        How the parts of a group are joined.
+    """
     groups: list[list[str]] = []
     for part in parts:
         if groups and len(join((*groups[-1], part))) <= room:

@@ -58,9 +58,10 @@ def test_the_page_is_silent_and_loads_nothing_else(opened, address, width):
 
 def test_the_script_is_all_that_runs(opened):
     page = opened(1440)
+    views = page.locator("script.space").count() > 0  # they bring three.js, a script of its own
     assert page.evaluate(
         "[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')"
-    ) == ["module"]
+    ) == ["module"] * (1 + views)
     assert page.locator("[onload], [onclick], [onerror], iframe, object, embed").count() == 0
 
 
