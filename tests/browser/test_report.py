@@ -77,7 +77,7 @@ def test_the_suboff_report_is_small_and_painted_within_a_second(browser, suboff_
         session = page.context.new_cdp_session(page)
         session.send("Performance.enable", {"timeDomain": "threadTicks"})
         page.goto(path.as_uri())
-        page.wait_for_function("performance.getEntriesByName('first-contentful-paint').length")
+        page.wait_for_function("() => performance.getEntriesByName('first-contentful-paint').length")
         known = {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
         taken.append(known["TaskDuration"])  # parsing, script, style and layout are tasks: all until the page is loaded
         page.close()

@@ -84,8 +84,9 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     text = [AS_BEFORE] if again else [line for t in mine for line in _about(t)]
     zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
     alone = [s for s in fit.sweeps if s.symbol not in {c.symbol for c in zero} and not s.by_symmetry]
-    if any(t.campaign == fit.campaign for t in study.plan.tows):
-        alone = [s for s in alone if s.symbol in study.plan.wanted]
+    own = next((t for t in study.plan.tows if t.campaign == fit.campaign), None)
+    if own is not None:  # a tow beside the campaigns of a study has a handful of runs: its own report draws them
+        alone = [s for s in alone if s.symbol in study.plan.wanted and own.added is None]
     text += [line for line in (in_one_line(zero), _in_the_table(fit, alone, zero)) if line]
     if "swept about" in fit.settings:
         text.append(
@@ -121,7 +122,9 @@ def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient
     said = {s.symbol for s in alone} | {c.symbol for c in zero}
     left = [primed(s.symbol) for s in fit.sweeps if s.symbol not in said]
     return (
-        f"In the table only, by symmetry from other points or not among those wanted: {listed(left)}." if left else ""
+        f"In the table only, by symmetry from other points, not among those wanted, or of an own tow: {listed(left)}."
+        if left
+        else ""
     )
 
 
@@ -296,10 +299,13 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         "was not assessed is named, never zero.",
     )
     turned = {(s.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
+    own_tows = {t.campaign for t in study.plan.tows if t.added is not None}  # in the overview alone
     wanted = [
         b
         for b in found
-        if b.symbol.removesuffix("'") in study.plan.wanted and (b.campaign, b.symbol.removesuffix("'")) not in turned
+        if b.symbol.removesuffix("'") in study.plan.wanted
+        and (b.campaign, b.symbol.removesuffix("'")) not in turned
+        and b.campaign not in own_tows
     ]
     parts = tuple(
         Section(

@@ -43,7 +43,7 @@ FIXED = (
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
 CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point are set, not measured: they have no errors of readings."
-OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients, their budget and the points left out."
+OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients."
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 
@@ -123,7 +123,6 @@ def coefficients_section(study: Study) -> Section:
     }
     apart = {t.campaign for t in study.plan.tows if t.added is not None}
     found = tuple(t for (campaign, _), t in made.items() if campaign not in apart)
-    tows = tuple(t for (campaign, _), t in made.items() if campaign in apart)
     heads = {name for t in found for name in t.headers}
     if any(f.sweeps for f in study.fits):
         parts = [s for name, s in (("input", INPUT), ("slope", SLOPE)) if name in heads]
@@ -136,14 +135,11 @@ def coefficients_section(study: Study) -> Section:
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
         text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
-    if tows:
+    if apart:
         text += (OF_TOWS,)
     absent = _without_value(study)
     whole = tables.coefficients(study)
-    appendix = (
-        *((Section("coefficients-of-tows", "Own tows", tables=tows, appendix=True),) if tows else ()),
-        *((Section("all-coefficients", "All columns", tables=(whole,), appendix=True),) if whole.rows else ()),
-    )
+    appendix = (Section("all-coefficients", "All columns", tables=(whole,), appendix=True),) if whole.rows else ()
     return Section("coefficients", "Coefficients", (*text, *absent), found, subsections=appendix)
 
 
