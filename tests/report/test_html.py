@@ -259,7 +259,7 @@ def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_document, s
     drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
     turned = {(s.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
     tows = {t.campaign for t in study.plan.tows if t.added is not None}
-    assert len(tows) == 2
+    assert len(tows) == 3
     budgeted = [
         c for c in study.coefficients
         if c.symbol in study.plan.wanted and c.value is not None
