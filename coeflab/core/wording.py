@@ -47,7 +47,9 @@ def spelled_out(count: int) -> str:
     return COUNTS[count] if count < len(COUNTS) else str(count)
 
 
-def told(start: str, parts: Sequence[str], end: str = ".", join: Callable[[Sequence[str]], str] = "; ".join) -> str:
+def in_sentences(
+    start: str, parts: Sequence[str], end: str = ".", join: Callable[[Sequence[str]], str] = "; ".join
+) -> str:
     """A listing as sentences: one where it fits three lines, else several with the same beginning.
 
     Parameters

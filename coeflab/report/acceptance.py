@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from coeflab.core.table import ABSENT, Table, html_by
 from coeflab.core.types import brief, in_angles
-from coeflab.core.wording import listed, told
+from coeflab.core.wording import in_sentences, listed
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 from coeflab.study.validation import WIDE, Validation, by_measured_number, printed_indices, validations
@@ -265,7 +265,9 @@ def on_predictions(study: Study) -> tuple[str, ...]:
             f"counts once; it passes only if {every}."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
-        out.append(told(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: ", weak, join=listed))
+        out.append(
+            in_sentences(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: ", weak, join=listed)
+        )
     if none := [v for v in found if v.within is None]:
         out.append(_without_verdict(none))
     return tuple(out)
@@ -289,7 +291,7 @@ def _without_verdict(found: Sequence[Validation]) -> str:
         else:
             each.append(f"for {listed([f'{s} of {campaign}' for s, campaign in those])}, {why}")
     verb, get = ("was", "gets") if len(symbols) == 1 else ("were", "get")
-    return told(f"{listed(symbols)} {verb} also computed and measured, but {get} no verdict: ", each)
+    return in_sentences(f"{listed(symbols)} {verb} also computed and measured, but {get} no verdict: ", each)
 
 
 KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")

@@ -15,13 +15,14 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table, study_summary
 from coeflab.report.answer_notes import _several
-from coeflab.report.content import document, verdict
+from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Document, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, slope_figure
 from coeflab.report.figures.panel import SIZE
 from coeflab.report.figures.svg import text_width
 from coeflab.report.formats import html, pdf
 from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.report.sections.verdict import verdict
 from coeflab.study.checks import coverage
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow

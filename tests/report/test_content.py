@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from coeflab.core.table import Check, Severity
-from coeflab.core.wording import Verbatim, listed, told
+from coeflab.core.wording import Verbatim, in_sentences, listed
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
@@ -80,15 +80,15 @@ def test_a_paragraph_ends_with_a_sentence():
 
 def test_a_long_listing_is_several_sentences_and_a_short_one_is_one():
     names = [f"campaign {i}" for i in range(60)]
-    said = told("Not found: ", names, join=listed)
+    said = in_sentences("Not found: ", names, join=listed)
     assert said.startswith("Not found: campaign 0, ")
     pieces = three_lines((said,))
     assert len(pieces) > 1
     assert max(map(len, pieces)) <= 240
     assert all(p.startswith("Not found: ") and p.endswith(".") for p in pieces)
     assert all(f"{n}" in said for n in names)
-    assert told("Not found: ", names[:3], join=listed) == "Not found: campaign 0, campaign 1 and campaign 2."
-    assert told("Of ", ["a", "b"], end=" no value.") == "Of a; b no value."
+    assert in_sentences("Not found: ", names[:3], join=listed) == "Not found: campaign 0, campaign 1 and campaign 2."
+    assert in_sentences("Of ", ["a", "b"], end=" no value.") == "Of a; b no value."
 
 
 def test_an_answer_leads_to_sections_that_are_there():

@@ -7,7 +7,7 @@ from dataclasses import replace
 from coeflab.core.provenance import Source
 from coeflab.fits.uncertainty.budget import RIG
 from coeflab.report.answer import answer
-from coeflab.report.content import verdict
+from coeflab.report.sections.verdict import verdict
 from tests.report.studies import FULL, budgets, small_study
 
 STATED = "static derivatives 4-5 %"

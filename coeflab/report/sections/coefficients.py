@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.table import ABSENT, Table, percent
-from coeflab.core.wording import listed, told
+from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
@@ -99,13 +99,13 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     if not without:
         return ""
     end = " holds only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
-    return told("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
+    return in_sentences("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
 
 
 def _covered(study: Study) -> tuple[str, str]:
     """What U95 of slopes covers, and in sentences what only some of the slopes have in it."""
     every, some = tables.covered(study)
-    only = [f" {told(f'Only some U95 also cover the {name}: ', places)}" for name, places in some.items()]
+    only = [f" {in_sentences(f'Only some U95 also cover the {name}: ', places)}" for name, places in some.items()]
     return ", ".join(every), "".join(only)
 
 
@@ -198,7 +198,7 @@ def _wrong(study: Study, campaign: str) -> str:
     """Rows that the fits of a campaign left out as they do not fit the others; empty without any."""
     found = [s for f in study.fits if f.campaign == campaign for s in f.sweeps if len(s.wrong)]
     each = [f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found]
-    return told("Left out by the fit, as they do not fit the other points: ", each) if each else ""
+    return in_sentences("Left out by the fit, as they do not fit the other points: ", each) if each else ""
 
 
 def _without_value(study: Study) -> tuple[str, ...]:
@@ -208,4 +208,4 @@ def _without_value(study: Study) -> tuple[str, ...]:
         if c.status is Status.NO_TABLE:
             missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
     each = [f"{listed(symbols)} of {place}" for place, symbols in missing.items()]
-    return (told("No value, as no table varies the motion: ", each),) if each else ()
+    return (in_sentences("No value, as no table varies the motion: ", each),) if each else ()

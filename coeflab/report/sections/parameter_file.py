@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
-from coeflab.core.wording import grouped, listed, told
+from coeflab.core.wording import grouped, in_sentences, listed
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.motion.manoeuvre import Simulation
@@ -177,7 +177,7 @@ def _by_others(study: Study) -> list[str]:
         symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
         each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
     start = "The data of these files give no value, so the indices use published ones: "
-    return [told(start, each)] if each else []
+    return [in_sentences(start, each)] if each else []
 
 
 def from_literature(parameters: ParameterFile, index: str) -> list[str]:

@@ -22,7 +22,7 @@ from coeflab.core.table import (
     with_u95,
 )
 from coeflab.core.types import Array
-from coeflab.core.wording import listed, told
+from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
@@ -323,7 +323,7 @@ def campaigns(study: Study) -> Table:
         if configuration is not None and configuration.title:
             notes.append(f"{body}: {configuration.title}")
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
-    notes = [told("", notes)] if notes else []
+    notes = [in_sentences("", notes)] if notes else []
     angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
@@ -549,7 +549,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
         for why, rows in by.items()
     ]
     what = "Readings left out (point, components)" if parts else "Points left out"
-    return told(f"{what}: ", said) if said else ""
+    return in_sentences(f"{what}: ", said) if said else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:

@@ -24,7 +24,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     return `${signed(x.toFixed(digits(u95)))} ± ${u95.toFixed(digits(u95))}`;
   };
   const short = (x, n = 3) => signed(String(Number(x.toPrecision(n))));
-  const relative = (x, u95) => { const share = 100 * u95 / Math.abs(x); return share < 100 ? `${Number(share.toPrecision(2))} %` : "over 100 %"; };
+  const relative = (x, u95) => { const share = 100 * u95 / Math.abs(x); return share < 100 ? `${Number(share.toPrecision(2))} %` : "> 100 %"; };
 
   const isAngle = (s) => "vw".includes(s.variable), isControl = (s) => s.variable.startsWith("d");
   const setting = (s, x, n = 3) => {
