@@ -1,0 +1,235 @@
+"""The verdict of a study in short paragraphs: what agrees, what was found, what is missing, what to measure next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Severity
+from coeflab.core.wording import in_sentences, listed, spelled_out
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.symbols import derivative, primed, read_factors
+from coeflab.report.acceptance import headline_of_study
+from coeflab.report.document import Section
+from coeflab.report.figures.answer import share_text
+from coeflab.report.sections.estimates import verdict_of_shape
+from coeflab.report.sections.parameter_file import in_words
+from coeflab.report.tables import results as tables
+from coeflab.study.study import Study
+from coeflab.study.towed import towed
+from coeflab.study.validation import WIDE, validations
+from coeflab.vehicle.reference import Comparison, Relation
+
+SEVERAL = 3  # campaigns that a sentence names; of more it says how many, and the table has them
+
+
+def _counted(n: int, one: str) -> str:
+    return f"{n} {one}" if n == 1 else f"{n} {one}s"
+
+
+def _named(c: Comparison) -> str:
+    return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
+
+
+WHAT_COUNTS = (
+    "Prediction: a coefficient from CFD against the one measured on the same body; tolerance U_V, the validation uncertainty of both "
+    "together. Re-analysis: our coefficient from the authors' data against theirs; tolerance U95. Recomputed index: we compute G from their "
+    "printed derivatives and compare with their printed G, within rounding. The checks of --full list the recomputed indices.",
+)
+TWO_KINDS = (
+    "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
+    "reproduces theirs within U95, not that the measurements are right.",
+    "Re-analyses use the authors' own measurements: a pass says that our evaluation reproduces theirs within U95, not that the "
+    "measurements are right.",
+)
+
+
+def _re_analysis(study: Study) -> list[str]:
+    ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
+    judged = [c for c in ours if c.passed is not None]
+    if not judged:
+        return ["The plan names no published evaluation of these data, so there is no verdict on them."]
+    failed = [c for c in judged if c.passed is False]
+    count = _counted(len(judged), "comparison")
+    if failed:
+        start = f"{len(failed)} of {count} with the authors' own evaluation of the same data failed, beyond U95: "
+        out = [in_sentences(start, [_named(c) for c in failed], join=listed)]
+    else:
+        every, verb = ("The one", "passes") if len(judged) == 1 else ("All", "pass")
+        out = [
+            f"{every} {count} with the authors' own evaluation of the same data {verb}: every difference lies within U95."
+        ]
+    if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
+        one = len(wide) == 1
+        passes = (
+            f"{'One pass is' if one else f'{spelled_out(len(wide)).capitalize()} passes are'} weak, as {tables.WEAK}: "
+        )
+        out.append(in_sentences(passes, wide, join=listed))
+    if len(ours) > len(judged):
+        out.append(in_sentences("No verdict without U95: ", [_named(c) for c in ours if c.passed is None], join=listed))
+    predicted = [v for v in validations(study, study.budgets) if v.within is not None]
+    head = headline_of_study(study)
+    out += [*head[:1], *WHAT_COUNTS, *head[1:], TWO_KINDS[not predicted]]
+    missed = [v for v in predicted if v.within is False]
+    if missed:
+        each = [f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed]
+        out.append(
+            f"{in_sentences('Predictions beyond U_V: ', each, join=listed)} This does not fail the study: U_V leaves out the error of the turbulence model, and the "
+            'errors listed under "Not in U95" below the tables of both campaigns.'
+        )
+    return [*out, *_beyond_without_verdict(study, also=bool(missed))]
+
+
+def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
+    """Coefficients of own tows beyond U_V that do not count, and why; ``also``: others that count are beyond it as well."""
+    out = []
+    for tow in towed(study):
+        reasons: dict[tuple[str, ...], list[str]] = {}
+        for r in tow.rows:
+            if r.verdict is None and r.validation is not None and r.validation.beyond:
+                reasons.setdefault(r.reasons, []).append(primed(r.symbol))
+        for why, symbols in reasons.items():
+            differ, them = ("differs", "it") if len(symbols) == 1 else ("differ", "them")
+            out.append(
+                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} by more than U_V. We do not count {them}: {listed(why)}."
+            )
+    return out
+
+
+def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
+    """Columns without a verdict by reason: another body, or another method on the same one."""
+    bodies = {r.name: r.body for r in study.references}
+    by: dict[str, list[str]] = {}
+    for c in others:
+        names = by.setdefault("body" if bodies.get(c.reference) != c.coefficient.body else "method", [])
+        if c.reference not in names:
+            names.append(c.reference)
+    differ = {"body": "the bodies differ", "method": "the methods differ"}
+    each = [
+        f"No verdict on {listed(names)}: {differ[what]}, so a difference proves no error in either."
+        for what, names in by.items()
+    ]
+    return " ".join(each)
+
+
+def verdict(study: Study) -> Section:
+    """What comes out, in short paragraphs: the verdict, what was found, stability, what is missing, the checks."""
+    if study.shape is not None:
+        return verdict_of_shape(study)
+    text = [*_re_analysis(study), _harvest(study)]
+    others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
+    if others:
+        text.append(_no_verdict_on(study, others))
+    text += [*in_words(study), *_without_value(study), *_next(study)]
+    failed = [c for c in study.checks if c.severity is Severity.FAIL]
+    warned = sum(c.severity is Severity.WARN for c in study.checks)
+    if study.checks:
+        count = _counted(len(study.checks), "check")
+        text.append(f"Of {count}, {len(failed) or 'none'} failed and {warned or 'none'} gave a warning.")
+    if study.failed:
+        text.append("The study as a whole fails.")
+    elif study.checks or study.comparisons:
+        both = "no comparison with the authors' own evaluation and no check failed"
+        text.append(f"The study does not fail: {both if study.comparisons else 'no check failed'}.")
+    return Section("verdict", "Verdict", tuple(text))
+
+
+def _harvest(study: Study) -> str:
+    every = [c for c in study.coefficients if c.value is not None]
+    found = [c for c in every if not _is_copied(study, c)]
+    bounded = sum(c.u95 is not None for c in found)
+    campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
+    if not campaigns:
+        return "The study holds no tables."
+    rows = _counted(sum(len(t) for t in study.tables if not t.by_symmetry), "row")
+    named = f": {listed(campaigns)}" * (len(campaigns) <= SEVERAL)
+    source = f"{rows} of {_counted(len(campaigns), 'campaign')}{named}."
+    models = sum(len(f.models) for f in study.fits)
+    if not found and models:
+        return (
+            f"Found: {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
+        )
+    if not found:
+        return f"No coefficient could be determined from {source}"
+    uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
+    each = f"Found: {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
+    alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
+    each += f" U95 of {alone} is scatter alone." * bool(alone)
+    copies = len(every) - len(found)
+    more = "Another one follows" if copies == 1 else f"Another {copies} follow"
+    return each + f" {more} from these by symmetry." * bool(copies)
+
+
+def _is_copied(study: Study, c: Coefficient) -> bool:
+    """Whether only tables turned by symmetry, and no runs, vary the motions of a coefficient."""
+    if any((f.campaign, s.symbol) == (c.campaign, c.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry):
+        return True
+    mine = [t for t in study.tables if t.campaign == c.campaign]
+    own, turned = ({m for t in mine if bool(t.by_symmetry) is is_copy for m in t.varies} for is_copy in (False, True))
+    factors = {name for name, _ in read_factors(c.symbol.removesuffix("'")[1:]) or ()}
+    return bool(factors) and factors <= turned - own
+
+
+def _by_kind(found: Sequence[Coefficient]) -> str:
+    """How many are slopes, forces at zero angle and rate, and terms of higher degree."""
+    degrees = [len(read_factors(c.symbol.removesuffix("'")[1:]) or ()) for c in found]
+    counts = (degrees.count(1), degrees.count(0), sum(d > 1 for d in degrees))
+    return ", ".join(
+        f"{n} {name}" for n, name in zip(counts, ("linear", "constant", "of higher degree"), strict=True) if n
+    )
+
+
+def _without_value(study: Study) -> list[str]:
+    absent = [c for c in study.coefficients if c.value is None]
+    out = []
+    for status in dict.fromkeys(c.status for c in absent):
+        places: dict[str, list[str]] = {}
+        for c in absent:
+            if c.status is status:
+                places.setdefault(c.campaign or c.body, []).append(c.symbol)
+        is_untabled = status is Status.NO_TABLE
+        names = [
+            f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
+            for place, symbols in places.items()
+        ]
+        reason = (
+            ""
+            if is_untabled
+            else f" ({'reason in its section' if status is Status.NOT_DETERMINED else status.replace('_', ' ')})"
+        )
+        out.append(f"{in_sentences(f'No value{reason}: ', names)} {'' if is_untabled else status.advice}".strip())
+    return out
+
+
+def _next(study: Study) -> list[str]:
+    """What to measure next: motions that no table of a body varies, and runs for wanted values with a wide interval."""
+    varied: dict[str, set[str]] = {}
+    for t in study.tables:
+        varied.setdefault(t.body, set()).update(t.varies)
+    lacking: dict[str, dict[str, None]] = {}
+    for c in study.coefficients:
+        if c.status is Status.NO_TABLE and c.body:
+            lacking.setdefault(c.body, {}).update(
+                dict.fromkeys(f for f in derivative(c.symbol).factors if f not in varied.get(c.body, set()))
+            )
+    runs = [f"runs that vary {' and '.join(motions)} of {body}" for body, motions in lacking.items() if motions]
+    wide: dict[str, list[str]] = {}
+    for c in study.coefficients:
+        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
+            wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
+    out = [in_sentences("To measure next: ", runs, join=listed)] if runs else []
+    if wide:
+        every = [primed(s) for s in study.plan.wanted]
+        whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
+        each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
+        among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
+        out.append(
+            f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the runs "
+            "that narrow U95 most."
+        )
+    return out
+
+
+def _not_varied(symbols: Sequence[str]) -> str:
+    """Motions of these derivatives, which no table of a campaign varies."""
+    motions = dict.fromkeys(v for s in symbols for v in derivative(s).factors)
+    return f" (no table varies {' or '.join(motions)})" if motions else ""
