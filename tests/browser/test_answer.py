@@ -49,6 +49,7 @@ def compared(tmp_path_factory):
         row,
         replace(row, symbol="Nv", difference=-0.009, agrees=False),
         AnswerRow("Yr", None, None, "no data", published=(0.0052, None, None)),
+        AnswerRow("Nr", -0.0031, 0.0034, "", "tow", (-0.0044, -0.0040, -0.0042), 0.0013, True),
     )
     columns = ("experiment 1990", "steady CFD", "PMM CFD")
     made = replace(made, answer=replace(made.answer, rows=rows, columns=columns, compared=columns[0]))
@@ -61,7 +62,7 @@ def test_a_bar_leaves_the_band_where_the_difference_exceeds_u95(visit, compared)
     page = visit(compared)
     bars = page.evaluate("""() => [...document.querySelectorAll('.bar')].map(b => { const o = b.getBoundingClientRect(),
       i = b.querySelector('i').getBoundingClientRect(); return [(i.left - o.left) / o.width, (i.right - o.left) / o.width]; })""")
-    assert len(bars) == 2
+    assert len(bars) == 3
     assert bars[0] == pytest.approx([0.5, 0.5 + 0.25 * 0.0016 / 0.00268], abs=0.01)
     assert bars[1] == pytest.approx([0.0, 0.5], abs=0.01)
 
@@ -69,10 +70,17 @@ def test_a_bar_leaves_the_band_where_the_difference_exceeds_u95(visit, compared)
 def test_a_phone_shows_ours_and_the_published_value_together(visit, compared):
     page = visit(compared, 390)
     assert page.evaluate("document.scrollingElement.scrollWidth") <= 390
+    right = page.evaluate("document.querySelector('#answer caption').getBoundingClientRect().right")
+    assert right < 390
+    shares = page.evaluate(
+        "[...document.querySelectorAll('#answer .share')].map(s => [s.innerText, getComputedStyle(s, '::after').content])"
+    )
+    assert [text.count("%") for text, _ in shares] == [1, 1, 0, 1]
+    assert {more for _, more in shares} == {"none"}
     rows = page.evaluate(COVERED)
     assert rows
     for own, published, against in rows:
-        assert max(own[1], published[1], against[1]) <= 390
+        assert max(own[1], published[1], against[1]) <= right
         assert min(own[0], published[0], against[0]) >= 0
         assert published[3] - own[2] < 60
         assert own[1] <= against[0] or own[3] <= against[2]
