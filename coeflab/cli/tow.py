@@ -84,7 +84,7 @@ def command(
     """
     from coeflab.core.errors import InputError
     from coeflab.core.files import typed
-    from coeflab.tank.folder import PLAN, has_begun
+    from coeflab.tank.folder import PLAN, TANK, has_begun
 
     modes = {"--dry-run": dry_run, "--continue": go_on, "--status": status, "--collect": collect}
     chosen = [name for name, on in modes.items() if on]
@@ -94,6 +94,9 @@ def command(
     there = typed(body) if body else None
     if there is not None and out is None and (there / PLAN).is_file():
         out, body = there, ""
+    elif there is not None and (there / TANK).is_file() and not (there / "body.toml").is_file():
+        raise InputError("a tow that was stopped before its cases were written", "one with its cases", file=there,
+                         advice=f"Lay it out again: coeflab tow BODY --matrix TANK --out {there}")  # fmt: skip
     matrix = None if matrix is None else typed(matrix)
     if status or collect:
         folder = _folder(out, body)

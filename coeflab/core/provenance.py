@@ -172,6 +172,8 @@ WORKS: dict[str, str] = {
     "soderstrom1983": "T. Soderstrom, P. Stoica, Instrumental Variable Methods for System Identification, Springer, 1983.",
     "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
     "Biometrika 95(3), 2008.",
+    "stern2001": "F. Stern, R. V. Wilson, H. W. Coleman, E. G. Paterson, Comprehensive approach to verification and validation of CFD "
+    "simulations - Part 1: methodology and procedures, J. Fluids Engineering 123, 2001.",
     "white1997": "K. P. White, An effective truncation heuristic for bias reduction in simulation output, Simulation 69(6), 1997; as "
     "MSER-5 in K. P. White, M. J. Cobb, S. C. Spratt, A comparison of five steady-state truncation heuristics for simulation, Winter "
     "Simulation Conference, 2000.",

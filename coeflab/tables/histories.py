@@ -7,8 +7,9 @@ The standard error is the larger of two: batch means over batches of at least fo
 Flegal & Jones 2010), and Geyer's initial monotone sequence (Geyer 1992) without the bias of an estimated mean (Wolff 2004).
 The autocorrelation time is the larger of Geyer's and that of a first-order autoregression (Kendall 1954), for a short window
 shows too little of a long correlation. Where fewer than eight batches fit, the history is too short, unless all of the window
-lies within a drift that does not matter; the error is then that of a rectangular distribution over the range of the window
-(JCGM 100, 4.3.7).
+lies within a drift that does not matter. The error of such a window is no smaller than that of a rectangular distribution over
+its range (JCGM 100, 4.3.7), however many batches fit: there a steady solver goes round its end in small cycles, which shrink in
+no mean (Stern et al. 2001 take half the range), and one that was interrupted goes round it elsewhere.
 
 A drift is a slope through the batch means that is significant, at 3 % for all components of a run together, and moves the
 value by more than a share of it.
@@ -25,7 +26,7 @@ import numpy as np
 from coeflab.core.types import Array
 from coeflab.law.symbols import FORCES, MOMENTS
 
-CITATIONS = ("white1997", "conway1963", "flegal2010", "geyer1992", "wolff2004", "kendall1954", "jcgm100")
+CITATIONS = ("white1997", "conway1963", "flegal2010", "geyer1992", "wolff2004", "kendall1954", "jcgm100", "stern2001")
 BATCH = 5  # of MSER-5
 LATEST = 0.5  # share of a history that may be left out
 NO_PLATEAU = 0.48  # MSER-5 at its own limit, half of the history
@@ -237,6 +238,8 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     error = float(np.sqrt(max(float(means.var(ddof=1)) / batches, long_run_variance(values)[0] / m)))
     # A mean of a value that still moves is uncertain by the range of the line as well.
     error = float(np.hypot(error, trend / np.sqrt(12.0))) if drifts else error
+    if within <= tolerance and by_range > error:
+        return Mean(value, max(by_range, floor), 0.0, time, trend, trend_error, Convergence.CONVERGED)
     status = Convergence.DRIFTING if drifts else Convergence.CONVERGED
     return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status)
 

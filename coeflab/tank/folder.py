@@ -19,7 +19,13 @@ from coeflab.tank.tank import Tank
 KIND = "coeflab tow 1"
 PLAN, TANK, BODY = "tow.json", "tank.toml", "body/body.stl"
 CAMPAIGN, REPORT = "campaign", "report"
-OWN = (TANK, "body", ".lock", CAMPAIGN)  # what a tow may have left that was stopped before its plan was written
+OWN = (
+    TANK,
+    "body",
+    "mesh",
+    ".lock",
+    CAMPAIGN,
+)  # what, with its conditions, a tow leaves that stops before its plan is written
 
 
 def plan_text(folder: Path, tank: Tank, body: str, version: str, jobs: Sequence[Job]) -> bytes:
@@ -129,7 +135,8 @@ def refuse_other(folder: Path, tank: Tank, body: str) -> None:
     if not folder.is_dir():
         raise InputError("a file", "a folder", file=folder, column="--out")
     if not (folder / PLAN).exists():
-        if any(p.name not in OWN for p in folder.iterdir()):
+        own = {*OWN, *(c.name for c in tank.matrix)} if (folder / TANK).is_file() else OWN
+        if any(p.name not in own for p in folder.iterdir()):
             raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or that of a tow", file=folder,
                              advice="Name another --out.")  # fmt: skip
         return

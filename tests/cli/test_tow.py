@@ -213,3 +213,12 @@ def test_what_cannot_be_is_refused(coeflab: Run, tmp_path: Path, arguments: tupl
     assert done.returncode == 2, done.stdout
     assert said in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_tow_without_its_plan_is_laid_out_again(coeflab: Run, tmp_path: Path) -> None:
+    (tmp_path / "x").mkdir()
+    (tmp_path / "x" / "tank.toml").touch()
+    done = coeflab("tow", "x", "--continue")
+    assert done.returncode == 2
+    assert "found a tow that was stopped before its cases were written" in flat(done.stderr)
+    assert "coeflab tow BODY --matrix TANK --out x" in flat(done.stderr)

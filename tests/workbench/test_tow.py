@@ -313,6 +313,18 @@ def test_another_tow_or_other_files_are_refused(tmp_path: Path) -> None:
     assert [p.name for p in (tmp_path / "mine").iterdir()] == ["thesis.tex"]
 
 
+def test_a_tow_that_stopped_before_its_plan_was_written_is_laid_out_again(tmp_path: Path) -> None:
+    tow = laid_out(tmp_path, tank_file(tmp_path))
+    plan = (tow.folder / "tow.json").read_bytes()
+    (tow.folder / "tow.json").unlink()
+    assert laid_out(tmp_path, tank_file(tmp_path)).jobs == tow.jobs
+    assert (tow.folder / "tow.json").read_bytes() == plan
+    (tow.folder / "tow.json").unlink()
+    (tow.folder / "thesis.tex").touch()
+    with pytest.raises(InputError, match="which is not empty"):
+        laid_out(tmp_path, tank_file(tmp_path))
+
+
 def test_two_processes_do_not_tow_in_one_folder(tmp_path: Path) -> None:
     tow = laid_out(tmp_path, tank_file(tmp_path))
     with only_one(tow.folder, "tow"), pytest.raises(InputError, match="one tow at a time in a folder"):
