@@ -264,7 +264,7 @@ def _missing(study: Study, tow: PlannedTow, symbol: str, own: Coefficient | None
         return OPEN, left_out
     refused = study.unfitted.get(tow.campaign, "")
     if own is None or own.status is Status.NO_TABLE:
-        return OPEN, refused or f"no fit of {variable}"
+        return OPEN, refused or f"too few runs that vary {variable}"
     return OPEN, own.status.replace("_", " ")
 
 

@@ -27,7 +27,7 @@ from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, wi
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import MOTIONS
+from coeflab.law.symbols import MOTIONS, derivative
 from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
@@ -138,7 +138,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     body = read_body(_body_file(plan.body)) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits, plan)
-    missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
+    missing = tuple(c for g in groups for c in _missing(g, fits, tables, plan.wanted))
     first = plan.scaling or fits[0].coefficients.scaling
     conditions = plan.conditions or tables[0].conditions
     hulls = hulls_of(groups, conditions.density, progress)
@@ -322,8 +322,10 @@ def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ..
     )
 
 
-def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[str, ...]) -> list[Coefficient]:
-    """Wanted coefficients that no table of a group gives."""
+def _missing(
+    group: PlannedParameterFile, fits: list[FitResult], tables: list[ForceTable], wanted: tuple[str, ...]
+) -> list[Coefficient]:
+    """Wanted coefficients that no table of a group gives, or one with too few runs."""
     names = {f.campaign for f in fits}
     for campaign in group.campaigns:
         if campaign not in names:
@@ -334,8 +336,15 @@ def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[s
     if not any(f.sweeps for f in fits if f.campaign in group.campaigns):
         return []
     have = {s for f in fits if f.campaign in group.campaigns for s in f.coefficients.symbols}
+    mine = [t for t in tables if t.campaign in group.campaigns]
+
+    def status(symbol: str) -> Status:
+        factors = set(derivative(symbol).factors)
+        varied = any(symbol[0] in t.forces and factors <= set(t.varies) for t in mine)
+        return Status.TOO_FEW_POINTS if varied else Status.NO_TABLE
+
     return [
-        Coefficient(s, None, None, Status.NO_TABLE, group.body, campaign=", ".join(group.campaigns))
+        Coefficient(s, None, None, status(s), group.body, campaign=", ".join(group.campaigns))
         for s in wanted
         if s not in have
     ]

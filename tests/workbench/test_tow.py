@@ -128,6 +128,8 @@ def test_two_rates_give_no_rotary_derivative_and_say_why(whole: tuple[Tow, Colle
     for symbol in ("Yr", "Nr"):
         assert rows[symbol].value is None
         assert rows[symbol].why == "2 runs with r count, 3 are needed"
+    absent = {c.symbol: c.status for c in whole[1].study.missing}
+    assert absent == {"Yr": Status.TOO_FEW_POINTS, "Nr": Status.TOO_FEW_POINTS}  # a table varies r
 
 
 def test_a_finished_tow_is_kept_and_gives_the_same_bytes(whole: tuple[Tow, Collected]) -> None:
