@@ -9,6 +9,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable
+from math import hypot
 from pathlib import Path
 
 import pytest
@@ -116,9 +117,10 @@ def test_towed_killed_and_gone_on_with(tmp_path: Path) -> None:
     assert isinstance(one["means"], dict)
     assert isinstance(other["means"], dict)
     assert isinstance(one["errors"], dict)
-    size = max(abs(one["means"][c]) for c in ("X", "Y"))
+    assert isinstance(other["errors"], dict)
     for c in ("X", "Y", "N"):
-        assert one["means"][c] == pytest.approx(other["means"][c], abs=max(3.0 * one["errors"][c], 1e-4 * size))
+        both = hypot(one["errors"][c], other["errors"][c])
+        assert one["means"][c] == pytest.approx(other["means"][c], abs=4.0 * both)  # up to 2.9 in four such runs by hand
 
     # Side force and moment of a slender body in drift, and its damping on the arm.
     said = tow(tmp_path, "x", "--collect", "--json")
