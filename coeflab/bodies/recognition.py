@@ -410,7 +410,7 @@ def _appendages(
             if len(cluster) < FEWEST or not _counts(cluster, tracks, kept):
                 continue
             if _joins(cluster, tracks):
-                y, z = centre_of(cluster[len(cluster) // 2].polygon)
+                y, z = (round(float(c), 9) + 0.0 for c in centre_of(cluster[len(cluster) // 2].polygon))
                 ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
                 left.append(f"what joins two hulls, {ends}")
                 volume += float(-np.trapezoid([b.polygon.area() for b in cluster], [b.x for b in cluster]))

@@ -99,6 +99,7 @@ def test_catamaran_is_two_hulls_and_says_what_joins_them() -> None:
     assert sorted(round(float(h.centre[40, 0]), 3) for h in found.hulls) == [-0.4, 0.4]
     assert len(found.left_out) == 1
     assert "joins two hulls" in found.left_out[0]
+    assert found.left_out[0].endswith(" m at y = 0, z = 0 m")
     assert not found.foils
 
 

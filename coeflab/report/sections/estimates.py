@@ -16,7 +16,7 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
-from coeflab.report.figures.answer import forest_figure
+from coeflab.report.figures.answer import forest_figure, share_text
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
 from coeflab.report.sections.body import hull_figure
@@ -252,7 +252,7 @@ def sentence(study: Study) -> str:
     shape, parameters = _shape(study), next(iter(study.parameter_files.values()))
     found = estimates_of(parameters)
     shares = sorted(abs(c.u95 / c.value) for c in found if c.u95 and c.value)
-    wide = f", median U95 {100.0 * shares[len(shares) // 2]:.0f} %" if shares else ""
+    wide = f", median U95 {share_text(shares[len(shares) // 2])}" if shares else ""
     c = shape.weighed.configuration
     displaced = shape.conditions.density * (c.volume or 0.0)
     mass = f"{c.mass.mass:.3g} kg in {displaced:.3g} kg of displacement" if c.mass else f"displaces {displaced:.3g} kg"
