@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -255,6 +256,13 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
     assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
+    said = re.search(r"([\d.]+) m at 12 .*\(95 % ([\d.]+) to ([\d.]+)\)", first.sentence)
+    assert said is not None
+    middle, low, high = (
+        x.replace(".", "") for x in said.groups()
+    )  # to one place, with two digits of half the interval
+    assert 20 <= int(high) - int(low) < 200
+    assert int(low) < int(middle) < int(high)
     assert len(first.sentence) <= 160
     assert "estimate" in first.sentence
     assert first.slope is not None

@@ -194,10 +194,9 @@ def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
         so = f"at {_degrees(asked.options['rudder'])} of rudder and {speed:g} m/s"
     else:
         so = f"by thrusters from {speed:g} m/s"
-    return (
-        f"{s.figure.name} {(s.figure.value or 0.0) * factor:.2g}{f' {unit}' if unit else ''} {so} "
-        f"(95 % {(s.low or 0.0) * factor:.2g} to {(s.high or 0.0) * factor:.2g}), estimate"
-    )
+    first, last, middle = ((x or 0.0) * factor for x in (s.low, s.high, s.figure.value))
+    value, low, high = (with_u95(x, (last - first) / 2.0)[0] for x in (middle, first, last))
+    return f"{s.figure.name} {value}{f' {unit}' if unit else ''} {so} (95 % {low} to {high}), estimate"
 
 
 def _degrees(angle: float | str) -> str:
