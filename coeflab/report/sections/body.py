@@ -25,6 +25,7 @@ from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.pieces import HULL, Piece
 from coeflab.bodies.shape import Parts, Shape
 from coeflab.bodies.triangulation import RULE, Triangulation
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.report.document import Axis, Figure, Layer, Scene, Section
@@ -320,7 +321,7 @@ def _pressure(full: str, short: str, derived: Derived, among: CoefficientSet) ->
     length = among.scaling.length
     half = 0.0 if derived.result is None else derived.result.linear * length
     place = among.reference_point + np.array([derived.value * length, 0.0, 0.0])
-    note = f"{derived.value * length:.3g} ± {half:.2g} m forward of the reference point, from {derived.name}"
+    note = f"{plus_minus(derived.value * length, half, '±')} m forward of the reference point, from {derived.name}"
     return Mark(full, short, place, "d" if short == "CP sway" else "c", note)
 
 
