@@ -24,8 +24,9 @@ import numpy as np
 
 from coeflab.bodies.added_mass.panel import _rectangle
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panels.added_mass import Wall, panel_added_mass
-from coeflab.bodies.panels.influence import bisected
+from coeflab.bodies.panel_solver.influence import bisected
+from coeflab.bodies.panel_solver.solve import panel_added_mass
+from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.bodies.shape import Ellipsoid, Form, Part, Parts, Plate
 
 PEER = Path(__file__).with_name("capytaine_added_mass.py")

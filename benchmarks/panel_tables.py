@@ -14,7 +14,7 @@ import numpy as np
 
 from coeflab.bodies.closed_forms import BOX_RATIOS, CYLINDER_RATIOS
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panels.added_mass import panel_added_mass
+from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.shape import Box, Cylinder, Form, Part, Parts
 from coeflab.core.machine import compiles
 

@@ -143,29 +143,6 @@ def graded_nodes(start: float, end: float, count: int, power: int = 1) -> tuple[
     return start + (end - start) * share, abs(end - start) * w * slope
 
 
-LIFT_LOSS = 0.9  # of 2 pi, by Whicker & Fehlner
-
-
-def low_aspect_lift_slope(aspect: float, sweep: float = 0.0) -> float:
-    """Slope of the lift coefficient of a wing of low aspect ratio over the angle of attack, per rad.
-
-    Parameters
-    ----------
-    aspect : float
-        Span squared over area; of a plane on a wall with its mirror image, twice that of the plane alone.
-    sweep : float
-        Of the quarter-chord line, rad.
-
-    Notes
-    -----
-    L. F. Whicker, L. F. Fehlner, DTMB Report 933 (1958), equation 1, with a0 = 0.9 (2 pi) per rad:
-    a0 a / (cos S sqrt(a^2 / cos^4 S + 4) + a0 / pi).
-    """
-    c = float(np.cos(sweep))
-    a0 = LIFT_LOSS * 2.0 * np.pi
-    return float(a0 * aspect / (c * np.sqrt(aspect**2 / c**4 + 4.0) + a0 / np.pi))
-
-
 def spheroid_munk_slope(length: float, diameter: float) -> float:
     """Nv' of a prolate spheroid in potential flow by its length: -2 (k2 - k1) V / L^3; its Yv' is zero.
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.fin_groups import FinGroup, carrier, fin_groups
+from coeflab.bodies.fin_lift import FinGroup, carrier, fin_groups
 from coeflab.bodies.hull_flow import HullFlow, hull_flow
 from coeflab.bodies.outline import Foil, Outline, Sections
 from coeflab.core.types import Array, brief, locked

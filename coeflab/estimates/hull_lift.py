@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.fin_groups import carrier, fin_groups
+from coeflab.bodies.fin_lift import carrier, fin_groups
 from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array, brief, locked

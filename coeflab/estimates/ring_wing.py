@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.fin_groups import carrier, left_behind_fins
+from coeflab.bodies.fin_lift import carrier, left_behind_fins
 from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline, RingWing
 from coeflab.core.types import Array, brief, locked

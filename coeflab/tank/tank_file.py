@@ -20,10 +20,10 @@ from coeflab.core.registry import Registry
 from coeflab.core.text.toml import TomlFile, quoted, read_toml, value
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank import test_matrix
-from coeflab.tank.declaration import FRESH_WATER, MatrixKeys, TankFile
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS
 from coeflab.tank.tank import Tank
+from coeflab.tank.tank_keys import FRESH_WATER, MatrixKeys, TankFile
 from coeflab.tank.test_matrix import Sweeps
 from coeflab.tank.towed_body import TowedBody
 

@@ -29,7 +29,6 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
-from coeflab.tank.declaration import TankFile
 from coeflab.tank.earlier import earlier_run, take_over
 from coeflab.tank.folder import (
     BODY,
@@ -60,6 +59,7 @@ from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
 from coeflab.tank.tank_file import declared_body, default_tank, default_text, read_tank
+from coeflab.tank.tank_keys import TankFile
 from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run

@@ -32,7 +32,7 @@ from coeflab.report.formats import REPORTERS
 from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import FromShape, Plan, Study
-from coeflab.tank.declaration import FRESH_WATER
+from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed

@@ -14,7 +14,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import form_surface, meshed, surface_of
 from coeflab.bodies.mesh.source import ply
 from coeflab.bodies.mirror_planes import mirrors
-from coeflab.bodies.panels.added_mass import panel_added_mass
+from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import (
     Agreement,

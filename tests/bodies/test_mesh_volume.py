@@ -11,7 +11,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panels.refinement import STRONGEST, volume_gap
+from coeflab.bodies.panel_solver.refinement import STRONGEST, volume_gap
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
 from coeflab.core.files import shipped
 from coeflab.workbench import read_body

@@ -12,7 +12,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import box_surface, meshed
-from coeflab.bodies.panels.influence import slivers
+from coeflab.bodies.panel_solver.influence import slivers
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

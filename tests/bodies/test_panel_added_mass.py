@@ -7,8 +7,8 @@ import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
-from coeflab.bodies.panels import added_mass as kernel
-from coeflab.bodies.panels.added_mass import memory_needed, panel_added_mass
+from coeflab.bodies.panel_solver import solve as kernel
+from coeflab.bodies.panel_solver.solve import memory_needed, panel_added_mass
 from coeflab.core.types import Array
 from coeflab.law.transforms import moved, turned
 

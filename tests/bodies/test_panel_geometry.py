@@ -7,7 +7,7 @@ import pytest
 
 from coeflab.bodies.mesh.mesh import mesh_integrals
 from coeflab.bodies.mesh.meshing import box_surface
-from coeflab.bodies.panels.influence import (
+from coeflab.bodies.panel_solver.influence import (
     bisected,
     panels_of,
     sharpness,

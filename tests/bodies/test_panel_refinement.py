@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.panels.refinement import refined
+from coeflab.bodies.panel_solver.refinement import refined
 
 TRUE = np.diag([1.0, 3.0, 3.0, 0.5, 8.0, 8.0]) + 0.0
 COUNTS = (8000, 2000, 500)

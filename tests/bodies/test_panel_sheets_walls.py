@@ -10,9 +10,10 @@ import pytest
 from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.meshing import box_surface, meshed
-from coeflab.bodies.panels import influence as kernel
-from coeflab.bodies.panels.added_mass import Wall, panel_added_mass
-from coeflab.bodies.panels.influence import bisected, exact_integrals, graded, gradients, panels_of, sharp_points
+from coeflab.bodies.panel_solver import influence as kernel
+from coeflab.bodies.panel_solver.influence import bisected, exact_integrals, graded, gradients, panels_of, sharp_points
+from coeflab.bodies.panel_solver.solve import panel_added_mass
+from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

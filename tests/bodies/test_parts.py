@@ -16,7 +16,7 @@ from coeflab.bodies.closed_forms import (
     plate_coefficient,
 )
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panels.added_mass import panel_added_mass
+from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.shape import Box, Cylinder, Part, Parts
 from coeflab.law.transforms import moved
 

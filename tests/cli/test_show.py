@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.cli import show, vehicle
 from coeflab.core.table import Table
-from coeflab.tank.declaration import FRESH_WATER
+from coeflab.tank.tank_keys import FRESH_WATER
 from tests.cli.conftest import COEFLAB, flat
 from tests.cli.test_compare import VALUES, made
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.panels.added_mass import panel_added_mass
+from coeflab.bodies.panel_solver.solve import panel_added_mass
 
 KEPT = json.loads((Path(__file__).parent / "data" / "capytaine" / "capytaine.json").read_text(encoding="utf-8"))
 

@@ -13,9 +13,10 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.family import family
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panels import influence
-from coeflab.bodies.panels.added_mass import PanelSolution, Wall, memory_needed, panel_added_mass
-from coeflab.bodies.panels.refinement import Refinement, refined, volume_gap
+from coeflab.bodies.panel_solver import influence
+from coeflab.bodies.panel_solver.refinement import Refinement, refined, volume_gap
+from coeflab.bodies.panel_solver.solve import PanelSolution, memory_needed, panel_added_mass
+from coeflab.bodies.panel_solver.wall import SAID, WALLS, Wall
 from coeflab.bodies.shape import Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import compiles, physical_memory, stage
@@ -33,12 +34,6 @@ THIN, THIN_SHARE, SHARP = 0.05, 0.5, 0.5
 COMPILE_FROM = 5_000
 MOST_SHEETS, RATIO, INSIDE = 4_096, 4, 2.0 * np.pi
 SAME, NOISE = 1e-6, 2e-3
-WALLS = {"bottom": (1.0, 1.0), "surface_zero": (-1.0, 1.0), "surface_infinite": (-1.0, -1.0)}
-SAID = {
-    "bottom": "a flat bottom below",
-    "surface_zero": "a free surface above at zero frequency, a lid",
-    "surface_infinite": "a free surface above at infinite frequency, where the potential is zero",
-}
 NAMES = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot")
 
 

@@ -28,8 +28,8 @@ from coeflab.bodies.closed_forms import (
 from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import form_surface
-from coeflab.bodies.panels.added_mass import PanelSolution, panel_added_mass
-from coeflab.bodies.panels.influence import panels_of, side_of, slivers, thin_share
+from coeflab.bodies.panel_solver.influence import panels_of, side_of, slivers, thin_share
+from coeflab.bodies.panel_solver.solve import PanelSolution, panel_added_mass
 from coeflab.bodies.shape import (
     Bar,
     Box,

@@ -14,7 +14,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
 from coeflab.bodies.mesh.meshing import FEWEST, meshed
 from coeflab.bodies.mesh.solids import divided, solid, surface
 from coeflab.bodies.mesh.topology import crossing_faces
-from coeflab.bodies.panels import influence
+from coeflab.bodies.panel_solver import influence
 from coeflab.bodies.shape import Shape
 from coeflab.core.errors import InputError
 from coeflab.core.machine import stage

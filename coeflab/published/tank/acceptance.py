@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_slope, spheroid_munk_slope
+from coeflab.bodies.closed_forms import ellipsoid_added_mass, spheroid_munk_slope
+from coeflab.bodies.fin_lift import low_aspect_lift_slope
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread

@@ -15,7 +15,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panels.influence import Panels, gradients, panels_of, seen_by
+from coeflab.bodies.panel_solver.influence import Panels, gradients, panels_of, seen_by
+from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import moved
 
@@ -58,33 +59,6 @@ def memory_needed(count: int) -> int:
     return 4 * count**2 + WORKSPACE
 
 
-@dataclass(frozen=True, slots=True)
-class Wall:
-    """A plane beside the body, by images.
-
-    Attributes
-    ----------
-    point, normal : (3,) arrays
-        A point of the plane, m, and its unit normal.
-    factor : float
-        1: no flow through it, a bottom, or a free surface at zero frequency; -1: no potential on it, a free surface at
-        infinite frequency (Newman 1977, section 6.18).
-    """
-
-    point: Array
-    normal: Array
-    factor: float
-
-    def behind(self, points: Array) -> Array:
-        """Mirror points, (n, 3)."""
-        return np.asarray(points - 2.0 * ((points - self.point) @ self.normal)[:, None] * self.normal)
-
-    def distance(self, points: Array) -> float:
-        """Of the nearest of them, m; below zero where some lie on the other side than most."""
-        height = (points - self.point) @ self.normal
-        return float(np.min(height * np.sign(height.mean() or 1.0)))
-
-
 def panel_added_mass(
     corners: Array, point: Array, compiled: bool, sheets: Array | None = None, wall: Wall | None = None
 ) -> PanelSolution:
@@ -106,9 +80,9 @@ def panel_added_mass(
         The whole body lies on one side of it.
     """
     if compiled:
-        from coeflab.bodies.panels.compiled import influence
+        from coeflab.bodies.panel_solver.influence_compiled import influence
     else:
-        from coeflab.bodies.panels.influence import influence
+        from coeflab.bodies.panel_solver.influence import influence
     thin = np.zeros((0, 3, 3)) if sheets is None else sheets
     every = np.concatenate([corners, thin])
     low, high = every.min(axis=(0, 1)), every.max(axis=(0, 1))

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panels.influence import REACH, Panels, Seen
+from coeflab.bodies.panel_solver.influence import REACH, Panels, Seen
 from coeflab.core.types import Array
 
 
@@ -96,7 +96,7 @@ _filled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"
 
 
 def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.float32], list[Array]]:
-    """As `coeflab.bodies.panels.influence.influence`."""
+    """As `coeflab.bodies.panel_solver.influence.influence`."""
     count = panels.count
     angles, layers = np.empty((count, count), dtype=np.float32), []
     triangles = np.hstack([panels.corners.reshape(count, 9), panels.normal])

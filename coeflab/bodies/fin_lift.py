@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.closed_forms import low_aspect_lift_slope
 from coeflab.bodies.outline import Foil, Outline, Sections
 from coeflab.core.types import Array, brief
 
 SAME = 1e-3  # of a span
+LIFT_LOSS = 0.9  # of 2 pi, by Whicker & Fehlner
 
 
 @brief
@@ -199,3 +199,23 @@ def carrier(outline: Outline, stand: Array, x: float) -> Sections | None:
         if np.hypot(*(near - stand)) < 0.5 * largest and hull.x[-1] - 0.1 * hull.length < x <= hull.x[0]:
             return hull
     return None
+
+
+def low_aspect_lift_slope(aspect: float, sweep: float = 0.0) -> float:
+    """Slope of the lift coefficient of a wing of low aspect ratio over the angle of attack, per rad.
+
+    Parameters
+    ----------
+    aspect : float
+        Span squared over area; of a plane on a wall with its mirror image, twice that of the plane alone.
+    sweep : float
+        Of the quarter-chord line, rad.
+
+    Notes
+    -----
+    L. F. Whicker, L. F. Fehlner, DTMB Report 933 (1958), equation 1, with a0 = 0.9 (2 pi) per rad:
+    a0 a / (cos S sqrt(a^2 / cos^4 S + 4) + a0 / pi).
+    """
+    c = float(np.cos(sweep))
+    a0 = LIFT_LOSS * 2.0 * np.pi
+    return float(a0 * aspect / (c * np.sqrt(aspect**2 / c**4 + 4.0) + a0 / np.pi))
