@@ -7,9 +7,9 @@ The standard error is the larger of two: batch means over batches of at least fo
 Flegal & Jones 2010), and Geyer's initial monotone sequence (Geyer 1992) without the bias of an estimated mean (Wolff 2004).
 The autocorrelation time is the larger of Geyer's and that of a first-order autoregression (Kendall 1954), for a short window
 shows too little of a long correlation. Where fewer than eight batches fit, the history is too short, unless all of the window
-lies within a drift that does not matter. The error of such a window is no smaller than that of a rectangular distribution over
-its range (JCGM 100, 4.3.7), however many batches fit: there a steady solver goes round its end in small cycles, which shrink in
-no mean (Stern et al. 2001 take half the range), and one that was interrupted goes round it elsewhere.
+lies within a drift that does not matter; the error is then that of a rectangular distribution over the range of the window
+(JCGM 100, 4.3.7). A solver that is known to be steady has no smaller one, however many batches fit: it ends in cycles, which
+no mean makes smaller (Stern et al. 2001 take half of the range), and one that was interrupted ends in others.
 
 A drift is a slope through the batch means that is significant, at 3 % for all components of a run together, and moves the
 value by more than a share of it.
@@ -80,6 +80,8 @@ class Mean:
     trend, trend_error : float
         Change over the window by a straight line, and its standard error.
     status : Convergence
+    spread : float
+        Standard deviation of a rectangular distribution over the range of the window.
     """
 
     value: float
@@ -89,6 +91,12 @@ class Mean:
     trend: float
     trend_error: float
     status: Convergence
+    spread: float = 0.0
+
+    @property
+    def steady_error(self) -> float:
+        """Of the mean of a steady solver's iterations: no smaller than their range allows."""
+        return max(self.error, self.spread)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +231,7 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     if m < LEAST_ROWS or batches < LEAST_BATCHES:
         steady = within <= tolerance and m >= LEAST_ROWS
         status = Convergence.CONVERGED if steady else Convergence.TOO_SHORT
-        return Mean(value, max(by_range, floor), 0.0, time, line, np.nan, status)
+        return Mean(value, max(by_range, floor), 0.0, time, line, np.nan, status, by_range)
     from scipy.special import stdtrit
 
     size = m // batches
@@ -238,10 +246,8 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     error = float(np.sqrt(max(float(means.var(ddof=1)) / batches, long_run_variance(values)[0] / m)))
     # A mean of a value that still moves is uncertain by the range of the line as well.
     error = float(np.hypot(error, trend / np.sqrt(12.0))) if drifts else error
-    if within <= tolerance and by_range > error:
-        return Mean(value, max(by_range, floor), 0.0, time, trend, trend_error, Convergence.CONVERGED)
     status = Convergence.DRIFTING if drifts else Convergence.CONVERGED
-    return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status)
+    return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status, by_range)
 
 
 def scales(sizes: Mapping[str, float], groups: Mapping[str, str], length: float = 0.0) -> dict[str, float]:

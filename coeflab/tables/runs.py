@@ -222,7 +222,7 @@ def _walk(root: Path, claimed: Callable[[Path], bool]) -> None:
                     waiting.append((candidate, depth + 1))
 
 
-def summarised(run: Run, name: str) -> RunSummary:
+def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
     """The plateau of a run, its means and errors, and what its files say.
 
     Parameters
@@ -230,6 +230,8 @@ def summarised(run: Run, name: str) -> RunSummary:
     run : Run
     name : str
         Under which it is listed.
+    steady : bool
+        Of a solver that is known to be steady: no error is below what the range of its iterations allows.
     """
     history = run.history
     tables = (history, *run.patches.values())
@@ -271,7 +273,7 @@ def summarised(run: Run, name: str) -> RunSummary:
         status=found.status,
         why=found.why,
         means={c: m.value for c, m in found.means.items()},
-        errors={c: m.error for c, m in found.means.items()},
+        errors={c: m.steady_error if steady else m.error for c, m in found.means.items()},
         units={c: k.unit for c, k in columns.items()},
         headers={c: k.name for c, k in columns.items()},
         by_name=by_name,

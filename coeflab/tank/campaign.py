@@ -118,7 +118,7 @@ def towed_run(
         condition,
         progressed.state,
         progressed.why,
-        None if counted is None or not len(counted.history) else summarised(counted, condition.name),
+        None if counted is None or not len(counted.history) else summarised(counted, condition.name, steady=True),
         (*mesh_remarks, *progressed.remarks),
         job.key,
         "+".join(meshes),

@@ -270,7 +270,7 @@ class _Attempt:
         if self.verdict is not None:
             means = self.verdict.plateau.means
             changes = {
-                "means": {c: m.value for c, m in means.items()}, "errors": {c: m.error for c, m in means.items()},
+                "means": {c: m.value for c, m in means.items()}, "errors": {c: m.steady_error for c, m in means.items()},
                 "plateau": self.looked if counts else 0, "why": self.verdict.why,
             }  # fmt: skip
         self._say(iteration=iteration, left=self._left(iteration), **changes)
