@@ -85,7 +85,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:
         if r.other_scaling is not None:
-            out.append(f"{r.name}: the source does not state the length. {_readings(r.scaling, r.other_scaling)}.")
+            out.append(f"{r.name}: length of primes not stated; {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
@@ -182,7 +182,7 @@ def _independent(study: Study) -> str:
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
-        f"Independent evidence: CFD predicts {inside} of {len(numbers)} coefficients measured on the same body ({bodies}) within the validation "
+        f"Independent evidence: CFD predicts {inside} of {len(numbers)} measured coefficients ({bodies}) within the validation "
         f"uncertainty U_V.{said}"
     )
 
@@ -190,7 +190,7 @@ def _independent(study: Study) -> str:
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     force, moment = (f"{100.0 * (other.ratio(symbol, first) - 1.0):+.1f} %" for symbol in ("Yv", "Nr"))
-    return f"We assume {first.length_name}; {other.length_name} would change Yv' by {force} and Nr' by {moment}"
+    return f"{first.length_name} assumed ({other.length_name}: Yv' {force}, Nr' {moment})"
 
 
 def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:

@@ -153,9 +153,7 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
     assert any(
-        "the source does not state the length. We assume LOA; LWL would change Yv' by +21.0 % and Nr' by +46.4 %"
-        in note
-        for note in made.notes
+        "length of primes not stated; LOA assumed (LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes
     )
 
 

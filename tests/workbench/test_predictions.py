@@ -94,7 +94,7 @@ def test_a_measured_number_counts_once(
             in said
         )
         assert "Nv' was also computed and measured, but gets no verdict: there is no grid study." in said
-        assert f"CFD predicts {good} of 1 coefficients measured" in answer_notes._independent(study)
+        assert f"CFD predicts {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 
 @pytest.fixture(scope="module")
