@@ -259,14 +259,16 @@ def on_predictions(study: Study) -> tuple[str, ...]:
     out = []
     if len(judged) > len(numbers):
         most = max(len(one) for one in numbers)
-        by, every = ("two", "both do") if most == 2 else ("several", "all do")
+        by, every = ("two", "both comparisons pass") if most == 2 else ("several", "all comparisons pass")
         out.append(
-            f"Predictions: {len(judged)} comparisons of {len(numbers)} measured coefficient{'s' * (len(numbers) > 1)}. A coefficient computed by {by} campaigns "
+            f"CFD predicts {len(numbers)} measured coefficient{'s' * (len(numbers) > 1)} in {len(judged)} comparisons. A coefficient that {by} campaigns compute "
             f"counts once; it passes only if {every}."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
         out.append(
-            in_sentences(f"Weak predictions, U_V above {100.0 * WIDE:.0f} % of the measured value: ", weak, join=listed)
+            in_sentences(
+                f"Weak predictions (U_V above {100.0 * WIDE:.0f} % of the measured value): ", weak, join=listed
+            )
         )
     if none := [v for v in found if v.within is None]:
         out.append(_without_verdict(none))

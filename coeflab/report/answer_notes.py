@@ -58,28 +58,34 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     out = []
     if sources:
         scaling = beside.among.scaling if beside.among else None
-        by = f", made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
+        by = f" Primes use {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
         if beside.among:
-            by += f", about {point_in_words(beside.among.reference_point, beside.among.datum)}"
+            about = f"{point_in_words(beside.among.reference_point, beside.among.datum)}"
+            by += f"{'; moments are' if by else ' Moments are'} about {about}"
         count = len({f.campaign for f in study.fits})
-        of = f" of {count} campaigns" if count > len(sources) else ""
-        out.append(f"Ours: fits of coeflab to {listed(_with_symbols(sources, rows))}{of}{by}.")
+        of = f", {len(sources)} of {count} campaigns" if count > len(sources) else ""
+        out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}{of}.{by}{'.' * bool(by)}")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     out += lost_by_move(study)
     own = [r for r in rows if r.source in towed_rows]
     if own:
-        out.append(f"{listed([primed(r.symbol) for r in own])}: our CFD {own[0].source}; no verdict.")
+        come, get = ("comes", "gets") if len(own) == 1 else ("come", "get")
+        out.append(
+            f"{listed([primed(r.symbol) for r in own])} {come} from our CFD {own[0].source} and {get} no verdict."
+        )
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
     out += filter(None, (_independent(study), _not_in_u95(study, rows)))
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
-        out.append(f"{names}: {f'another body, {body}' if body != beside.body else 'another method'}; no verdict.")
+        of = f"of another body ({body})" if body != beside.body else "by another method"
+        are, get = ("is", "gets") if sum(r.body == body for r in others) == 1 else ("are", "get")
+        out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:
         if r.other_scaling is not None:
-            out.append(f"{r.name}: length not stated, {_readings(r.scaling, r.other_scaling)}.")
+            out.append(f"{r.name}: length of primes not stated; {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
@@ -136,14 +142,14 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     stated = _as_stated(study, rows)
     if not names:
         return f"U95 is without rig and balance; {stated}." if stated else ""
-    more = " and others (Coefficients)" if len(names) > MOST_NAMED else ""
+    more = " and others (see Coefficients)" if len(names) > MOST_NAMED else ""
     by: dict[tuple[str, ...], list[str]] = {}
     for n in names[: MOST_NAMED - 1] if more else names:
         of = () if lacking[n] == whole else tuple(primed(r.symbol) for r in rows if r.symbol in lacking[n])
         by.setdefault(of, []).append(n)
     shown = [*by.pop((), []), *(f"{listed(those)} ({listed(of)})" for of, those in by.items())]
     said = f"; {stated}" if stated else ""
-    which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (Coefficients)"
+    which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (see Coefficients)"
     return f"Not in U95: errors of {which}{said}."
 
 
@@ -156,7 +162,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -173,18 +179,18 @@ def _independent(study: Study) -> str:
     for v in (v for v in found if v.weak and v.share not in shares.get(v.symbol, ())):
         shares.setdefault(v.symbol, []).append(v.share)
     weak = [f"{primed(s)} (U_V {' and '.join(each)} of {primed(s)})" for s, each in shares.items()]
-    said = f"; weak: {', '.join(weak)}" * bool(weak) + f"; beyond U_V: {', '.join(outside)}" * bool(outside)
+    said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
-        f"Independent: CFD agrees with {inside} of {len(numbers)} measured coefficients (same body, {bodies}) within the validation "
-        f"uncertainty U_V{said}."
+        f"Independent evidence: CFD predicts {inside} of {len(numbers)} measured coefficients ({bodies}) within the validation "
+        f"uncertainty U_V.{said}"
     )
 
 
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     force, moment = (f"{100.0 * (other.ratio(symbol, first) - 1.0):+.1f} %" for symbol in ("Yv", "Nr"))
-    return f"{first.length_name} assumed (if {other.length_name}: Yv' {force}, Nr' {moment})"
+    return f"{first.length_name} assumed ({other.length_name}: Yv' {force}, Nr' {moment})"
 
 
 def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:

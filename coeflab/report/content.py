@@ -193,7 +193,7 @@ def _short(reproduce: Section, digest: str) -> Section:
     if not reproduce.code:
         return reproduce
     text = (
-        f"Made by coeflab {VERSION}, not released yet: note the commit of its sources beside this report. To install that commit, run in "
+        f"Made by coeflab {VERSION}, which is not released yet. Record the commit of its sources with this report. To install that commit, run in "
         "its sources: pip install . -c constraints.txt",
         "Equal inputs, sources and libraries give this report byte for byte."
         + (f" Digest of the inputs under Provenance: {digest}." if digest else ""),
@@ -326,14 +326,14 @@ def _laws(study: Study) -> tuple[Section, ...]:
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
         "law misses a point by more, its range ends before that point. If at least half of the tested range remains, this is a warning. "
-        "If less remains, the study fails. X, and laws that have only slopes, do not fail it.",
+        "If less remains, the study fails. A law of X, or one that has only slopes, never fails the study.",
         format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (_not_in_a_file(none),)
     shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
-    return (Section("law-at-points", "The law at the measured points", text, shown),)
+    return (Section("law-at-points", "Force law at the measured points", text, shown),)
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:

@@ -57,7 +57,7 @@ TERMS: tuple[Term, ...] = (
     Term("prime", "Nondimensional, written with a prime: Y' = Y / (1/2 rho U^2 L^2), N' = N / (1/2 rho U^2 L^3), v' = v/U, "
          "r' = r L/U. The length L is stated, since LBP and LOA give different values.", ("sname1950",), ("primed", "primes")),
     Term("LBP", "Length between perpendiculars, 4.26086 m for SUBOFF: Roddy's length for primes.", ("roddy1990",)),
-    Term("LOA", "Overall length, 4.356 m for SUBOFF. By LBP or by LOA, static force derivatives of SUBOFF differ by 4.5 %, moments by "
+    Term("LOA", "Overall length, 4.356 m for SUBOFF. With LBP or LOA as length, static force derivatives of SUBOFF differ by 4.5 %, moments by "
          "6.9 %.", ("groves1989",)),
     Term("sideslip angle", "beta = asin(v/U), positive when the body moves to starboard. Roddy's drift angle has the other sign; "
          "each table declares its own.", ("sname1950",), ("sideslip", "drift angle", "angle of drift")),
@@ -79,14 +79,14 @@ TERMS: tuple[Term, ...] = (
     Term("plateau", "The end of an iterative run, where every force has neither trend nor drift beyond its own scatter. A run "
          "without one is unconverged and does not enter a fit.", ("white1997", "geyer1992"), (), "data_in_runs.md"),
     Term("cross-body", "Compared with another body or another kind of test: shown without a verdict.", (), (), "validation.md"),
-    Term("re-analysis", "The same measurements, evaluated by their authors and by coeflab. It tests the evaluation, not the tank.", (),
+    Term("re-analysis", "The same measurements, evaluated by their authors and by coeflab. It tests the evaluation, not the measurements.", (),
          ("re-analysed",), "validation.md"),
     Term("SUBOFF", "Submarine model of DARPA (DTRC Model 5470) with equations for its shape and published captive tests.",
          ("groves1989", "roddy1990")),
     Term("AFF-8", "SUBOFF with sail and four stern planes. Roddy's configurations 1 and 2 also carry a ring wing.", ("groves1989",)),
     # Fits and intervals
-    Term("U95", "Half-width of the 95 % interval: the true value lies in value +- U95 with about 95 % probability, as far as the "
-         "named parts go. The uncertainty budget lists what is in it and what was not assessed.", ("jcgm100",), (), "slope_at_origin.md"),
+    Term("U95", "Half-width of the 95 % interval: the true value lies in value +- U95 with about 95 % probability, if the parts "
+         "that were not assessed are small. The uncertainty budget lists what is in it and what was not assessed.", ("jcgm100",), (), "slope_at_origin.md"),
     Term("slope at the origin", "The recommended derivative: the weighted median of many fits to the whole sweep, each a line plus v|v|, "
          "cubic and smooth parts; no window and no form is chosen.", ("wahba1990",), ("slopes at the origin", "slope_at_origin"), "slope_at_origin.md"),
     Term("scatter", "Random error of single readings about the curve: the random part of U95.", (), ("random part",)),
@@ -123,9 +123,9 @@ TERMS: tuple[Term, ...] = (
     Term("grid study", "The same condition computed on three or more grids.", ("celik2008", "eca2014"), ("grid studies",),
          "validation.md"),
     Term("iteration noise", "Fluctuation of a force that remains when a steady computation has converged.", ("eca2014",)),
-    Term("U_V", "Validation uncertainty: U_V^2 = U_D^2 + U_SN^2 + U_input^2 + U_red^2, of the test, of grid, domain and "
-         "iterations, of the inputs of the computation, and of drawing a slope through computed points. The last is coeflab's "
-         "addition to ASME V&V 20.", ("asme_vv20",), (), "validation.md"),
+    Term("U_V", "Validation uncertainty: U_V^2 = U_D^2 + U_SN^2 + U_input^2 + U_red^2. U_D: test. U_SN: grid, domain and "
+         "iterations. U_input: inputs of the computation. U_red: fit of a slope to computed points, coeflab's addition to ASME "
+         "V&V 20.", ("asme_vv20",), (), "validation.md"),
     Term("U_SN", "Numerical uncertainty of the computation: grid, domain, iterations.", ("asme_vv20",), ("U_red",), "validation.md"),
     Term("E = S - D", "Comparison error: computation S minus test D. Where |E| < U_V no modelling error can be shown.", ("asme_vv20",), (),
          "validation.md"),
@@ -142,7 +142,7 @@ TERMS: tuple[Term, ...] = (
          "broadside. Measured Nv' and Mw' contain it.", ("newman1977", "fossen2011")),
     Term("C_A(nu)", "Coriolis and centripetal matrix of the added mass. A simulator that adds it must get the viscous part of each "
          "derivative only.", ("fossen2011",), ("C_A",), "parameter_file.md"),
-    Term("viscous part", "A measured derivative minus its potential part, the entry of -C_A(nu) nu.", ("fossen2011",),
+    Term("viscous part", "A measured derivative minus its potential part, which is a term of -C_A(nu) nu.", ("fossen2011",),
          ("potential part", "potential parts"), "parameter_file.md"),
     Term("panel method", "Potential flow about the real surface by boundary elements, extrapolated over meshes.", ("hess1967",),
          ("panels",)),
@@ -160,7 +160,7 @@ TERMS: tuple[Term, ...] = (
     Term("zigzag", "The rudder is put over to one side until the heading has changed by a set angle, then to the other. 20/20 means "
          "20 deg of rudder at 20 deg of heading.", ("imo_msc137", "ittc_free_running"), ("zigzags",)),
     Term("execute", "The moment when the helm of a zigzag is ordered over.", ("imo_msc137",), ("second execute", "third execute"), "", False),
-    Term("overshoot", "How far the heading swings on in a zigzag after the rudder is reversed.", ("imo_msc137",),
+    Term("overshoot", "How far the heading still changes in a zigzag after the rudder is reversed.", ("imo_msc137",),
          ("overshoots", "overshoot angle")),
     Term("advance", "Distance along the first course until the heading has changed by 90 deg.", ("imo_msc137",),
          (), "", False),
@@ -171,7 +171,7 @@ TERMS: tuple[Term, ...] = (
          ("ittc_free_running",)),
     Term("free decay", "Roll or pitch released from an angle: period and damping.", ("ittc_roll_decay",)),
     Term("trim", "The speeds, attitude and commands of a steady motion.", (), ("trimmed",), "", False),
-    Term("extrapolated", "The motion leaves the range of the data: the result has a value, without support by tests."),
+    Term("extrapolated", "The motion leaves the range of the data: the result has a value, but no test supports it."),
     Term("no value", "There is no number. The reason stands beside it or below the table, such as no data: no table varies the motion. "
          "Files and JSON call it no_table, too_few_points or not_determined."),
     # Files

@@ -139,8 +139,8 @@ def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
     if not copies:
         return ()
     own, sources = (listed(names) for names in zip(*copies, strict=True))
-    were, are = ("was", "it is") if len(copies) == 1 else ("were", "they are")
-    return (f"{own} {were} not run; {are} {sources} rotated by 90 deg about x.",)
+    hold, are = ("holds", "It is") if len(copies) == 1 else ("hold", "They are")
+    return (f"{own} {hold} no runs. {are} {sources} rotated by 90 deg about x.",)
 
 
 def _row(
@@ -229,7 +229,11 @@ def _against(
     """The comparison with the first test that has the derivative, and why it has no verdict: in short, and as a clause."""
     ours = next(f.coefficients for f in fits if own.symbol in f.coefficients and f.coefficients[own.symbol] is own)
     for r in tests:
-        others = {f"another body: {r.body}": f"the test was of another body ({r.body})"} if r.body != own.body else {}
+        others = (
+            {f"the test is of another body, {r.body}": f"the test was of another body ({r.body})"}
+            if r.body != own.body
+            else {}
+        )
         for campaign in r.campaigns:
             measured = _budget(study, campaign, own.symbol)
             theirs = next((f.coefficients for f in study.fits if f.campaign == campaign and f.sweeps), None)
@@ -247,7 +251,7 @@ def _against(
                 budget, campaign=f"{r.name}, {method}{AS_PRINTED}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
             )  # fmt: skip
             ratio = r.scaling.ratio(own.symbol, ours.scaling)
-            by_method = {f"the test is by another method, {method}": f"the test used another method ({method})"}
+            by_method = {f"the test used another method, {method}": f"the test used another method ({method})"}
             return validation(budget, test, ratio), others | by_method
     return None
 
@@ -297,7 +301,7 @@ def runs_used(runs: int, variable: str, states: Mapping[str, int]) -> str:
     """
     said = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
     kind, used = RUNS.get(variable, variable), runs - sum(states.values())
-    return f"{used} of {runs} {kind} runs used: {said}" if used else f"no {kind} run used (of {runs}, {said})"
+    return f"fitted to {used} of {runs} {kind} runs; {said}" if used else f"no {kind} run used (of {runs}, {said})"
 
 
 def _variable(symbol: str) -> str:

@@ -178,7 +178,7 @@ class Validation:
         clauses = (
             "the test has no U95" if self.u_measured is None else "",
             grid,
-            self._friction("the Reynolds numbers of both"),
+            self._friction("the two Reynolds numbers"),
         )
         return tuple(filter(None, clauses))
 

@@ -218,7 +218,7 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
             across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
             if (size := float(np.sqrt(abs(np.prod(list(across)))))) > 0.0:
                 apart = f"{100.0 * abs(value - other) / size:.2g} % of the geometric mean of their diagonal entries"
-                said[-1] += f". They differ by {apart}"
+                said[-1] += f". {primed(name)} and {primed(mirror)} differ by {apart}"
     return out, tuple(said)
 
 

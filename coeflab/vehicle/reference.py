@@ -37,7 +37,7 @@ class Relation(StrEnum):
     def meaning(self) -> str:
         """In words."""
         return {
-            Relation.RE_ANALYSIS: "the same data evaluated by their authors; passes when the difference lies within "
+            Relation.RE_ANALYSIS: "our fit and the authors' own evaluation of the same data; it passes when the difference lies within "
             "our U95 alone",
             Relation.CROSS_BODY: "another body or another method: compared, no verdict",
             Relation.QUOTED: "quoted from another column, no verdict of its own",

@@ -152,7 +152,9 @@ def test_one_reading_in_the_column_the_other_in_a_note():
     twice = replace(OTHER, other_scaling=replace(LENGTH, length=2.2, length_name="LWL"))
     made = answer(compared(QUOTED, twice), drawn=False)
     assert made.rows[0].published[1] == -0.0303
-    assert any("length not stated, LOA assumed (if LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes)
+    assert any(
+        "length of primes not stated; LOA assumed (LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes
+    )
 
 
 @pytest.mark.parametrize(
@@ -261,7 +263,7 @@ def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyP
     assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
     assert row.difference == pytest.approx(0.0003)
     assert made.rows[:2] == beside.rows[:2]
-    assert "Nr': our CFD own_tow; no verdict." in made.notes
+    assert "Nr' comes from our CFD own_tow and gets no verdict." in made.notes
     assert "no rotating-arm data" not in made.sentence
 
 
@@ -439,17 +441,17 @@ def test_suboff(suboff: Study):
         "17 of the 18 compared numbers lie within their tolerance: 2 of 3 measured numbers predicted by CFD, 12 of 12 re-analyses "
         "of the authors' data, 3 of 3 recomputed stability indices."
     )
-    assert said[3].startswith("Prediction: a coefficient from CFD against the one measured")
+    assert said[3].startswith("A prediction compares a coefficient from CFD with the one measured")
     assert said[4] == (
-        "Predictions: 5 comparisons of 3 measured coefficients. A coefficient computed by two campaigns counts once; it passes only if "
-        "both do."
+        "CFD predicts 3 measured coefficients in 5 comparisons. A coefficient that two campaigns compute counts once; it passes only if "
+        "both comparisons pass."
     )
     assert said[5].startswith(
-        "Weak predictions, U_V above 25 % of the measured value: Yv' of suboff_cfd_barehull (84 %) and Yv' of suboff_tow_bare_hull"
+        "Weak predictions (U_V above 25 % of the measured value): Yv' of suboff_cfd_barehull (84 %) and Yv' of suboff_tow_bare_hull"
     )
     assert said[6] == (
         "X0' and Xvv' were also computed and measured, but get no verdict: the grid study diverged; for X0', friction differs by 9 % "
-        "between the Reynolds numbers of both (ITTC 1957)."
+        "between the two Reynolds numbers (ITTC 1957)."
     )
     assert said[7].startswith("Only the predictions are independent evidence.")
     assert said[8].startswith("Predictions beyond U_V: Kv' of suboff_cfd_barehull")

@@ -143,7 +143,7 @@ def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():
     table = next(s for s in document(study).sections if s.anchor == "coefficients").tables[0]
     said = [n for n in table.notes if "choosing this form" in n]
     assert said == [
-        "U95 of Yv|v|' holds only the scatter and the uncertainty of the slope. The error from choosing this form is not "
+        "U95 of Yv|v|' includes only the scatter and the uncertainty of the slope. The error from choosing this form is not "
         "included."
     ]
     assert form_not_assessed([replace(tied, parts=Parts(random=1e-5, model_form=0.0))]) == ""
@@ -198,7 +198,7 @@ def test_failed_checks_reach_the_verdict():
 def test_absent_coefficients_are_named_with_advice():
     text = words(small_study(FULL), "verdict")
     assert "Nr' of tow (no table varies r)." in text
-    assert "To measure next: runs that vary r of body of tow." in text
+    assert "Measure next: runs of body of tow that vary r." in text
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])

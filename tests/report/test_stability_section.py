@@ -104,9 +104,7 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
-    assert said.endswith(
-        " The data of these files give no value, so the indices use published ones: Yr' and Nr' of synthetic."
-    )
+    assert said.endswith(" Where the data give no value, the indices use published ones: Yr' and Nr' of synthetic.")
     assert "published" not in in_words(with_files(file))[0]
 
 

@@ -117,7 +117,7 @@ def test_attack_of_a_fourfold_body_is_stated_from_drift(bodies: tuple[Towed, ...
 def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies: tuple[Towed, ...]) -> None:
     bare = {r.symbol: r for r in bodies[0].rows}
     assert [s for s, r in bare.items() if r.verdict is not None] == ["Yv", "Nv"]
-    assert bare["Yr"].why_none == "the test is by another method, PMM"
+    assert bare["Yr"].why_none == "the test used another method, PMM"
     pmm = bare["Yr"].validation
     assert pmm is not None
     assert pmm.measured == pytest.approx(0.001811)
@@ -128,7 +128,7 @@ def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies:
     assert whole["Yv"].validation.experiment == "suboff_roddy_2"
     assert whole["Yv"].validation.u_validation is not None
     assert whole["Yv"].verdict is None
-    assert whole["Yv"].why_none == "another body: suboff_fully_appended"
+    assert whole["Yv"].why_none == "the test is of another body, suboff_fully_appended"
     assert {v.body for v in validations(study, study.budgets)} == {"suboff_bare_hull"}
 
 
@@ -147,14 +147,14 @@ def test_what_did_not_converge_is_open_with_its_reason(bodies: tuple[Towed, ...]
     assert by["Yv"].value is not None
     assert by["Yr"].value is None
     assert by["Yr"].missing == OPEN
-    assert by["Yr"].why == "2 of 6 turning runs used: 1 diverged, 3 still drifting"
+    assert by["Yr"].why == "fitted to 2 of 6 turning runs; 1 diverged, 3 still drifting"
     assert by["Zw"].missing == NOT_RUN
     assert by["Zw"].why == "no run varies w"
 
 
 def test_runs_left_out_are_counted_beside_a_value_too(bodies: tuple[Towed, ...]) -> None:
     by = {r.symbol: r for r in bodies[2].rows}
-    assert by["Yv"].why == "5 of 6 drift runs used: 1 still drifting"
+    assert by["Yv"].why == "fitted to 5 of 6 drift runs; 1 still drifting"
 
 
 def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path: Path) -> None:

@@ -90,11 +90,11 @@ def test_a_measured_number_counts_once(
         said = " ".join(headline_of_study(study))
         assert f"{good} of 1 measured numbers predicted by CFD" in said
         assert (
-            "Predictions: 2 comparisons of 1 measured coefficient. A coefficient computed by two campaigns counts once"
+            "CFD predicts 1 measured coefficient in 2 comparisons. A coefficient that two campaigns compute counts once"
             in said
         )
         assert "Nv' was also computed and measured, but gets no verdict: there is no grid study." in said
-        assert f"CFD agrees with {good} of 1 measured coefficients" in answer_notes._independent(study)
+        assert f"CFD predicts {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 
 @pytest.fixture(scope="module")
@@ -133,4 +133,4 @@ def test_tables_of_tows_print_both_reynolds_numbers(bodies: tuple[Study, tuple[T
     _, (tow,) = bodies
     assert tow.reynolds == pytest.approx(8.52e6, rel=1e-3)
     assert "Re 8.52e6" in own_tow(tow).notes[0]
-    assert "Re 8.52e6 of the CFD, 14e6 of suboff_roddy_3." in tow_against(tow).notes
+    assert "Re: 8.52e6 in the CFD, 14e6 in suboff_roddy_3." in tow_against(tow).notes

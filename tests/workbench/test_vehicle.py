@@ -156,7 +156,7 @@ def test_an_export_that_is_worse_than_no_force_is_warned_of(steered: Study, monk
     monkeypatch.setattr(Loss, "worse_than_nothing", property(lambda _: ("X", "K")))
     (found,) = export_loss.check(replace(steered, exports=(made,)))
     assert found.severity is Severity.WARN
-    assert found.statistic == "worse than no force at all: X and K"
+    assert found.statistic == "rms error exceeds the rms force: X and K"
 
 
 def test_the_inertia_of_displaced_water_is_that_of_the_spheroid(bare: Body) -> None:

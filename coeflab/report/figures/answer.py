@@ -211,7 +211,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (
-        " Arrow: it continues outside the plot."
+        " Arrow: the bar continues outside the plot."
         if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1]
         else ""
     )
@@ -344,7 +344,9 @@ def axes_figure() -> Figure:
         _axes_pair(figure, axes, 119.0, 40.0, ("x, u, X", "z, w, Z", "q, M"), towards_down=False)
         _axes_pair(figure, axes, 198.0, 28.0, ("y, v, Y", "z, w, Z", "p, K"), towards_down=True)
         svg = svg_text(figure, "answer-axes", title, description)
-    return Figure("answer-axes", svg, title, "Positive senses; forces are those of the fluid on the body.", description)
+    return Figure(
+        "answer-axes", svg, title, "Arrows: positive directions. Forces act from the fluid on the body.", description
+    )
 
 
 def _body(axes: Axes, x: float) -> None:

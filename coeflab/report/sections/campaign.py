@@ -325,7 +325,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Own tows are CFD runs of coeflab's virtual towing tank, not tank tests; each body has one campaign. Grid: the part of U95 that the grid study gives, "
+        "Own tows are CFD runs in coeflab's virtual towing tank, not tank tests. Each body has one campaign. Grid: the part of U95 that the grid study gives, "
         "in % of the value.",
         "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
         "needs a steady test of the same body.",

@@ -30,19 +30,19 @@ TEXT = (
     "A slope averages over all forms and ranges. A term of higher degree depends on one chosen form; the notes below the tables name these terms.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
-    "n: points in the fit. It differs within a table: a slope is fitted to the runs in which its motion alone varies, a term of higher degree "
-    "to all runs that its law covers, also some in which two motions vary. A dash: not applicable or not assessed; not in U95.",
+    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. A term of higher degree is fitted "
+    "to all runs of its force law, also to runs in which two motions vary. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
-SLOPE = "Slope: of a term of higher degree, the uncertainty of the slope that it is fitted with."
-OPEN = "Sign open: U95 exceeds the value. Do not use it alone, only together with the other terms of the same fit."
+SLOPE = "Slope: for a term of higher degree, the part that comes from the U95 of the slope in its fit."
+OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
     "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
-CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point are set, not measured: they have no errors of readings."
+CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point are set, not measured. They have no reading errors."
 OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients."
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
@@ -98,15 +98,15 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     without = [c for c in found if c.status is Status.FORM_ASSUMED and c.u95 is not None and c.parts.model_form is None]
     if not without:
         return ""
-    end = " holds only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
+    end = " includes only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
     return in_sentences("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
 
 
 def _covered(study: Study) -> tuple[str, str]:
     """What U95 of slopes covers, and in sentences what only some of the slopes have in it."""
     every, some = tables.covered(study)
-    only = [f" {in_sentences(f'Only some U95 also cover the {name}: ', places)}" for name, places in some.items()]
-    return ", ".join(every), "".join(only)
+    only = [f" {in_sentences(f'U95 covers the {name} only for ', places)}" for name, places in some.items()]
+    return listed([*every[1:], *every[0].split(", ")]), "".join(only)
 
 
 def coefficients_section(study: Study) -> Section:

@@ -254,8 +254,8 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
         With the drawings of axes and signs in the section itself; else in its appendix, where the first page has a sketch.
     """
     text = (
-        f"{AXES_ROWS} Tables in other axes are turned into these as they are read.",
-        f"{ANGLES} Input files may use other signs; this report uses these, and angles in degrees.",
+        f"{AXES_ROWS} Tables in other axes are converted to these when they are read.",
+        f"{ANGLES} Input files may use other signs. This report uses these signs and degrees.",
         CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),

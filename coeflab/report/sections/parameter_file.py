@@ -77,7 +77,7 @@ def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
             panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
         legend(figure, handles, bottom + UPPER)
         svg = svg_text(figure, anchor, title, description)
-    caption = f"At constant speed. Above zero the motion grows. {locus.statement}"
+    caption = f"At constant speed, a motion with a real part above zero grows. {locus.statement}"
     return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
@@ -103,11 +103,11 @@ def _said(part: str, values: Array) -> str:
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
-    "Positive: stable. Negative: unstable. If the interval contains zero, the sign is open.",
-    "U95 comes from the U95 of the four derivatives, fitted or published, without mass and centre of gravity. The verdict uses this "
-    "linearised U95. Monte Carlo limits show how asymmetric the interval is.",
+    "m': mass; xG': x of the centre of gravity. Positive: stable. If the interval contains zero, the sign is open.",
+    "U95 of an index comes from the U95 of its four derivatives. Errors of mass and centre of gravity are not included. The verdict uses "
+    "this linearised U95. Monte Carlo limits show how asymmetric the interval is.",
     "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
-    "Roots are the eigenvalues of small motions about a straight course at constant speed, by the force law and added mass of the file.",
+    "Roots are the eigenvalues of small motions about a straight course at constant speed. They follow from the force law, mass and added mass of the parameter file.",
 )
 
 
@@ -176,7 +176,7 @@ def _by_others(study: Study) -> list[str]:
         stated = [from_literature(p, d.name) for d in stability(p)]
         symbols = dict.fromkeys(s for few in stated if len(few) < len(INDICES["G_h"]) - 1 for s in few)
         each += [f"{listed([primed(s) for s in symbols])} of {p.name}"] if symbols else []
-    start = "The data of these files give no value, so the indices use published ones: "
+    start = "Where the data give no value, the indices use published ones: "
     return [in_sentences(start, each)] if each else []
 
 
@@ -265,7 +265,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     told = (
-        "published: the source's own index, from its derivatives and mass. It is judged only where we recompute it from those (Verdict).",
+        "published: the index that the source prints. Ours is not judged against it: the verdict on recomputed indices uses the source's derivatives.",
         *notes,
     )
     return Table(
@@ -400,7 +400,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
 EXPORTED = (
     "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
     "those of the parameter file. The difference is the error that the target simulator adds.",
-    "A simulator that adds -C_A(nu) nu itself gets linear derivatives without their potential part, so that added mass is not counted twice.",
+    "Some simulators add the Coriolis force of the added mass, -C_A(nu) nu. Their files have linear derivatives without the potential part, which would count twice.",
 )
 
 

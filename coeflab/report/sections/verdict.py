@@ -31,9 +31,9 @@ def _named(c: Comparison) -> str:
 
 
 WHAT_COUNTS = (
-    "Prediction: a coefficient from CFD against the one measured on the same body; tolerance U_V, the validation uncertainty of both "
-    "together. Re-analysis: our coefficient from the authors' data against theirs; tolerance U95. Recomputed index: we compute G from their "
-    "printed derivatives and compare with their printed G, within rounding. The checks of --full list the recomputed indices.",
+    "A prediction compares a coefficient from CFD with the one measured on the same body; its tolerance is the validation uncertainty U_V. "
+    "A re-analysis compares our coefficient from the authors' data with theirs; its tolerance is U95. For a recomputed index, we compute "
+    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. The checks of --full list these indices.",
 )
 TWO_KINDS = (
     "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
@@ -145,13 +145,11 @@ def _harvest(study: Study) -> str:
     source = f"{rows} of {_counted(len(campaigns), 'campaign')}{named}."
     models = sum(len(f.models) for f in study.fits)
     if not found and models:
-        return (
-            f"Found: {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
-        )
+        return f"We found {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
     if not found:
         return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
-    each = f"Found: {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
+    each = f"We found {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
     alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
     each += f" U95 of {alone} is scatter alone." * bool(alone)
     copies = len(every) - len(found)
@@ -211,12 +209,12 @@ def _next(study: Study) -> list[str]:
             lacking.setdefault(c.body, {}).update(
                 dict.fromkeys(f for f in derivative(c.symbol).factors if f not in varied.get(c.body, set()))
             )
-    runs = [f"runs that vary {' and '.join(motions)} of {body}" for body, motions in lacking.items() if motions]
+    runs = [f"runs of {body} that vary {' and '.join(motions)}" for body, motions in lacking.items() if motions]
     wide: dict[str, list[str]] = {}
     for c in study.coefficients:
         if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
             wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
-    out = [in_sentences("To measure next: ", runs, join=listed)] if runs else []
+    out = [in_sentences("Measure next: ", runs, join=listed)] if runs else []
     if wide:
         every = [primed(s) for s in study.plan.wanted]
         whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"

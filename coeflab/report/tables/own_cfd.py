@@ -10,7 +10,7 @@ from coeflab.law.symbols import primed
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.towed import AS_PRINTED, Towed
-from coeflab.study.validation import in_millions
+from coeflab.study.validation import Validation, in_millions
 
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
 
@@ -82,11 +82,24 @@ def tow_against(found: Towed) -> Table:
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     judged = [r.validation for r in found.rows if r.validation is not None]
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
-    notes += [f"Re {in_millions(s)} of the CFD, {in_millions(d)} of {test}." for test, (s, d) in known if s and d]
-    notes += sentences_on_open((u for v in judged for u in v.lacking), computed=True, what="U_V leaves out, of the CFD")
-    notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what="U_V leaves out, of the test")
+    notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
+    notes += sentences_on_open(
+        (_of_some(u, judged) for v in judged for u in v.lacking), computed=True, what="From the CFD, U_V leaves out"
+    )
+    fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
+    of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"
+    notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what=f"From the test, {of} leaves out")
     headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
+
+
+def _of_some(name: str, judged: Sequence[Validation]) -> str:
+    """A part that U_V leaves out; the grid with its symbols where U_V of the others has it."""
+    having = [v for v in judged if name in v.lacking]
+    if not name.startswith("grid") or len(having) == len(judged):
+        return name
+    state = name.removeprefix("grid").replace("(study", "(grid study")
+    return f"grid, for {listed([primed(v.symbol) for v in having])}{state}"
 
 
 def _stated(found: Towed, test: str) -> str:
@@ -95,7 +108,7 @@ def _stated(found: Towed, test: str) -> str:
         return ""
     of = (r.validation for r in found.rows if r.validation is not None and r.validation.experiment == test)
     shares = {f"{100.0 * v.u_measured / abs(v.measured):.2g} %" for v in of if v.u_measured and v.measured}
-    return f"; U_V takes the {shares.pop()} that its source states" if len(shares) == 1 else ""
+    return f"; U_V includes the {shares.pop()} that the source states" if len(shares) == 1 else ""
 
 
 def _test(test: str, printed: Sequence[str]) -> str:

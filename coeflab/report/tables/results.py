@@ -293,8 +293,8 @@ def _published_in(r: Reference, ours: Collection[str]) -> str:
     if r.relation is Relation.QUOTED:
         digits = "The first page gives the test report's own digits where we have that report."
         return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
-    another = "another method" if r.body in ours else "another body"
-    return f"{r.name}: {another}; {r.place or r.citation}. Body: {r.body}. {r.note}".strip()
+    another = "by another method for the same body" if r.body in ours else "for another body"
+    return f"{r.name}: {another}, {r.body}. Source: {r.place or r.citation}. {r.note}".strip()
 
 
 def campaigns(study: Study) -> Table:
@@ -314,7 +314,7 @@ def campaigns(study: Study) -> Table:
         speed = np.concatenate([np.atleast_1d(t.speed) for t in mine])
         known = [r for t in mine if (r := t.reynolds(t.scaling.length)) is not None]
         reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
-        source = f"{kinds}, own tow" if name in towed_ones else kinds
+        source = f"{kinds}, virtual tank" if name in towed_ones else kinds
         rows.append((name, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
     headers = ("campaign", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
     notes = []
@@ -328,7 +328,7 @@ def campaigns(study: Study) -> Table:
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
     notes += [f"{name}: {text}" for name, text in computed.items() if towed_ones and name not in towed_ones]
-    notes += [f"Parameter files, roots and manoeuvres are for {listed(list(at))}."] if at else []
+    notes += [f"Parameter files, roots and manoeuvres hold for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
 

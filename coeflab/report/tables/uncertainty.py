@@ -369,9 +369,9 @@ def predictions(found: Sequence[Validation]) -> Table:
     headers = ("", "CFD campaign", "test campaign", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
     notes = (
-        "Computed and measured on the same body, independently of each other; D is our fit to the points of the test. E is formed before "
+        "S is computed and D is measured, independently, on the same body. D is our fit to the points of the test. E is formed before "
         f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
-        "There is no verdict if the grid study gives no error, or on drag if the Reynolds numbers differ (Verdict).",
+        "A coefficient gets no verdict if its grid study gives no error. Drag also gets none if the friction at the two Reynolds numbers differs (see Verdict).",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 

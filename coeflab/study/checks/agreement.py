@@ -42,7 +42,7 @@ def check(study: Study) -> Sequence[Check]:
                     f"within the combined U95 {combined:.2g}",
                     "Agree."
                     if agree
-                    else "Beyond the combined U95, which leaves out Reynolds number, rig, grid and modelling error.",
+                    else "The difference exceeds U95. The cause may be Reynolds number, rig, grid or modelling error.",
                 )
             )
     return out

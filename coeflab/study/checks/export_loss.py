@@ -17,9 +17,9 @@ def check(study: Study) -> Sequence[Check]:
     return [
         Check(
             "export_loss", f"{made.parameters} for {made.target}", Severity.WARN,
-            f"worse than no force at all: {listed(made.loss.worse_than_nothing)}",
+            f"rms error exceeds the rms force: {listed(made.loss.worse_than_nothing)}",
             "a difference smaller than the force itself",
-            f"Do not use these components of {made.target}; its loss report gives their sizes.",
+            f"Do not use these components of the {made.target} file. Its loss report gives their sizes.",
         )
         for made in study.exports
         if made.loss is not None and made.loss.worse_than_nothing

@@ -62,7 +62,7 @@ def _as_check(campaign: str, sweep: Sweep, shorter: Sensitivity) -> Check:
         "largest_setting", f"{campaign} {name}", severity,
         f"{name} = {plus_minus(sweep.value, sweep.u95)} fitted up to {reach}, {plus_minus(shorter.value, shorter.u95)} up to {at}",
         f"settings beyond {at} leave {name} within its U95 there, and U95 below {WIDER:g} times that",
-        "The curve changes beyond the shorter range. The value in use is of the whole sweep; `coeflab fit --symbol` shows every range.",
+        "The curve changes beyond the shorter range. The value in use is fitted to the whole sweep. `coeflab fit --symbol` shows every range.",
     )  # fmt: skip
 
 
