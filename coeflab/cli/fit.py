@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import takewhile
 from pathlib import Path
@@ -282,9 +283,21 @@ def _forms(sweep: Sweep) -> Table:
     every = tables.estimators(sweep)
     if show.whole():
         return every
+    tested = any(math.isfinite(e.lack_of_fit) for e in sweep.forms)
+    widest = {e.family.name: i for i, e in enumerate(sweep.forms)}
     best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
-    without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
-    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}; HC2, HC3: robust errors."]
+    without = [name for name in widest if best and name not in best]
+    if best:
+        notes = [f"Widest window with p of the lack of fit >= {SUITS:g}; HC2, HC3: robust errors."]
+    elif tested:
+        notes = [
+            f"No form has p of the lack of fit >= {SUITS:g} in any window; shown: all rows. HC2, HC3: robust errors."
+        ]
+    else:
+        notes = [
+            "Not tested (p): no setting is repeated, no error of a point is stated; shown: all rows. HC2, HC3: robust errors."
+        ]
+    best = best or widest
     notes += [f"In no window: {', '.join(without)}."] if without else []
     rows = tuple(every.rows[i] for i in sorted(best.values()))
     headers = tuple("p" if h == "lack of fit" else h for h in every.headers)

@@ -17,6 +17,7 @@ from coeflab.core.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.imported import Filled
 
 
 MODEL = "manoeuvring_model"
@@ -97,7 +98,7 @@ def command(
     write_all(out, made)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
-    _written(out, [t.file for t in filled], tables)
+    _written(out, filled, tables)
     failed = _first_slopes(out)
     if failed:
         raise typer.Exit(1)
@@ -126,16 +127,21 @@ def _typed_so_far(
     return [*words, *["--force"] * force, f"--out {quoted(str(out))}"]
 
 
-def _written(out: Path, files: Sequence[str], tables: Sequence[ForceTable]) -> None:
-    """What was written, and what of it no fit uses."""
+def _written(out: Path, filled: Sequence[Filled], tables: Sequence[ForceTable]) -> None:
+    """What was written, which rows of the file were not, and what of it no fit uses."""
     from coeflab.report.tables.results import unused
+    from coeflab.tables.mapping import without_a_setting
 
     several = len(tables) > 1
+    files = [t.file for t in filled]
     sizes = [f"{file} ({len(table)} rows)" for file, table in zip(files, tables, strict=True)]
     show.text(f"Written: {out / sizes[0]}{''.join(f', {one}' for one in sizes[1:])}, campaign.toml, mapping.toml")
     for file, table in zip(files, tables, strict=True):
         of = f"{file}: " * several
         show.sentence(f"  {of}varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
+    for t in filled:
+        for said in without_a_setting(t.raw, t.columns):
+            show.sentence(f"{f'{t.file}: ' * several}Rows {said}.")
     show.sentence(unused(tables))
     show.text()
 
@@ -194,6 +200,9 @@ def _first_slopes(folder: Path) -> bool:
             left=frozenset({0}),
         ))  # fmt: skip
         checks = [c for c in study.checks if c.name != "law at points"]  # as in `coeflab fit`
+        for c in checks:  # the one hint at a wrong sign of a moment; a hull with large fins has it too
+            if c.name == "centre_of_pressure" and " behind " in c.statistic:
+                show.marked(str(c.severity), f"centre of pressure, {c.subject}: {c.statistic}. {c.comment}")
         show.findings(checks, most=FINDINGS)
         failed = any(c.severity is Severity.FAIL for c in checks)
         if failed:

@@ -14,15 +14,21 @@ EXAMPLE = "coeflab report suboff --to html,pdf"
 
 def command(
     study: str = typer.Argument(
-        ..., autocompletion=complete.studies, help="A plan.toml, a folder with one, or a validation such as suboff."
+        ...,
+        metavar="STUDY",
+        autocompletion=complete.studies,
+        help="A plan.toml, a folder with one, or a validation such as suboff.",
     ),
     to: str = typer.Option(
         "html,pdf",
+        metavar="FORMATS",
         autocompletion=complete.reports,
         help="Formats, separated by commas; `coeflab formats reporting` lists them.",
     ),
-    out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
-    section: list[str] = typer.Option([], help="Only this section, by its anchor or title; may be repeated."),
+    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
+    section: list[str] = typer.Option(
+        [], metavar="NAME", help="Only this section, by its anchor or title; repeatable."
+    ),
     full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),
     summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
     open_: bool = typer.Option(False, "--open", help="Show the first file in the browser."),

@@ -108,7 +108,7 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
 
     First a column goes below that says the same in every row, then text is folded, then columns of `Table.spare` go, one by
     one and named below; then text is folded down to its words, and what is still too wide goes on below, behind its first
-    column. Numbers are never folded.
+    column, and the texts after it where that one does not tell the rows apart. Numbers are never folded.
 
     Parameters
     ----------
@@ -170,12 +170,20 @@ def _room(table: Table, chosen: list[int], comfort: int) -> int:
 
 
 def _groups(table: Table, chosen: list[int], width: int) -> list[list[int]]:
-    """Columns that fit beside each other, each group behind the first column."""
-    first, *others = chosen
-    out = [[first]]
+    """Columns that fit beside each other, each group behind the columns that name its rows."""
+    names, others = chosen[:1], chosen[1:]
+    while (
+        len(others) > 1
+        and others[0] in table.left
+        and len({tuple(r[i] for i in names) for r in table.rows}) < len(table.rows)
+    ):
+        if 2 * _room(table, [*names, others[0]], 1) > width:
+            break
+        names.append(others.pop(0))
+    out = [list(names)]
     for i in others:
-        if len(out[-1]) > 1 and _room(table, [*out[-1], i], 1) > width:
-            out.append([first])
+        if len(out[-1]) > len(names) and _room(table, [*out[-1], i], 1) > width:
+            out.append(list(names))
         out[-1].append(i)
     return out
 

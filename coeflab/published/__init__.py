@@ -31,7 +31,7 @@ def validation(name: str) -> Plan | Acceptance:
         No validation has that name.
     """
     if name not in validations():
-        near = difflib.get_close_matches(name, validations(), n=1)
+        near = difflib.get_close_matches(name.casefold(), validations(), n=1)
         raise InputError(
             f"no validation {shown(name)}",
             f"one of {', '.join(validations())}",

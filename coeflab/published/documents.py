@@ -180,7 +180,11 @@ def _meant(study: str) -> Plan | str:
         return read_plan(path / PLAN)
     if path.exists() and study not in validations():
         raise InputError(
-            f"{shown(study, 300)}, a folder without {PLAN}", f"a {PLAN}, a folder with one, or a validation"
+            f"{shown(study, 300)}, a folder without {PLAN}",
+            f"a {PLAN}, a folder with one, or a validation",
+            advice=f"This is a campaign: a {PLAN} names it under [[table]], campaign = {shown(study, 300)}."
+            if (path / "campaign.toml").is_file()
+            else "",
         )
     if study not in validations():
         raise _unknown(study, shown(study, 300))
@@ -189,7 +193,7 @@ def _meant(study: str) -> Plan | str:
 
 
 def _unknown(study: str, found: str) -> InputError:
-    near = difflib.get_close_matches(study, validations(), n=1)
+    near = difflib.get_close_matches(study.casefold(), validations(), n=1)
     return InputError(
         f"the study {found}",
         f"a {PLAN}, a folder with one, or a shipped validation ({', '.join(validations())})",

@@ -432,7 +432,8 @@ def _table(
         else:
             errors, raised = _floored(errors, [r.status is Convergence.CONVERGED for r in rows])
             if raised:
-                more.append(raised.format(f"se_{header_of[c]}", _unit_of(rows, c)))
+                unit = _unit_of(rows, c)
+                more.append(raised.format(f"se_{header_of[c]}", f" {unit}" if unit not in ("", "-") else ""))
             columns.append(RawColumn(f"se_{c}", _unit_of(rows, c), errors, means="" if by_name else f"se_{c}"))
     others = dict.fromkeys(k for r in rows for k in r.conditions if k not in SETTINGS)
     columns += [
@@ -476,7 +477,7 @@ def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:
         return errors, ""
     pooled = float(np.sqrt(np.mean(own**2)))
     low = errors < pooled
-    said = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g} {{}}, the pooled error (root mean square) of the "
+    said = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g}{{}}, the pooled error (root mean square) of the "
     said += f"converged runs: their own differ {own.max() / own.min():.2g}-fold, which would leave the fit to the few smallest."
     return np.where(low, pooled, errors), said
 

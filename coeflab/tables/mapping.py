@@ -230,7 +230,7 @@ def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
     return np.flatnonzero(~np.logical_or.reduce([np.zeros(rows, dtype=bool), *blank]))
 
 
-def _left_out(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
+def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
     """Rows without a setting, in a sentence for each column that lacks it."""
     for one in columns:
         if one.said.role not in SETTINGS:
@@ -417,7 +417,7 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     )
     body = BODY_AXES in raw.stated
     warned = [text for one in known if not body and (text := unturned(one.column.name, one.said))]
-    said = [*warned, *_left_out(raw, known), *raw.remarks]
+    said = [*warned, *without_a_setting(raw, known), *raw.remarks]
     more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
     notes = (*out.notes, *said[:REMARKS], *more)

@@ -174,8 +174,11 @@ def _of_axes(
                 shown if name == "beta" or one == two else f"{one} if z is {'down' if ahead >= 0 else 'up'}, else {two}"
             )
             short = f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0"
+        force = {"beta": "Y", "alpha": "Z"}[name]
+        unclear = frame is not None and not found and any(c.said.name == force and not c.said.error for c in columns)
+        why = f"; {force} over {name} shows no clear sign: too few rows, or a wrong reading" if unclear else ""
         yield Question(
-            f"axes.{name}", text, f"+ or -: {' or '.join(ANGLE_SIGNS[name])}", found.value if found else "",
+            f"axes.{name}", text, f"+ or -: {' or '.join(ANGLE_SIGNS[name])}{why}", found.value if found else "",
             found.text if found else "", f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0" if found else short, shown, grave=True,
         )  # fmt: skip
 

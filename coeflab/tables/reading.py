@@ -75,6 +75,8 @@ def importer_of(path: Path, name: str = "") -> str:
         return name
     if not path.exists():
         raise InputError("no such file or folder", "a path that exists", file=path)
+    if path.is_file() and path.stat().st_size == 0:
+        raise InputError("an empty file", "a table or runs of a solver", file=path)
     known = recognised(path)
     if not known and path.is_dir():
         return find_runs(path)[0]

@@ -379,6 +379,14 @@ def file_typed(path: Path) -> Path:
         raise
 
 
+def _in_folder(folder: Path) -> str:
+    """Which parameter file is meant by a folder, or how one is made of it."""
+    if (folder / "campaign.toml").is_file():
+        return "This is a campaign. coeflab run PLAN.toml fits it and writes the file, with [[table]] campaign = its folder in the plan."
+    found = sorted(folder.glob("*.parameters.json"))
+    return f"In it: {', '.join(p.name for p in found)}." if found else ""
+
+
 def read_parameter_file(path: Path) -> ParameterFile:
     """Read and validate a parameter file.
 
@@ -393,6 +401,8 @@ def read_parameter_file(path: Path) -> ParameterFile:
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
     path = file_typed(path)
+    if path.is_dir():
+        raise InputError("a folder", "a parameter file, NAME.parameters.json", file=path, advice=_in_folder(path))
     text = read_text(path, JSON_BYTES)
     if kind := model_kind(text):
         raise InputError(

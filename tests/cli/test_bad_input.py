@@ -90,7 +90,17 @@ def test_parameter_file_that_is_none(coeflab: Run, tmp_path: Path) -> None:
     assert "schema_version" in done.stderr
 
 
+def test_a_campaign_in_place_of_a_parameter_file_is_told_the_way(coeflab: Run, study: Path) -> None:
+    done = coeflab("compare", "s/campaign", "s/campaign")
+    assert done.returncode == 2
+    assert "s/campaign: found a folder; expected a parameter file" in flat(done.stderr)
+    assert "coeflab run PLAN.toml" in done.stderr
+    coeflab("run", "s/plan.toml")
+    assert "In it: my_vehicle.parameters.json." in coeflab("compare", "reports/my_study", "reports/my_study").stderr
+
+
 def test_unknown_validation_names_the_near_one(coeflab: Run) -> None:
+    assert "Did you mean suboff?" in coeflab("validate", "SUBOFF").stderr
     done = coeflab("validate", "subof")
     assert done.returncode == 2
     assert "Did you mean suboff?" in done.stderr

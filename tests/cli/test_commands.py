@@ -121,6 +121,20 @@ def test_fit_shows_the_slope_first_and_other_forms_after_it(coeflab: Run) -> Non
         assert text in flat(done.stdout)
 
 
+def test_other_forms_are_shown_where_none_can_be_tested(coeflab: Run, tmp_path: Path) -> None:
+    """A sweep without a repeated setting has no scatter of its own: p is a dash, and the forms stand there all the same."""
+    coeflab("new", "mine")
+    file = tmp_path / "mine/campaign/drift.csv"
+    lines = file.read_text().splitlines()
+    head = next(i for i, line in enumerate(lines) if "beta [deg]" in line)
+    at = lines[head].split(",").index("beta [deg]")
+    first = {line.split(",")[at]: line for line in reversed(lines[head + 1 :])}
+    file.write_text("\n".join([*lines[: head + 1], *reversed(first.values())]) + "\n")
+    said = flat(coeflab("fit", "mine/campaign/drift.csv", "--symbol", "Yv").stdout)
+    assert "Other forms for Yv'" in said
+    assert "Not tested (p): no setting is repeated" in said
+
+
 def test_fit_on_another_length_scales_by_its_powers(coeflab: Run) -> None:
     lbp = json.loads(coeflab("fit", "suboff_roddy_2", "--json").stdout)["coefficients"]
     loa = json.loads(

@@ -345,6 +345,26 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
         assert table_of(tmp_path / "out").motion["r"].tolist() == [sign * x for x in (-0.4, -0.2, 0.2, 0.4)]
 
 
+def test_a_decimal_slip_that_hides_the_sign_of_the_angle_is_said(tmp_path: Path) -> None:
+    file = tmp_path / "slip.csv"
+    file.write_text("beta (deg),Fy (N)\n-8,-30\n-4,-140\n0,0\n4,14\n8,30\n")
+    ask = ("import", file, "--out", tmp_path / "out", "--yes", *sets())
+    done = invoke(*ask)
+    assert left_open(done) == ["axes.beta"]
+    assert "Y over beta shows no clear sign: too few rows, or a wrong reading" in flat(done.output)
+    file.write_text(file.read_text().replace("-140", "-14"))
+    assert invoke(*ask).exit_code == 0
+
+
+def test_rows_without_a_setting_are_named_when_the_campaign_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "gaps.csv"
+    file.write_text("beta (deg),Fy (N),U (m/s)\n-8,-30,2\n-4,-14,\n0,0,2\n4,14,n/a\n8,30,2\n")
+    done = invoke("import", file, "--out", tmp_path / "out", "--yes", *sets())
+    assert done.exit_code == 0, done.output
+    assert len(table_of(tmp_path / "out")) == 3
+    assert "Rows left out, no U: line 3 and line 5." in flat(done.output)
+
+
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
     (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum. Write a decimal point.'),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from tests.cli.conftest import flat
 from tests.cli.test_import import drift, invoke, refused, runs, stub
 from tests.tables.runs_as_text import write_run
 
@@ -47,6 +49,25 @@ def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
     assert "found nothing that an importer knows by its content; expected --as" in lines[0]
     assert "table" in lines[0]
     assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
+
+
+def test_an_empty_file_is_called_so(tmp_path: Path) -> None:
+    (tmp_path / "empty.csv").write_bytes(b"")
+    (line,) = refused(invoke("inspect", tmp_path / "empty.csv"))
+    assert line.endswith("empty.csv: found an empty file; expected a table or runs of a solver.")
+
+
+def test_an_error_without_a_unit_is_raised_in_a_clean_sentence(tmp_path: Path) -> None:
+    """Report files of Fluent state no unit: "raised to 0.027 , the pooled error" was printed."""
+    for k, noise in enumerate((1e-4, 1e-4, 2e-2)):
+        run = tmp_path / "runs" / f"b{4 * k}"
+        run.mkdir(parents=True)
+        rows = (f"{i} {20.0 + 7.0 * k + noise * ((7 * i) % 5 - 2):.6f}" for i in range(1, 401))
+        (run / "fy-rfile.out").write_text(
+            "\n".join(['"fy-rfile"', '"Iteration" "fy"', '("Iteration" "fy")', *rows, ""])
+        )
+    said = flat(invoke("inspect", tmp_path / "runs").output)
+    assert re.search(r"raised to [\d.e-]+, the pooled error", said), said
 
 
 def test_a_text_that_no_importer_knows_is_offered_as_a_table(tmp_path: Path) -> None:

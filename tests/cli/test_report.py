@@ -95,7 +95,7 @@ def test_the_appendix_comes_on_request_and_is_found_by_section(coeflab, study, t
         (("boat", "--summary", "--section", "verdict"), ("--summary",)),
         (("boat", "--summary", "--full"), ("--summary",)),
         (("subof",), ("subof", "Did you mean suboff?")),
-        (("boat/campaign",), ("a folder without plan.toml",)),
+        (("boat/campaign",), ("a folder without plan.toml", 'campaign = "boat/campaign"')),
         (("nowhere.toml",), ("nowhere.toml",)),
     ],
 )

@@ -50,6 +50,16 @@ def test_what_still_does_not_fit_goes_on_below_and_nothing_is_lost() -> None:
     assert all(f" {i}.2345" in " ".join(lines) for i in range(12))
 
 
+def test_what_goes_on_below_keeps_the_texts_that_tell_its_rows_apart() -> None:
+    names = [f"column{i}" for i in range(8)]
+    rows = tuple((force, campaign, *[f"{i}.2345" for i in range(8)]) for force in "YZ" for campaign in ("tank", "all"))
+    lines = texts(Table("T", ("", "campaign", *names), rows, (), frozenset({0, 1})), 40)
+    below = lines[lines.index("  more:") :]
+    assert below[2].split()[:2] == ["Y", "tank"]
+    assert below[3].split()[:2] == ["Y", "all"]
+    assert max(map(len, lines)) <= 40
+
+
 def test_what_all_rows_say_goes_below() -> None:
     rows = tuple((f"row{i}", "a/very/long/name/of/a/table.csv", "0.1234567", "0.1234567") for i in range(3))
     table = Table("T", ("", "table", "x", "y"), rows, (), frozenset({0, 1}))

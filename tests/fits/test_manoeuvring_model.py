@@ -323,6 +323,16 @@ def test_equations_are_tested_against_the_free_fit() -> None:
     assert not any("U95 does not include" in s for s in right)
 
 
+def test_a_wrong_equation_is_not_called_a_missing_term() -> None:
+    """What misfits is Mw = Nv; w is a term of M already."""
+    said = model(fitted((axisymmetric(1e-4, 1),), terms=NAMES, constraints="Mw = Nv"), "M").statements
+    (misfit,) = [s for s in said if "misses something" in s]
+    assert (
+        "most likely a coefficient of w that no equation holds; probability that it misses nothing: below 0.001"
+        in misfit
+    )
+
+
 def test_weights_between_components_are_said() -> None:
     said = model(fitted((axisymmetric(1e-4, 1),), terms=NAMES, constraints="Mw = -Nv"), "N").statements
     assert any(s.startswith("Components are combined with weights 1 / scatter^2") for s in said)

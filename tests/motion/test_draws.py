@@ -82,7 +82,7 @@ def test_a_perfect_correlation_is_drawn() -> None:
 
 
 def test_nothing_uncertain_is_an_error() -> None:
-    with pytest.raises(InputError, match="without any stated uncertainty"):
+    with pytest.raises(InputError, match='found "file", a parameter file without any stated uncertainty'):
         of(with_uncertainty(torpedo(), {}, {}))
 
 

@@ -556,8 +556,13 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
     assert (
         unused([table]) == "Readings left out (point, components): b12: still drifting; b16: crashed; b20 Y: too short."
     )
-    several = "b12 of runs, b12 of runs: still drifting; b16 of runs, b16 of runs: crashed; b20 of runs Y, b20 of runs Y: too short"
-    assert unused([table] * 2) == f"Readings left out (point, components): {several}."
+    one, two = f"of {table.campaign}", "of other"
+    several = (
+        f"b12 {one}, b12 {two}: still drifting; b16 {one}, b16 {two}: crashed; b20 {one} Y, b20 {two} Y: too short"
+    )
+    other = replace(table, name="other/runs", campaign="other")
+    assert "b12 of runs, b12 of runs2: still drifting" in unused([table, replace(table, name="b/runs2")])
+    assert unused([table, other]) == f"Readings left out (point, components): {several}."
     assert unused([table.with_uncertain_cells()]) == "Points left out: b16: crashed."
     assert table.usable["Y"].tolist() == kept.tolist()
     assert np.all(table.errors["Y"][kept] > 0.0)

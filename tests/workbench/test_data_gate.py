@@ -127,7 +127,8 @@ def test_a_corrupted_cell_is_named_with_what_was_expected_and_the_value_without_
     assert abs(expected - truth) < 4.0 * spread
     assert 0.0 < spread < 0.2 * abs(factor * truth - truth)
     assert cell.endswith(": sign?") == (factor == -1.0)
-    assert found.rule.startswith("a deviation with a chance above 0.02/")
+    assert found.rule.startswith("of ")
+    assert found.rule.endswith("right readings one deviates so far with a probability above 0.02")
     symbol = {"X": "Xvv'", "Y": "Yv'", "N": "Nv'"}[component]
     assert values[0].startswith(f"{symbol} = ")
     assert "with the row" in values[0]

@@ -392,7 +392,9 @@ def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]
 
 def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
     right = "below 0.001" if found.none < 1e-3 else f"{found.none:.2g}"
-    said = f"The residuals are not random: the form misses something, most likely {found.likeliest} (a right form: {right})."
+    held = next((t for t in model.terms if found.likeliest == f"a term {t}"), None)
+    likeliest = found.likeliest if held is None else f"a coefficient of {held} that no equation holds"
+    said = f"The residuals are not random: the form misses something, most likely {likeliest}; probability that it misses nothing: {right}."
     without = model.rejected
     if not without:
         return f"{said} U95 includes what that may change."

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.uncertainty.propagation import reaches_zero
 from coeflab.law.force_law import WIND, ForceTerm
@@ -135,9 +135,8 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     drawn = [_stated(p) for p in parts]
     if not any(len(chosen) for chosen, _ in drawn):
         raise InputError(
-            "a parameter file without any stated uncertainty",
+            f"{shown(parameters.name)}, a parameter file without any stated uncertainty",
             "U95 or a covariance of some coefficient",
-            column="covariance",
         )
     held = [
         p.symbols[i]

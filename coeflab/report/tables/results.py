@@ -531,6 +531,12 @@ def unused(tables: Sequence[ForceTable]) -> str:
     """In one line the rows that no fit uses, or not whole, because their source or the state of their run says so; empty without such."""
     by: dict[str, list[str]] = {}
     parts = False
+    files = [t.name.rpartition("/")[2] for t in tables]
+    campaigns = [t.campaign for t in tables]
+    short = {
+        t.name: file if files.count(file) == 1 else t.campaign if campaigns.count(t.campaign) == 1 else t.name
+        for t, file in zip(tables, files, strict=True)
+    }
     for t in tables:
         rows: dict[int, list[Exclusion]] = {}
         for e in t.exclusions:
@@ -541,7 +547,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
             of = "row" if set(components) >= set(t.forces) else _of(components, t)
             first = found[0]
             kind = first.status or ("marked uncertain in the file" if first.uncertain else first.reason)
-            name = t.labels[row] + f" of {t.name.rpartition('/')[2]}" * (len(tables) > 1)
+            name = t.labels[row] + f" of {short[t.name]}" * (len(tables) > 1)
             parts |= of != "row"
             by.setdefault(kind, []).append(name if of == "row" else f"{name} {of}")
     said = [

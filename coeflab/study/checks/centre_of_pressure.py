@@ -11,6 +11,8 @@ from coeflab.vehicle.derived import centre_of_pressure
 summary = "x = Nv'/Yv' and -Mw'/Zw' with intervals"
 citations = ("feldman1979",)
 
+BEHIND = "Right for large fins, or a reference point near the nose; else the sign of {} or a declared axis is wrong."
+
 
 def check(study: Study) -> Sequence[Check]:
     """One note per campaign and plane; a centre outside the hull only says that the moment is mostly a couple."""
@@ -27,8 +29,10 @@ def check(study: Study) -> Sequence[Check]:
                     Severity.NOTE,
                     f"{abs(metres):.2g} m {way} the reference point ({d.name} = {found} L)",
                     "",
-                    "Beyond the hull's ends: the Munk moment outweighs the lever of the force."
-                    if abs(d.value) > 0.5
+                    BEHIND.format("N" if motion == "sway" else "M")
+                    if metres < 0.0
+                    else "Beyond the hull's ends: the Munk moment outweighs the lever of the force."
+                    if d.value > 0.5
                     else "The force at an angle acts inside the hull.",
                 )
             )

@@ -358,7 +358,7 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
         _where(table, row),
         Severity.WARN,
         "; ".join([*said.cells, *said.values]),
-        f"a deviation with a chance above {LEVEL:g}/{readings} if the row is right"
+        f"of {readings} right readings one deviates so far with a probability above {LEVEL:g}"
         if said.cells
         else "no row moves a value by its U95",
         " ".join([*words, advice if said.cells or said.left_out else INFLUENTIAL]),
@@ -414,7 +414,7 @@ def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
         several = again.sum() > 1 or len(table.forces) > 1
         out.append(
             Check("data_gate", table.name, Severity.WARN if several else Severity.NOTE,
-                  f"{int(again.sum())} rows repeat an earlier row to the last digit: line {_some(where)}", "rows differ",
+                  f"{int(again.sum())} {'row repeats' if again.sum() == 1 else 'rows repeat'} an earlier row to the last digit: line {_some(where)}", "rows differ",
                   "Copies are not repeats: they narrow intervals without new data. Delete them.")
         )  # fmt: skip
     if _is_mirrored(table, again):
