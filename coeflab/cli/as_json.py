@@ -24,6 +24,7 @@ from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
+from coeflab.report.tables import next_runs as next_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
@@ -62,7 +63,7 @@ def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, An
                     "unit": "rad" if degrees else "1",
                     "u95_after": after,
                 }
-                for x, after in tables.next_runs(s, sweep, count)
+                for x, after in next_tables.next_runs(s, sweep, count)
             ]
             if runs:
                 said = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}

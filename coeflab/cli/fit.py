@@ -230,6 +230,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
     from coeflab.report.tables import uncertainty as budget_tables
+    from coeflab.report.tables.next_runs import next_points
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
@@ -252,7 +253,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
             show.table(each)
         show.table(model_tables.campaigns(study.fits))
     for f in study.fits if count else ():
-        show.table(tables.next_points(study, f, count, symbols))
+        show.table(next_points(study, f, count, symbols))
     show.findings(study.checks)
 
 

@@ -23,7 +23,7 @@ from coeflab.core.table import (
 )
 from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
-from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
@@ -420,73 +420,15 @@ def sensitivity(sweep: Sweep) -> Table:
     return Table(title, headers, rows, (), frozenset({0}))
 
 
-def next_runs(study: Study, sweep: Sweep, count: int) -> tuple[tuple[float, float], ...]:
-    """`Sweep.next_runs`; of a computed campaign distinct settings, as a solver gives the same number again."""
-    kinds = {t.name: t.source.kind for t in study.tables}
-    return sweep.next_runs(count, distinct=kinds.get(sweep.table) == "cfd")
-
-
-def next_points(study: Study, fit: FitResult, count: int, symbols: Sequence[str] = ()) -> Table:
-    """The settings whose measurement would narrow every determined slope most, and its U95 after each.
-
-    Parameters
-    ----------
-    study : Study
-    fit : FitResult
-        One of the study.
-    count : int
-    symbols : sequence of str
-        Only of these, without prime; by default of all.
-    """
-    rows, angles, sides, repeats = [], [], [], False
-    for s in (s for s in fit.sweeps if not symbols or s.symbol in symbols):
-        now = s.u95
-        ran = [*s.x]
-        for i, (x, after) in enumerate(next_runs(study, s, count), 1):
-            first = i == 1
-            said = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if first else ("", "", "", "")
-            again = any(math.isclose(x, other, rel_tol=1e-9, abs_tol=1e-9) for other in ran)
-            ran.append(x)
-            repeats |= again
-            over = f"asin({s.variable}/U)" if s.is_angle else f"{s.variable}'"
-            angles += [s.variable] if s.is_angle else []
-            sides += (
-                [f"{primed(s.symbol)}, such as {_signed(s, -x)}"] if first and s.one_sided and not s.symmetry else []
-            )
-            narrower = f"{100.0 * after / now:.1f} %" if now else ABSENT
-            at = _signed(s, x) + " again" * again
-            rows.append((*said, str(i), over, at, with_u95(s.value, after)[1], narrower))
-    headers = ("", "campaign", "value", "U95 now", "run", "over", "at", "U95 then", "of now")
-    notes = [
-        "One more reading at each, one after the other, at the present noise; predicted from the present fit, before "
-        "declared inputs and grid.",
-    ]
-    notes += [
-        f"asin({v}/U) is the {name} of a file with {v} = +U sin({name}); with {v} = -U sin({name}) its sign is the other."
-        for v, name in (("v", "beta"), ("w", "alpha"))
-        if v in angles
-    ]
-    notes += ["again: a repeat of a setting that was run or stands above; it narrows the scatter only."] * repeats
-    notes += (
-        [
-            f"All points lie on one side of zero. A run on the other would show the even part, which no line here counts: {'; '.join(sides)}."
-        ]
-        if sides
-        else []
-    )
-    return Table(
-        f"Next runs of {fit.campaign}", headers, tuple(rows), tuple(notes), frozenset({0, 1, 5}), ("campaign",)
-    )
-
-
 def left_out(sweep: Sweep) -> Table:
     """Points that the sweep does not use."""
-    rows = tuple((p.label, _signed(sweep, p.x), coefficient(p.y), p.reason) for p in sweep.left_out)
+    rows = tuple((p.label, signed(sweep, p.x), coefficient(p.y), p.reason) for p in sweep.left_out)
     headers = ("point", sweep.variable, f"{sweep.component}'", "reason")
     return Table(f"Points left out of {primed(sweep.symbol)}", headers, rows, (), frozenset({0, 3}))
 
 
-def _signed(sweep: Sweep, x: float) -> str:
+def signed(sweep: Sweep, x: float) -> str:
+    """A setting of a sweep as people write it, with its sign: degrees, or a rate."""
     return ("-" if x < 0 else "") + _window(sweep, abs(x))
 
 
