@@ -391,14 +391,23 @@ def _varied(condition: TowCondition, what: str, value: str) -> TowCondition:
     return replace(condition, name=name, variant={what: value})
 
 
+def _named(**swept: Sequence[float]) -> str:
+    """The motions that are run at all."""
+    return " and ".join(name for name, settings in swept.items() if any(settings))
+
+
 def stated(body: TowedBody | None, sweeps: Sweeps) -> tuple[str, ...]:
     """What symmetry says in the place of runs, in words; see `default_sweeps`."""
     has = symmetries(body)
     out = []
     if PORT_STARBOARD in has and _one_sided((*sweeps.drift, *sweeps.yaw)):
-        out.append("drift and yaw rate of the other side from this one by port-starboard symmetry")
+        out.append(
+            f"{_named(drift=sweeps.drift, **{'yaw rate': sweeps.yaw})} of the other side from this one by port-starboard symmetry"
+        )
     if UP_DOWN in has and _one_sided((*sweeps.attack, *sweeps.pitch)):
-        out.append("attack and pitch rate of the other side from this one by up-down symmetry")
+        out.append(
+            f"{_named(attack=sweeps.attack, **{'pitch rate': sweeps.pitch})} of the other side from this one by up-down symmetry"
+        )
     if FOURFOLD in has and (sweeps.drift and not sweeps.attack):
         out.append("attack from drift by fourfold symmetry: Zw' = Yv', Mw' = -Nv'")
     if FOURFOLD in has and (sweeps.yaw and not sweeps.pitch):

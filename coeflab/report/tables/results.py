@@ -534,7 +534,7 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
         f"{table.name}: SI, FRD",
         tuple(headers),
         tuple(rows),
-        ("(...) excluded from fits", *notes),
+        (*(["(...) excluded from fits"] if excluded else ()), *notes),
         frozenset({0}),
         spare,
     )
