@@ -42,7 +42,8 @@ def test_the_answer_comes_first_and_says_estimate(made: tuple[Path, str]) -> Non
     assert "xdyn holds all of finned_spheroid" in flat(printed)
     assert "% of the length from the bow" in flat(printed)
     assert (folder / "report.html").is_file()
-    assert list(folder.glob("*.xdyn/*.yml"))
+    (model,) = folder.glob("*.xdyn/*.yml")
+    assert f"made/{model.relative_to(folder)}" in printed
 
 
 @pytest.mark.slow
@@ -144,8 +145,11 @@ def test_a_plate_across_needs_a_length_of_the_primes(coeflab: Run, tmp_path: Pat
     ("arguments", "said"),
     [
         (("huuv_mesh_simplified", "--campaign", "nowhere"), "nowhere"),
-        (("{mesh}", "--axes", "FRD"), '"--unit"'),
-        (("{mesh}", "--unit", "m"), '"--axes"'),
+        (("{mesh}", "--axes", "FRD"), "found no unit; expected --unit mm"),
+        (("{mesh}", "--unit", "m"), "found no axes; expected --axes FLU (x forward, y port, z up)"),
+        (("{mesh}",), "found no unit and no axes"),
+        (("{mesh}", "--unit", "m", "--axes", "ABC"), "three directions like forward,port,up"),
+        ((BODY, "--cg", "-500,0,10"), "Another unit goes beside each number"),
         ((BODY, "--mass", "heavy"), '"--mass"'),
         ((BODY, "--mass", "-1"), "above zero"),
         ((BODY, "--cg", "1,2"), "three numbers"),

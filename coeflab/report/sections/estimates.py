@@ -194,10 +194,21 @@ def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
         so = f"at {_degrees(asked.options['rudder'])} of rudder and {speed:g} m/s"
     else:
         so = f"by thrusters from {speed:g} m/s"
-    return (
-        f"{s.figure.name} {(s.figure.value or 0.0) * factor:.2g}{f' {unit}' if unit else ''} {so} "
-        f"(95 % {(s.low or 0.0) * factor:.2g} to {(s.high or 0.0) * factor:.2g}), estimate"
-    )
+    value, low, high = _apart([factor * (x or 0.0) for x in (s.figure.value, s.low, s.high)])
+    return f"{s.figure.name} {value}{f' {unit}' if unit else ''} {so} (95 % {low} to {high}), estimate"
+
+
+def _apart(values: Sequence[float]) -> list[str]:
+    """Two digits, or up to four where an interval is so narrow that its ends would be one number."""
+    out = [np.format_float_positional(float(f"{v:.2g}"), trim="-") for v in values]
+    for digits in (3, 4):
+        if out[1] != out[2]:
+            break
+        out = [
+            np.format_float_positional(v, precision=digits, fractional=False, min_digits=digits, trim="k")
+            for v in values
+        ]
+    return [word.removesuffix(".") for word in out]
 
 
 def _degrees(angle: float | str) -> str:
