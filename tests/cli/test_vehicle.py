@@ -43,7 +43,7 @@ def test_the_answer_comes_first_and_says_estimate(made: tuple[Path, str]) -> Non
     assert "% of the length from the bow" in flat(printed)
     assert (folder / "report.html").is_file()
     (model,) = folder.glob("*.xdyn/*.yml")
-    assert f"made/{model.relative_to(folder)}" in printed
+    assert f"made/{model.relative_to(folder)}" in printed  # what a simulator loads is named, with its path from here
 
 
 @pytest.mark.slow
@@ -69,6 +69,9 @@ def test_a_campaign_replaces_what_it_gives(coeflab: Run, made: tuple[Path, str],
     assert "Yv'" not in found["estimates"]
     assert "Nr'" in found["estimates"]
     assert (tmp_path / "merged" / "report.html").is_file()
+    (tmp_path / "same.json").write_text(json.dumps({**other, "name": BODY}))
+    done = coeflab("merge", own, "same.json", "--out", "again")
+    assert "2 numbers from same.json" in flat(done.stdout)  # a tow bears the name of its body
     done = coeflab("merge", own, own)
     assert done.returncode == 2
     assert f"estimates only in {BODY}, nothing to replace others with" in flat(done.stderr)
