@@ -117,7 +117,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         assumed.append("mass")
         said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
     else:
-        _refuse_absurd(body, mass, displaced)
+        _refuse_absurd(body, mass, displaced, density)
         said.append(_buoyed(mass, displaced, density))
         said += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
@@ -174,14 +174,14 @@ def floods(body: Body) -> bool:
     return any(p.flooded or "ballast" in p.made_of for p in parts)
 
 
-def _refuse_absurd(body: Body, mass: float, displaced: float) -> None:
+def _refuse_absurd(body: Body, mass: float, displaced: float, density: float) -> None:
     if displaced / ABSURD <= mass <= ABSURD * displaced or floods(body):
         return
     raise InputError(
-        f"a mass of {mass:.4g} kg in {displaced:.4g} kg of displacement",
+        f"a mass of {mass:.4g} kg in {displaced:.4g} kg of displacement, {displaced / density:.4g} m^3 of {density:.4g} kg/m^3",
         f"{displaced / ABSURD:.3g} to {ABSURD * displaced:.3g} kg",
         column="--mass",
-        advice="Look at the unit of the mass and of the mesh. A hull that floods: [[mass]] with flooded = true in its body.toml.",
+        advice="Look at the units of mass, mesh and density. A hull that floods: [[mass]] with flooded = true in its body.toml.",
     )
 
 

@@ -13,7 +13,7 @@ from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed, require_plausible
 from coeflab.bodies.readers import read_body
-from coeflab.core.axes import FRAME_WORDS, Datum, parse_axes
+from coeflab.core.axes import FRAME_WORDS, FRAMES, Datum, parse_axes
 from coeflab.core.errors import AxesError, InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
@@ -116,7 +116,7 @@ def _factor(unit: str, path: Path) -> float:
 def _declared(axes: str) -> Any:
     """None, a frame's name, or three directions."""
     words = [w.strip() for w in axes.split(",")]
-    return words if len(words) == 3 else axes or None
+    return words if len(words) == 3 else axes.upper() if axes.upper() in FRAMES else axes or None
 
 
 def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool, fill: bool, sheets: bool) -> Body:

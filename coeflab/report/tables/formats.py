@@ -129,9 +129,10 @@ def in_short(loss: Loss) -> str:
     """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
     terms = [what.partition(" (")[0].partition(": ")[0] for what in loss.not_held]
     said = [f"no {_some(terms, NAMED)}"] if terms else []
-    others = [f"{x.kind}: {x.what.partition('; ')[0].partition(': ')[0]}" for x in loss.lost]
-    if others:
-        said.append(_some(others, 1))
+    others: dict[str, list[str]] = {}
+    for x in loss.lost:
+        others.setdefault(x.kind, []).append(x.what.partition("; ")[0].partition(": ")[0])
+    said += [f"{kind}: {_some(whats, 1)}" for kind, whats in others.items()]
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
