@@ -255,6 +255,8 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     assert {"turning circle: 12 deg of rudder from 2 m/s.", "zigzag: 10 deg of rudder from 2 m/s."} < set(table.notes)
     assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
+    one = answer(replace(steered, shape=replace(steered.shape, missing=("no thruster",))))
+    assert ("Missing", "1 thing") in [(c.name, c.text) for c in one.chips]
     assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     assert len(first.sentence) <= 160
     assert "estimate" in first.sentence
