@@ -134,6 +134,8 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
         return
     name = next(iter(study.parameter_files))
     place = shlex.quote(str(folder / f"{name}.parameters.json"))
+    if not study.exports:
+        show.command_line("For a simulator", f"coeflab export {place} --to TARGET")
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")
 
 

@@ -125,6 +125,7 @@ def test_a_hole_is_filled_and_the_attitude_at_rest_is_said(coeflab: Run, tmp_pat
     done = coeflab(*typed, "--out", "made")
     assert done.returncode == 0, done.stderr
     assert "1 hole of up to 1% of the surface filled" in flat(done.stdout)
+    assert "For a simulator: coeflab export made/holed.parameters.json --to TARGET" in flat(done.stdout)
     assert "at rest: pitch" in flat(done.stdout)
     done = coeflab(*typed, "--out", "again", "--json")
     found = json.loads(done.stdout)
