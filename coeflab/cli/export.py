@@ -17,7 +17,12 @@ def command(
         ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
     ),
     to: str = typer.Option(
-        ..., "--to", metavar="TARGET", autocompletion=complete.exporters, help="Target (see coeflab formats exporters)."
+        "",
+        "--to",
+        metavar="TARGET",
+        autocompletion=complete.exporters,
+        help="Target, such as gazebo, xdyn or mss; coeflab formats exporters lists them. Required.",
+        show_default=False,
     ),
     out: Path | None = typer.Option(
         None, metavar="FOLDER", help="Folder for the files; default NAME.TARGET beside the parameter file."
@@ -37,12 +42,15 @@ def command(
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.wording import file_stem
+    from coeflab.formats import EXPORTERS
     from coeflab.formats.export import Kind
     from coeflab.report.tables import formats as loss_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench.exports import export
 
+    if not to:
+        raise InputError("no target", f"one of {', '.join(EXPORTERS.names())}", column="--to")
     parameters = read_parameter_file(file)
     made = export(parameters, to, accelerations, accept_loss=accept_loss and not strict)
     loss = made.loss

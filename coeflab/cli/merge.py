@@ -114,7 +114,10 @@ def carried_out(first: ParameterFile, other: str, name: str, folder: Path, say: 
     made, moves, carried = replaced(first, second, name or f"{first.name}_merged", own)
     files = replaced_files(made, moves, carried)
     write_all(folder, files)
-    return Done(made, carried, second.name, tuple(folder / n for n in sorted(files)))
+    source = (
+        second.name if second.name != first.name else other
+    )  # a tow bears the name of its body, as the estimates do
+    return Done(made, carried, source, tuple(folder / n for n in sorted(files)))
 
 
 def as_json(made: Any, carried: Any) -> dict[str, Any]:

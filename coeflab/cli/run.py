@@ -57,6 +57,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False,
 
     ``strict``: for a warning, too. ``typed_as``: the plan as it was typed, for the next command.
     """
+    from coeflab.cli.vehicle import for_simulators
     from coeflab.core.files import write_all
     from coeflab.workbench import rendered, run
 
@@ -78,8 +79,8 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False,
             more["vehicle"] = of_shape(study)
         show.json_object(study_json(study, paths) | more)
     else:
-        summarise(study)
-        show.written(folder, sorted(files), changed)
+        summarise(study, folder)
+        show.written(folder, sorted(files), changed, for_simulators(study))
         if typed_as:
             show.command_line("Appendix", f"coeflab report {shlex.quote(typed_as)} --full")
     for refused in study.refused:
@@ -88,7 +89,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False,
         raise typer.Exit(1)
 
 
-def summarise(study: Study) -> None:
+def summarise(study: Study, folder: Path) -> None:
     """The answer, the findings that matter, and with ``--wide`` every table."""
     from coeflab.report.answer import answer
     from coeflab.report.tables import models as model_tables
@@ -97,7 +98,7 @@ def summarise(study: Study) -> None:
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
 
-        of_shape(study)
+        of_shape(study, folder)
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))

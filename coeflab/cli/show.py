@@ -300,11 +300,12 @@ def _slow_status() -> Iterator[Callable[[str], None]]:
         status.stop()
 
 
-def written(folder: Path, names: Sequence[str], changed: int) -> None:
-    """Where the files are: pages and parameter files by name, of the others how many; all with ``--wide``."""
+def written(folder: Path, names: Sequence[str], changed: int, exported: Sequence[str] = ()) -> None:
+    """Where the files are: pages, parameter files and what a simulator loads by name, of the others how many; all with ``--wide``."""
     text(f"Written ({changed} of {len(names)} files changed):")
     ranks = ((".html", ".pdf"), (".parameters.json",))
     first = [n for ends in ranks for n in names if n.endswith(ends)] or list(names[:1])
+    first += [n for n in names if n in exported and n not in first]
     for name in names if whole() else first:
         path(folder / name)
     if not whole() and len(names) > len(first):

@@ -290,7 +290,7 @@ def _print(made: Simulation, written: list[Path]) -> None:
 
     name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
     show.table(figure_table(made.figures, name, made.vehicle.length))
-    for line in made.statements:
+    for line in (*made.vehicle.afloat, *made.statements):
         show.text(f"  {line}")
     if made.trajectory.why:
         show.text(f"  {made.trajectory.ended.value}: {made.trajectory.why}")

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from coeflab.study.study import Study
 
 
+LOSS = ".loss.txt"
 EXAMPLE = 'coeflab vehicle hull.stl --unit mm --axes FLU --mass "46 kg" --to xdyn --accept-loss'
 
 
@@ -113,7 +114,12 @@ def command(
         if merged is not None:
             merged.print()
     for refused in study.refused:
-        why = str(refused.why).replace('"export.accept_loss": ', "").replace("accept_loss = true", "--accept-loss")
+        why = (
+            str(refused.why)
+            .replace('"export.accept_loss": ', "")
+            .replace('"export.to": ', "")
+            .replace("accept_loss = true", "--accept-loss")
+        )
         show.error(f"error: {why}")
     if study.failed:
         raise typer.Exit(1)
@@ -121,17 +127,19 @@ def command(
 
 def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool) -> None:
 
-    summarise(study)
+    summarise(study, folder)
     show.findings(study.checks)
-    show.written(folder, names, changed)
+    show.written(folder, names, changed, for_simulators(study))
     if not alone:
         return
     name = next(iter(study.parameter_files))
     place = shlex.quote(str(folder / f"{name}.parameters.json"))
+    if not study.exports:
+        show.command_line("For a simulator", f"coeflab export {place} --to TARGET")
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")
 
 
-def summarise(study: Study) -> None:
+def summarise(study: Study, folder: Path) -> None:
     """The answer first, then estimates, motions, what is missing and what is assumed."""
     from coeflab.report.sections import estimates as tables
     from coeflab.report.tables.added_mass import near_walls_kept
@@ -147,12 +155,19 @@ def summarise(study: Study) -> None:
     show.table(tables.particulars_table(shape, parameters.added_mass))
     if parameters.added_mass is not None and parameters.added_mass.walls:
         show.table(near_walls_kept(parameters.added_mass))
-    _exported(study)
+    _exported(study, folder)
     for line in shape.missing:
         show.marked("lacks", line)
 
 
-def _exported(study: Study) -> None:
+def for_simulators(study: Study) -> list[str]:
+    """Names of the files that simulators load, without the loss reports."""
+    return [
+        f"{made.folder}/{n}" if made.folder else n for made in study.exports for n in made.files if not n.endswith(LOSS)
+    ]
+
+
+def _exported(study: Study, folder: Path) -> None:
     """What each export does not hold, in short; its loss report has all of it."""
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.formats import in_short
@@ -163,7 +178,7 @@ def _exported(study: Study) -> None:
         if made.lossless:
             show.text(f"{made.target} holds all of {made.parameters}.")
             continue
-        report = f"{made.folder}/{file_stem(made.parameters)}.{made.target}.loss.txt"
+        report = folder / made.folder / f"{file_stem(made.parameters)}.{made.target}{LOSS}"
         show.text(f"{made.target} does not hold all of {made.parameters}: {in_short(made.loss)}. All of it: {report}")
     if study.exports:
         show.text()

@@ -114,10 +114,10 @@ class Registry(Generic[Port]):
         """
         if name not in self.names():
             near = difflib.get_close_matches(name, self.names(), n=3)
-            hint = f"did you mean {' or '.join(near)}? " if near else ""
+            hint = f": did you mean {' or '.join(near)}?" if near else "."
             known = ", ".join(self.names()) or "none in this release"
             refused = "".join(f" {reason[0].upper()}{reason[1:]}." for n, reason in self._claims[1] if n == name)
-            raise PluginError(f"no {self.kind} is called {shown(name)}: {hint}Known: {known}.{refused}")
+            raise PluginError(f"no {self.kind} is called {shown(name)}{hint} Known: {known}.{refused}")
         point = self._claims[0].get(name)
         if point is None:
             plugin: Any = importlib.import_module(".".join(filter(None, (self._folder, name, self._file))))

@@ -12,7 +12,7 @@ from coeflab.core.text.toml import read_text
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
-from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file, refuse_shape
 from coeflab.vehicle.plausibility import plausibility
 
 OWN = "coeflab"
@@ -52,6 +52,7 @@ def recognised(path: Path) -> str:
         None that is known, or several.
     """
     path = file_typed(path)
+    refuse_shape(path)
     text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
         raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")

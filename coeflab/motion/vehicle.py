@@ -21,6 +21,7 @@ from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurf
 
 PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
 THRUST = "thrust"
+BALANCED, ONE_POINT = 5e-3, 1e-4  # of the weight and of the length: less is trimmed, or one point
 
 
 @brief
@@ -104,6 +105,20 @@ class Vehicle:
     def force(self, nu: Array, controls: Array) -> Array:
         """(n, 6) hydrodynamic force at velocities (n, 6) and angles dr ds db (n, 3)."""
         return self.law.force(nu, controls)
+
+    @property
+    def afloat(self) -> tuple[str, ...]:
+        """What makes a free vehicle rise, sink or tumble in still water, in words; nothing of one that is held in heave and pitch."""
+        out, apart = [], self.weight - self.buoyancy
+        if "w" in self.free and abs(apart) > BALANCED * self.weight:
+            way = ("more", "sinks") if apart > 0.0 else ("less", "rises")
+            out.append(
+                f"weight {abs(apart):.3g} N {way[0]} than buoyancy ({100.0 * abs(apart) / self.weight:.2g} %): it {way[1]}"
+            )
+        lever = np.linalg.norm(self.centre - np.array(self.hydrostatics.centre_of_buoyancy))
+        if {"p", "q"} & set(self.free) and lever < ONE_POINT * self.length:
+            out.append("centre of gravity in the centre of buoyancy: nothing rights it in roll and pitch")
+        return tuple(out)
 
     def restoring(self, attitude: Array) -> Array:
         """(n, 6) of weight and buoyancy."""

@@ -33,6 +33,7 @@ from coeflab.vehicle.parameter_parts import (
 
 CLOSED = "A vehicle needs a closed hull; coeflab added-mass takes sheets alone."
 ESTIMATES = "estimates"  # what fit and campaign are called
+FAR = 0.5  # of the length: a centre of gravity beyond the ends of the hull is another unit or another axis
 ABSURD = 3.0  # of the displacement, either way: no unit and no water in the hull makes that a vehicle
 TRIMMED = 0.005  # of the displacement: less is what a scale reads
 
@@ -116,7 +117,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         assumed.append("mass")
         said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
     else:
-        _refuse_absurd(body, mass, displaced)
+        _refuse_absurd(body, mass, displaced, density)
         said.append(_buoyed(mass, displaced, density))
         said += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
@@ -129,6 +130,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         said.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
         rest = None
     else:
+        _refuse_far(body, centre - buoyancy, "--cg" if stated.centre is not None else "centre_of_gravity")
         rest = at_rest(mass / displaced - 1.0, centre - buoyancy)
         said.append(rest_words(rest, centre - buoyancy))
     turning = stated.inertia
@@ -172,15 +174,28 @@ def floods(body: Body) -> bool:
     return any(p.flooded or "ballast" in p.made_of for p in parts)
 
 
-def _refuse_absurd(body: Body, mass: float, displaced: float) -> None:
+def _refuse_absurd(body: Body, mass: float, displaced: float, density: float) -> None:
     if displaced / ABSURD <= mass <= ABSURD * displaced or floods(body):
         return
     raise InputError(
-        f"a mass of {mass:.4g} kg in {displaced:.4g} kg of displacement",
+        f"a mass of {mass:.4g} kg in {displaced:.4g} kg of displacement, {displaced / density:.4g} m^3 of {density:.4g} kg/m^3",
         f"{displaced / ABSURD:.3g} to {ABSURD * displaced:.3g} kg",
         column="--mass",
-        advice="Look at the unit of the mass and of the mesh. A hull that floods: [[mass]] with flooded = true in its body.toml.",
+        advice="Look at the units of mass, mesh and density. A hull that floods: [[mass]] with flooded = true in its body.toml.",
     )
+
+
+def _refuse_far(body: Body, lever: np.ndarray, column: str) -> None:
+    """A centre of gravity further from the centre of buoyancy than half the body's length: millimetres, x aft, or another origin."""
+    shape = body.require_shape()
+    size, apart = FAR * max(shape.length, shape.volume ** (1.0 / 3.0)), float(np.linalg.norm(lever))
+    if apart > size:
+        raise InputError(
+            f"a centre of gravity {apart:.4g} m from the centre of buoyancy",
+            f"at most half the length of the body, {size:.4g} m",
+            column=column,
+            advice=f"It is in m, x forward, y starboard, z down, from the {body.datum}. Another unit goes beside each number: -800 mm.",
+        )
 
 
 def _floating(body: Body) -> Configuration:

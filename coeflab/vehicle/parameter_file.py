@@ -62,6 +62,7 @@ NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 SCHEMA_VERSION = next(reversed(VERSIONS))
 SHIPPED = "*.parameters.json"
+MESHES, MOST_NAMED = (".stl", ".obj", ".ply", ".glb", ".step", ".stp"), 3
 
 
 def is_later(version: str, other: str) -> bool:
@@ -379,12 +380,26 @@ def file_typed(path: Path) -> Path:
         raise
 
 
-def _in_folder(folder: Path) -> str:
-    """Which parameter file is meant by a folder, or how one is made of it."""
-    if (folder / "campaign.toml").is_file():
-        return "This is a campaign. coeflab run PLAN.toml fits it and writes the file, with [[table]] campaign = its folder in the plan."
-    found = sorted(folder.glob("*.parameters.json"))
-    return f"In it: {', '.join(p.name for p in found)}." if found else ""
+def refuse_shape(path: Path) -> None:
+    """Refuse a mesh or a folder in place of a parameter file; name the file that is meant, or the command that makes one.
+
+    Raises
+    ------
+    InputError
+        It is one of these.
+    """
+    if path.suffix.lower() in MESHES and path.is_file():
+        raise InputError(
+            "a mesh", "a parameter file", file=path,
+            advice=f"Make one: coeflab vehicle {path} --unit mm --axes FLU --mass MASS, with the mesh's own unit and axes.",
+        )  # fmt: skip
+    if path.is_dir():
+        inside = [str(p) for p in sorted(path.glob(SHIPPED))]
+        more = f" and {len(inside) - MOST_NAMED} more" if len(inside) > MOST_NAMED else ""
+        advice = f"In it: {', '.join(inside[:MOST_NAMED])}{more}." if inside else ""
+        if (path / "campaign.toml").is_file():
+            advice = "This is a campaign. coeflab run PLAN.toml fits it and writes the file, with [[table]] campaign = its folder in the plan."
+        raise InputError("a folder", "a parameter file, NAME.parameters.json", file=path, advice=advice)
 
 
 def read_parameter_file(path: Path) -> ParameterFile:
@@ -401,8 +416,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
     path = file_typed(path)
-    if path.is_dir():
-        raise InputError("a folder", "a parameter file, NAME.parameters.json", file=path, advice=_in_folder(path))
+    refuse_shape(path)
     text = read_text(path, JSON_BYTES)
     if kind := model_kind(text):
         raise InputError(

@@ -362,11 +362,11 @@ def _positive(text: str, dimension: str, option: str) -> float:
 
 def _number(text: str, dimension: str, option: str) -> float:
     try:
-        return with_unit(float(text), dimension)
+        bare: float | str = float(text)
     except ValueError:
-        pass
+        bare = text
     try:
-        return with_unit(text, dimension)
+        return with_unit(bare, dimension)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=option, advice=why.advice) from None
 

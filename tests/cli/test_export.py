@@ -68,6 +68,21 @@ def changed(folder: Path, **keys: object) -> Path:
     return path
 
 
+def test_without_a_target_they_are_listed(coeflab: Run) -> None:
+    done = coeflab("export", PARAMS)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert '"--to": found no target; expected one of csv, fmi, gazebo' in flat(done.stderr)
+
+
+def test_a_loss_in_short_has_no_reasons_and_no_impossible_bound(coeflab: Run) -> None:
+    """REMUS 100 for MuJoCo: what is not held is named, why stands in the report; a huge difference is *more than*, not *up to >*."""
+    done = coeflab("export", "remus100", "--to", "mujoco")
+    first = flat(done.stdout.partition("Force law")[0])
+    assert "no added inertia, " in first
+    assert "MuJoCo has no force" not in first
+    assert "up to >" not in first
+
+
 def test_strict_refuses_the_added_mass_of_another_body(coeflab: Run, tmp_path: Path) -> None:
     file = changed(tmp_path, added_mass={"body": "another"})
     strict = coeflab("export", file, "--to", "mss", "--strict", "--accept-loss")

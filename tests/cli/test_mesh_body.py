@@ -97,6 +97,7 @@ def test_draw_and_simplify_take_holes_and_sheets_as_vehicle_does(coeflab: Run, t
     trimesh.util.concatenate([ball, wall]).export(tmp_path / "sheet.stl")
     named = ("--unit", "m", "--axes", "FRD")
     assert coeflab("draw", "hole.stl", *named).returncode == 2
+    assert coeflab("draw", "hole.stl", "--unit", "m", "--axes", "frd", "--fill").returncode == 0  # no capitals needed
     done = coeflab("draw", "hole.stl", *named, "--fill")
     assert done.returncode == 0, done.stderr
     done = coeflab("simplify", "hole.stl", *named, "--fill", "--panels", "0")

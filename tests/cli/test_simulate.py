@@ -98,8 +98,26 @@ def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Pat
     path.write_bytes(made({k: v for k, v in STABLE.items() if k[1:] not in ("dr", "ds")}).to_json())
     done = coeflab("simulate", path, *FREE)
     assert done.returncode == 2
-    assert "neither control surfaces nor thrusters" in done.stderr
+    assert "neither control surfaces nor thrusters: --manoeuvre stop and straight_run need none" in done.stderr
     huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
     told = coeflab("simulate", huuv).stderr
     assert '--commands "left=100 right=100", unequal' in told
     assert coeflab("simulate", huuv, "--commands", "left=40 right=100").returncode == 0
+
+
+def test_what_sinks_and_what_nothing_rights_is_said(coeflab: Run, tmp_path: Path) -> None:
+    """REMUS 100 with 2 % less volume than weight, and with its centre of gravity in that of buoyancy; as shipped neither."""
+    content = json.loads(
+        (Path(__file__).parents[2] / "cfd_data" / "remus100" / "remus100.parameters.json").read_bytes()
+    )
+    place = tmp_path / "heavy.parameters.json"
+    run = ("--manoeuvre", "straight_run", "--duration", "5")
+    place.write_text(json.dumps(content))
+    done = coeflab("simulate", place, *run)
+    assert "buoyancy" not in done.stdout, done.stdout
+    content["hydrostatics"]["volume"] *= 0.98
+    content["hydrostatics"]["centre_of_buoyancy"] = content["mass"]["centre"]
+    place.write_text(json.dumps(content))
+    done = coeflab("simulate", place, *run)
+    assert "more than buoyancy (2 %): it sinks" in flat(done.stdout)
+    assert "nothing rights it in roll and pitch" in flat(done.stdout)

@@ -42,7 +42,8 @@ def test_the_answer_comes_first_and_says_estimate(made: tuple[Path, str]) -> Non
     assert "xdyn holds all of finned_spheroid" in flat(printed)
     assert "% of the length from the bow" in flat(printed)
     assert (folder / "report.html").is_file()
-    assert list(folder.glob("*.xdyn/*.yml"))
+    (model,) = folder.glob("*.xdyn/*.yml")
+    assert f"made/{model.relative_to(folder)}" in printed  # what a simulator loads is named, with its path from here
 
 
 @pytest.mark.slow
@@ -68,6 +69,9 @@ def test_a_campaign_replaces_what_it_gives(coeflab: Run, made: tuple[Path, str],
     assert "Yv'" not in found["estimates"]
     assert "Nr'" in found["estimates"]
     assert (tmp_path / "merged" / "report.html").is_file()
+    (tmp_path / "same.json").write_text(json.dumps({**other, "name": BODY}))
+    done = coeflab("merge", own, "same.json", "--out", "again")
+    assert "2 numbers from same.json" in flat(done.stdout)  # a tow bears the name of its body
     done = coeflab("merge", own, own)
     assert done.returncode == 2
     assert f"estimates only in {BODY}, nothing to replace others with" in flat(done.stderr)
@@ -121,6 +125,7 @@ def test_a_hole_is_filled_and_the_attitude_at_rest_is_said(coeflab: Run, tmp_pat
     done = coeflab(*typed, "--out", "made")
     assert done.returncode == 0, done.stderr
     assert "1 hole of up to 1% of the surface filled" in flat(done.stdout)
+    assert "For a simulator: coeflab export made/holed.parameters.json --to TARGET" in flat(done.stdout)
     assert "at rest: pitch" in flat(done.stdout)
     done = coeflab(*typed, "--out", "again", "--json")
     found = json.loads(done.stdout)
@@ -144,10 +149,15 @@ def test_a_plate_across_needs_a_length_of_the_primes(coeflab: Run, tmp_path: Pat
     ("arguments", "said"),
     [
         (("huuv_mesh_simplified", "--campaign", "nowhere"), "nowhere"),
-        (("{mesh}", "--axes", "FRD"), '"--unit"'),
-        (("{mesh}", "--unit", "m"), '"--axes"'),
+        (("{mesh}", "--axes", "FRD"), "found no unit; expected --unit mm"),
+        (("{mesh}", "--unit", "m"), "found no axes; expected --axes FLU (x forward, y port, z up)"),
+        (("{mesh}",), "found no unit and no axes"),
+        (("{mesh}", "--unit", "m", "--axes", "ABC"), "three directions like forward,port,up"),
+        ((BODY, "--cg", "-500,0,10"), "Another unit goes beside each number"),
         ((BODY, "--mass", "heavy"), '"--mass"'),
         ((BODY, "--mass", "-1"), "above zero"),
+        ((BODY, "--mass", "nan"), '"--mass": found "nan"; expected a finite number'),
+        ((BODY, "--mass", "22", "--density", "1.025"), "of 1.025 kg/m^3"),
         ((BODY, "--cg", "1,2"), "three numbers"),
         ((BODY, "--to", "simulink"), "simulink"),
         (("nowhere",), "nowhere"),

@@ -31,6 +31,7 @@ from coeflab.motion.simulation import simulate
 from coeflab.report.answer import answer
 from coeflab.report.content import document
 from coeflab.report.sections.estimates import (
+    _apart,
     answer_of_merge,
     estimates_table,
     main_spread,
@@ -38,7 +39,7 @@ from coeflab.report.sections.estimates import (
     replaced_section,
     shares_figure,
 )
-from coeflab.study.checks import buoyancy, export_loss
+from coeflab.study.checks import buoyancy, export_loss, ideal_fluid, longest_axis
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
@@ -255,6 +256,8 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     assert {"turning circle: 12 deg of rudder from 2 m/s.", "zigzag: 10 deg of rudder from 2 m/s."} < set(table.notes)
     assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
+    one = answer(replace(steered, shape=replace(steered.shape, missing=("no thruster",))))
+    assert ("Missing", "1 thing") in [(c.name, c.text) for c in one.chips]
     assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     said = re.search(r"([\d.]+) m at 12 .*\(95 % ([\d.]+) to ([\d.]+)\)", first.sentence)
     assert said is not None
@@ -394,6 +397,57 @@ def test_numbers_of_another_length_are_converted_and_said(steered: Study) -> Non
     fitted_by_ours = merged(base, fitted(base, keep), own=longer)  # a campaign of that length
     assert str(longer) in fitted_by_ours.lengths
     assert made.lengths[1:] in " ".join(replaced_section(made, ()).paragraphs)
+
+
+def test_a_mesh_that_is_longest_across_is_a_warning(steered: Study, tmp_path: Path) -> None:
+    """A bar of 2 m along x of its file; thin plates across, as wings, are none."""
+    bar = trimesh.creation.box(extents=(2000.0, 200.0, 200.0))
+    bar.export(tmp_path / "bar.stl")
+    wing = trimesh.creation.box(extents=(100.0, 4000.0, 10.0)).apply_translation((0.0, 0.0, 50.0))
+    trimesh.boolean.union([bar, wing]).export(tmp_path / "wing.stl")
+    for name, axes, found in (
+        ("bar", "FLU", Severity.PASS), ("bar", "port,aft,up", Severity.WARN), ("wing", "FLU", Severity.PASS),
+    ):  # fmt: skip
+        body = subject(str(tmp_path / f"{name}.stl"), "mm", axes)
+        shape = replace(steered.shape, weighed=replace(steered.shape.weighed, body=body))
+        (check,) = longest_axis.check(replace(steered, shape=shape))
+        assert check.severity is found
+    assert longest_axis.check(steered) == []  # no mesh
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ((10.6, 7.05, 14.5), ["11", "7", "14"]),
+        ((24.02, 23.61, 24.43), ["24.0", "23.6", "24.4"]),
+        ((123.0, 118.0, 131.0), ["120", "120", "130"]),
+        ((121.0, 120.6, 121.4), ["121.0", "120.6", "121.4"]),
+    ],
+)
+def test_the_ends_of_an_interval_are_two_numbers(values: tuple[float, ...], words: list[str]) -> None:
+    assert _apart(values) == words
+
+
+def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
+    with pytest.raises(
+        InputError, match=r"a centre of gravity 1\.6\d* m from .*; expected at most half the length of the body, 1\.5 m"
+    ):
+        weighed(bare, Stated(390.0, np.array([1.6, 0.0, 0.02])), 998.2)
+
+
+def test_a_coupling_next_to_zero_is_no_second_added_mass(steered: Study) -> None:
+    """Two methods give the moment of a nearly symmetrical hull with signs of their own; beside its diagonal both are none."""
+    (file,) = steered.parameter_files.values()
+    size = abs(file.added_mass.matrix[1, 1] * file.added_mass.matrix[5, 5]) ** 0.5
+    primed = file.scaling.unit("Xrr", file.conditions.density)
+    for share, found in ((0.02, Severity.PASS), (0.2, Severity.WARN)):
+        own = Coefficient("Xrr'", 1e-7, 1e-8, Status.ESTIMATE, potential=-share * size / primed)
+        other = file.model_copy(update={"coefficients": (own,)})
+        shape = replace(
+            steered.shape, estimates=replace(steered.shape.estimates, shares={"Xrr": {"hull, ideal fluid": 1e-7}})
+        )
+        (check,) = ideal_fluid.check(replace(steered, shape=shape, parameter_files={"toy": other}))
+        assert check.severity is found
 
 
 def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

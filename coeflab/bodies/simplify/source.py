@@ -13,13 +13,14 @@ from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed, require_plausible
 from coeflab.bodies.readers import read_body
-from coeflab.core.axes import Datum, parse_axes
-from coeflab.core.errors import InputError, UnitsError
+from coeflab.core.axes import FRAME_WORDS, FRAMES, Datum, parse_axes
+from coeflab.core.errors import AxesError, InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.units import factor
 
 BODY, CAMPAIGN = "body.toml", "campaign.toml"
+AXES_TYPED = "FLU (x forward, y port, z up), FRD (x forward, y starboard, z down), CFD (x aft, y starboard, z up) or three directions like forward,port,up"
 
 
 def mesh_body(
@@ -54,8 +55,9 @@ def mesh_body(
             )
         return read_body(path)
     own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
-    scale = _factor(unit or own_unit, path)
-    turn = parse_axes(_declared(axes or own_axes), file=path, key="--axes").rotation
+    unit, axes = unit or own_unit, axes or own_axes
+    _require_stated(unit, axes, path)
+    scale, turn = _factor(unit, path), _turn(axes, path)
     return _bare(path, scale, turn, repair, fill, sheets)
 
 
@@ -76,11 +78,35 @@ def names_body(name: str) -> bool:
     return path.name == BODY or path.suffix.lower().lstrip(".") in FORMATS
 
 
-def _factor(unit: str, path: Path) -> float:
-    if not unit:
-        raise InputError(
-            "no unit", "--unit m, mm, in ...", file=path, column="--unit", advice="Mesh files do not say their unit."
+def _require_stated(unit: str, axes: str, path: Path) -> None:
+    """Everything that is not stated in one message, so that nobody mends one thing to meet the next."""
+    lacking = [
+        (what, option)
+        for what, option, said in (
+            ("unit", "--unit mm, m, in or another unit of length", unit),
+            ("axes", f"--axes {AXES_TYPED}", axes),
         )
+        if not said
+    ]
+    if lacking:
+        raise InputError(
+            f"no {' and no '.join(what for what, _ in lacking)}",
+            "; and ".join(option for _, option in lacking),
+            file=path,
+            advice=f"A mesh file does not say its {' and '.join(what for what, _ in lacking)}.",
+        )
+
+
+def _turn(axes: str, path: Path) -> np.ndarray[Any, Any]:
+    try:
+        return parse_axes(_declared(axes), file=path, key="--axes").rotation
+    except AxesError as why:
+        if why.expected == FRAME_WORDS:  # as TOML writes them
+            raise AxesError(why.found, AXES_TYPED, file=path, column="--axes") from None
+        raise
+
+
+def _factor(unit: str, path: Path) -> float:
     try:
         return factor(unit, "length")
     except UnitsError as why:
@@ -90,7 +116,7 @@ def _factor(unit: str, path: Path) -> float:
 def _declared(axes: str) -> Any:
     """None, a frame's name, or three directions."""
     words = [w.strip() for w in axes.split(",")]
-    return words if len(words) == 3 else axes or None
+    return words if len(words) == 3 else axes.upper() if axes.upper() in FRAMES else axes or None
 
 
 def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool, fill: bool, sheets: bool) -> Body:

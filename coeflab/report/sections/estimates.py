@@ -199,6 +199,10 @@ def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
     return f"{s.figure.name} {value}{f' {unit}' if unit else ''} {so} (95 % {low} to {high}), estimate"
 
 
+def _many(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
 def _degrees(angle: float | str) -> str:
     return f"{np.degrees(float(angle)):.3g} deg"
 
@@ -285,7 +289,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
-        Chip("Missing", f"{len(shape.missing)} things" if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
+        Chip("Missing", _many(len(shape.missing), "thing") if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
         _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
@@ -412,9 +416,9 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
     given = sum(r.after is not None for r in made.replaced)
     turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
-    said = f"{p.name}: {given} numbers replaced, {left} estimates left{f'; {turn}' if turn else ''}."
+    said = f"{p.name}: {_many(given, 'number')} replaced, {_many(left, 'estimate')} left{f'; {turn}' if turn else ''}."
     chips = (
-        Chip("Replaced", f"{given} numbers", Severity.PASS if given else Severity.WARN, "coefficients"),
+        Chip("Replaced", _many(given, "number"), Severity.PASS if given else Severity.WARN, "coefficients"),
         Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres"),
     )

@@ -127,19 +127,19 @@ def percent(share: float) -> str:
 
 def in_short(loss: Loss) -> str:
     """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
-    terms = [what.partition(" (")[0] for what in loss.not_held]
+    terms = [what.partition(" (")[0].partition(": ")[0] for what in loss.not_held]
     said = [f"no {_some(terms, NAMED)}"] if terms else []
-    said += (
-        [_some([f"{x.kind}: {x.what.partition('; ')[0].partition(': ')[0]}" for x in loss.lost], 1)]
-        if loss.lost
-        else []
-    )
+    others: dict[str, list[str]] = {}
+    for x in loss.lost:
+        others.setdefault(x.kind, []).append(x.what.partition("; ")[0].partition(": ")[0])
+    said += [f"{kind}: {_some(whats, 1)}" for kind, whats in others.items()]
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
     for i, share, names in found:
         if share > LOSSLESS or not said:
-            said.append(f"{names[i]} differs by up to {percent(share)} of its largest")
+            by = percent(share).replace(">", "more than") if 100.0 * share > MOST_APART else f"up to {percent(share)}"
+            said.append(f"{names[i]} differs by {by} of its largest")
     return ", and ".join(said)
 
 
