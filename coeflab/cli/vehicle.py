@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,7 +86,7 @@ def command(
     from coeflab.core.files import located, write_all
     from coeflab.workbench import checked, rendered
     from coeflab.workbench.exports import refuse_unknown
-    from coeflab.workbench.vehicle import asked, from_shape, subject
+    from coeflab.workbench.vehicle import asked, completed_by_hand, from_shape, subject
 
     if campaign:
         located(campaign, "cfd_data")  # before minutes of added mass
@@ -103,14 +104,15 @@ def command(
             say(f"fitting {campaign}")
             merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / "merged", say)
     show.step("drawing the report", json)
-    files = rendered(study)
+    draft, kept = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
+    files = rendered(study) | draft
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
     if json:
         more = {} if merged is None else {"merged": merged.as_json()}
         show.json_object({**as_json(study), **more, "files": [str(p) for p in paths]})
     else:
-        _print(study, folder, sorted(files), changed, merged is None)
+        _print(study, folder, sorted(files), changed, merged is None, _on_draft(folder, draft, kept))
         if merged is not None:
             merged.print()
     for refused in study.refused:
@@ -125,9 +127,11 @@ def command(
         raise typer.Exit(1)
 
 
-def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool) -> None:
+def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool, on_draft: str) -> None:
 
     summarise(study, folder)
+    if on_draft:
+        show.marked("draft", on_draft)
     show.findings(study.checks)
     show.written(folder, names, changed, for_simulators(study))
     if not alone:
@@ -137,6 +141,14 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
     if not study.exports:
         show.command_line("For a simulator", f"coeflab export {place} --to TARGET")
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")
+
+
+def _on_draft(folder: Path, draft: Mapping[str, bytes], kept: bool) -> str:
+    """What became of the body.toml of a bare mesh."""
+    if kept:
+        return f"{folder / 'body.toml'} was edited and is kept; coeflab vehicle {folder} takes it"
+    held = "the fins that were found, rudder and thruster to complete"
+    return f"{folder / next(iter(draft))}: {held}; then coeflab vehicle {folder}" if draft else ""
 
 
 def summarise(study: Study, folder: Path) -> None:

@@ -11,9 +11,12 @@ import numpy as np
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
+from coeflab.bodies.drafted import drafted
+from coeflab.bodies.mesh.file import SELF_DESCRIBED
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.outlining import fins_along
-from coeflab.bodies.simplify.source import mesh_body
+from coeflab.bodies.simplify.source import BODY, mesh_body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located, stem
@@ -311,6 +314,33 @@ def subject(
         return body
     size = body.require_shape().length
     return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
+
+
+def completed_by_hand(
+    body: Body, name: str, folder: Path, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False,
+) -> tuple[dict[str, bytes], bool]:  # fmt: skip
+    """A body.toml of a bare mesh for its owner to complete, by its name; none of another body.
+
+    Where the folder has one that was completed, there is none either, and the second is true.
+
+    Parameters
+    ----------
+    body : Body
+        What `subject` made of the others.
+    name, unit, axes : str
+    folder : Path
+    repair, fill, sheets : bool
+    """
+    path, shape = Path(name), body.shape
+    if path.suffix.lower() == ".toml" or not path.is_file() or not isinstance(shape, TriangleMesh):
+        return {}, False
+    own = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
+    text = drafted(
+        body, shape, path, folder, unit or own[0], axes or own[1], repair=repair, fill=fill, sheets=sheets
+    ).encode()
+    there = folder / BODY
+    kept = there.exists() and there.read_bytes() != text
+    return {} if kept else {BODY: text}, kept
 
 
 def asked(

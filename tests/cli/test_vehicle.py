@@ -170,3 +170,30 @@ def test_wrong_input_is_one_error(coeflab: Run, tmp_path: Path, arguments: tuple
     assert said in flat(done.stderr)
     assert done.stderr.startswith("error: ")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_a_bare_mesh_brings_a_body_file_to_complete_which_is_never_overwritten(coeflab: Run, tmp_path: Path) -> None:
+    from tests.bodies.twelve import TWELVE
+
+    TWELVE["torpedo"]().export(tmp_path / "torpedo.stl")
+    bare = ("vehicle", "torpedo.stl", "--unit", "m", "--axes", "FLU", *QUICK, "--out", "made")
+    done = coeflab(*bare)
+    assert done.returncode == 0, done.stderr
+    assert (
+        "made/body.toml: the fins that were found, rudder and thruster to complete; then coeflab vehicle made"
+        in flat(done.stdout)
+    )
+    file = tmp_path / "made" / "body.toml"
+    first = file.read_bytes()
+    assert b'# name = "dr"' in first
+    coeflab(*bare)
+    assert file.read_bytes() == first
+    file.write_text(file.read_text() + "# mine\n")
+    done = coeflab(*bare)
+    assert "made/body.toml was edited and is kept; coeflab vehicle made takes it" in flat(done.stdout)
+    assert file.read_text().endswith("# mine\n")
+    own = coeflab("vehicle", "made", *QUICK, "--mass", "78")
+    assert own.returncode == 0, own.stderr
+    assert "draft " not in own.stdout
+    assert file.read_text().endswith("# mine\n")

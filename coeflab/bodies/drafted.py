@@ -1,0 +1,134 @@
+"""A body.toml of a bare mesh, for a person to complete: what was read and found stands in it, what a mesh cannot say is a comment.
+
+No rudder and no thruster is invented: their lines are comments with the fins that were found, and words in the place of numbers that
+only their owner knows.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.outline import Foil
+from coeflab.core.text.toml import quoted
+from coeflab.core.types import Array
+
+UPRIGHT = 2.0  # rise over reach, or reach over rise, from which a fin is upright, or level
+NOTHING = 1e-4  # of the length: a place nearer to an axis is on it
+CONTROLS = {  # of a tail: the angle, what turns by it, the axis and its sense
+    "dr": ("upright", "[0.0, 0.0, 1.0]", "dr positive with the trailing edge to port"),
+    "ds": ("level", "[0.0, 1.0, 0.0]", "ds positive with the trailing edge down"),
+}
+
+
+def drafted(
+    body: Body,
+    shape: TriangleMesh,
+    mesh: Path,
+    folder: Path,
+    unit: str,
+    axes: str,
+    *,
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+) -> str:
+    """The text of a body.toml.
+
+    Parameters
+    ----------
+    body : Body
+        As the mesh was read; its datum is the origin of the mesh's axes.
+    shape : TriangleMesh
+        Its shape.
+    mesh, folder : Path
+        The mesh file, and the folder of the body.toml, from which the mesh is named.
+    unit, axes : str
+        As they were stated.
+    repair, fill, sheets : bool
+        What the mesh needed to be read.
+    """
+    path = Path(os.path.relpath(mesh.absolute(), folder.absolute())).as_posix()
+    mended = "".join(f"{key} = true\n" for key, on in (("repair", repair), ("fill", fill), ("sheets", sheets)) if on)
+    outline = body.outline
+    foils = outline.foils if outline is not None else ()
+    nothing = NOTHING * shape.length
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    return f"""\
+# Made by `coeflab vehicle` from the mesh alone. Complete it, then run: coeflab vehicle {folder.name} --mass MASS
+[body]
+name = {quoted(body.name)}
+reader = "mesh"
+datum = "origin"
+datum_note = {quoted(f"of {mesh.name}")}
+reference_point = {_point(body.reference_point, nothing)}  # m, x forward, y starboard, z down; here the centre of buoyancy
+
+[mesh]
+path = {quoted(path)}
+unit = {quoted(unit)}
+axes = {quoted(axes)}
+{mended}
+[particulars]
+length = {high[0] - low[0]:.6g}
+
+[source]
+citation = "none"
+how_obtained = {quoted(f"{mesh.name}, a mesh")}
+
+{_controls(foils, (low[0] + high[0]) / 2.0, nothing)}
+# A thruster: take the # away and state its curve.
+# [[thruster]]
+# name = "main"
+# place = {_point(np.array([low[0], *_axis(foils, low, high)]), nothing)}  # m; here the stern
+# axis = [1, 0, 0]  # of positive thrust
+# curve = [[0, 0], [RPM, NEWTON]]  # rpm, N; straight lines between
+"""
+
+
+def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:
+    """The fins that were found, and comments of a control for each way that those of the tail stand."""
+    if not foils:
+        return "# No fin was found, so nothing can turn.\n"
+    lines = ["# Fins that were found, as parts of a [[control]]: place and chord of the root, exposed span, m."]
+    lines += [
+        f"#   {f.name}: x = {f.root[0]:.4g}, chord {f.root_chord:.3g}, span {f.span:.3g}, {_stands(f)}" for f in foils
+    ]
+    for name, (way, axis, sense) in CONTROLS.items():
+        mine = [f for f in foils if f.root[0] < middle and _stands(f) == way]
+        if not mine:
+            continue
+        hinge = np.array(
+            [np.mean([f.root[0] - 0.25 * f.root_chord for f in mine]), *np.mean([f.stand for f in mine], axis=0)]
+        )
+        lines += [
+            "#",
+            f"# {'A rudder' if name == 'dr' else 'Stern planes'}: take the # away and state hinge, limit and rate.",
+            "# [[control]]",
+            f'# name = "{name}"',
+            f"# parts = [{', '.join(quoted(f.name) for f in mine)}]",
+            f"# hinge = {_point(hinge, nothing)}  # m, a point on the hinge; here half of the root chord",
+            f"# axis = {axis}  # {sense}",
+            '# limit = "LIMIT deg"',
+            '# rate = "RATE deg/s"',
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _stands(foil: Foil) -> str:
+    across, rise = np.abs((foil.tip - foil.root)[1:])
+    return "upright" if rise > UPRIGHT * across else "level" if across > UPRIGHT * rise else "oblique"
+
+
+def _axis(foils: Sequence[Foil], low: Array, high: Array) -> Array:
+    """Y and z of what the fins stand on, else of the middle."""
+    middle = (low + high)[1:] / 2.0
+    return np.mean([f.stand for f in foils], axis=0) if foils else middle
+
+
+def _point(at: Array, nothing: float) -> str:
+    return f"[{', '.join(f'{x:.5g}' if abs(x) > nothing else '0' for x in map(float, at))}]"

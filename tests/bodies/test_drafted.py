@@ -1,0 +1,88 @@
+"""The body.toml that is made of a bare mesh: it reads as the mesh did, and becomes a steered vehicle once it is completed."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.drafted import drafted
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.readers import read_body
+from coeflab.bodies.simplify.source import mesh_body
+from coeflab.core.errors import InputError
+from tests.bodies.twelve import TWELVE
+
+
+def made(folder: Path, kind: str) -> tuple[Body, Path]:
+    """The bare mesh of a vehicle, and its body.toml in a folder beside."""
+    mesh = folder / f"{kind}.stl"
+    TWELVE[kind]().export(mesh)
+    bare = mesh_body(str(mesh), "m", "FLU")
+    bare = replace(bare, reference_point=bare.configurations[0].centre_of_buoyancy)
+    assert isinstance(bare.shape, TriangleMesh)
+    (folder / "draft").mkdir()
+    file = folder / "draft" / "body.toml"
+    file.write_text(drafted(bare, bare.shape, mesh, file.parent, "m", "FLU"))
+    return bare, file
+
+
+def completed(text: str) -> str:
+    """With its comments of rudder, planes and thruster taken in, and numbers in the place of words."""
+    head, block, tail = text.partition("# [[control]]")
+    lines = re.sub(r"(?m)^# (\[\[|name|parts|hinge|axis|limit|rate|place|curve)", r"\1", block + tail)
+    return head + lines.replace("LIMIT", "20").replace("RATE", "40").replace("[RPM, NEWTON]", "[1500, 30]")
+
+
+def test_as_it_is_made_it_is_the_mesh_and_nothing_turns(tmp_path: Path) -> None:
+    bare, file = made(tmp_path, "torpedo")
+    found = read_body(file)
+    assert found.require_shape().volume == pytest.approx(bare.require_shape().volume, rel=1e-12)
+    assert found.reference_point == pytest.approx(bare.reference_point, abs=1e-4)
+    assert (found.controls, found.thrusters) == ((), ())
+    assert 'path = "../torpedo.stl"' in file.read_text()
+
+
+def test_completed_its_pairs_of_fins_are_rudder_and_stern_planes(tmp_path: Path) -> None:
+    _, file = made(tmp_path, "torpedo")
+    file.write_text(completed(file.read_text()))
+    found = read_body(file)
+    turned = {c.name: c for c in found.controls}
+    assert set(turned) == {"dr", "ds"}
+    assert set(turned["dr"].parts) == {"foil_upper", "foil_lower"}
+    assert set(turned["ds"].parts) == {"foil_starboard", "foil_port"}
+    (thruster,) = found.thrusters
+    shape = found.require_shape()
+    assert isinstance(shape, TriangleMesh)
+    assert thruster.place == pytest.approx([shape.vertices[:, 0].min(), 0.0, 0.0], abs=1e-4)
+    assert found.outline is not None
+    turning = {f.name: f for f in found.outline.foils if f.control}
+    assert set(turning) == {"foil_upper", "foil_lower", "foil_starboard", "foil_port"}
+    # Positive: the trailing edge of a rudder to port, of a plane down; sign counts from root to tip, up and to starboard.
+    assert turning["foil_upper"].sign == -turning["foil_lower"].sign == -1.0
+    assert turning["foil_starboard"].sign == -turning["foil_port"].sign == 1.0
+
+
+def test_without_numbers_the_words_are_refused(tmp_path: Path) -> None:
+    _, file = made(tmp_path, "torpedo")
+    file.write_text(completed(file.read_text()).replace("20 deg", "LIMIT deg"))
+    with pytest.raises(InputError, match="LIMIT deg"):
+        read_body(file)
+
+
+def test_fins_ahead_or_oblique_are_named_and_no_control_is_drafted(tmp_path: Path) -> None:
+    _, file = made(tmp_path, "submarine")  # a sail, and a tail in X
+    text = file.read_text()
+    assert "foil_upper: " in text
+    assert text.count(", oblique\n") == 4
+    assert "[[control]]\n" not in text
+    assert np.isfinite(read_body(file).require_shape().volume)
+
+
+def test_a_body_without_fins_says_so(tmp_path: Path) -> None:
+    _, file = made(tmp_path, "box_rov")
+    assert "# No fin was found, so nothing can turn." in file.read_text()
