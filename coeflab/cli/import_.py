@@ -161,7 +161,7 @@ def _first_slopes(folder: Path) -> bool:
     from coeflab.core.table import Severity
     from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
-    from coeflab.study.plan import table_at
+    from coeflab.study.plan import DEFAULT_FITS, table_at
     from coeflab.study.study import Plan
     from coeflab.tables.campaign import FILE
     from coeflab.tables.reading import suited_fit
@@ -209,5 +209,7 @@ def _first_slopes(folder: Path) -> bool:
             show.sentence(
                 f"The campaign is written, and a check fails. Correct its {FILE}, or import again with --force."
             )
+    if study is not None and fit in DEFAULT_FITS:
+        show.command_line("Report", f"coeflab run {shlex.quote(str(folder))}")
     show.command_line("Next", typed)
     return failed

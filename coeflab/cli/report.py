@@ -17,7 +17,7 @@ def command(
         ...,
         metavar="STUDY",
         autocompletion=complete.studies,
-        help="A plan.toml, a folder with one, or a validation such as suboff.",
+        help="A plan.toml, a folder with one, the folder of a campaign, or a validation such as suboff.",
     ),
     to: str = typer.Option(
         "html,pdf",

@@ -24,7 +24,10 @@ EXAMPLE = "coeflab run my_study/plan.toml"
 
 def command(
     plan: Path = typer.Argument(
-        ..., metavar="PLAN", autocompletion=complete.plans, help="The plan.toml, its folder, or a shipped study."
+        ...,
+        metavar="PLAN",
+        autocompletion=complete.plans,
+        help="The plan.toml, its folder, the folder of a campaign, or a shipped study.",
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),

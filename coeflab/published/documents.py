@@ -18,7 +18,7 @@ from coeflab.report.answer import acceptance_summary, study_summary
 from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.study.plan import read_plan
+from coeflab.study.plan import plan_at, read_plan
 from coeflab.study.study import Plan, Study
 
 Progress = Callable[[str], None]
@@ -179,15 +179,17 @@ def _meant(study: str) -> Plan | str:
     if (path / PLAN).is_file():
         return read_plan(path / PLAN)
     if path.exists() and study not in validations():
+        if plan_at(path).is_file():
+            return read_plan(plan_at(path))
         raise InputError(
-            f"{shown(study, 300)}, a folder without {PLAN}",
-            f"a {PLAN}, a folder with one, or a validation",
-            advice=f"This is a campaign: a {PLAN} names it under [[table]], campaign = {shown(study, 300)}."
-            if (path / "campaign.toml").is_file()
-            else "",
+            f"{shown(study, 300)}, a folder without {PLAN} and campaign.toml",
+            f"a {PLAN}, a folder with one, a campaign or a validation",
         )
-    if study not in validations():
+    campaign = shipped("cfd_data") / study / "campaign.toml"
+    if study not in validations() and not campaign.is_file():
         raise _unknown(study, shown(study, 300))
+    if study not in validations():
+        return read_plan(campaign)
     plan = shipped("cfd_data") / study / PLAN
     return read_plan(plan) if plan.is_file() else study
 

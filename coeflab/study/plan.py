@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located, named, typed
+from coeflab.core.files import located, named, shipped, stem, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.formats.export import PlannedExport
@@ -405,7 +405,7 @@ def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
 
 
 def plan_at(place: str | Path) -> Path:
-    """The plan.toml that a person means: its path, its folder, or a shipped name such as suboff.
+    """The plan.toml that a person means: its path, its folder, or a shipped name such as suboff; of a campaign its campaign.toml.
 
     Parameters
     ----------
@@ -417,7 +417,28 @@ def plan_at(place: str | Path) -> Path:
         No path of a file, and no shipped name.
     """
     path = typed(place)
-    return path / "plan.toml" if path.is_dir() else named(path, "plan.toml")
+    inside = shipped("cfd_data") / path.name
+    if (
+        not path.exists()
+        and path == Path(path.name)
+        and (inside / FILE).is_file()
+        and not (inside / "plan.toml").exists()
+    ):
+        return inside / FILE
+    if not path.is_dir():
+        return named(path, "plan.toml")
+    return path / FILE if (path / FILE).is_file() and not (path / "plan.toml").exists() else path / "plan.toml"
+
+
+def _of_campaign(path: Path) -> Plan:
+    """The plan of a campaign alone: its slopes at the origin and its law."""
+    campaign = read_campaign(path)
+    return Plan(
+        stem(campaign.name),
+        campaign.title,
+        (table_at(path.parent, DEFAULT_FITS),),
+        file=InputFile(path.name, sha256_of(path)),
+    )
 
 
 def read_plan(path: Path) -> Plan:
@@ -426,7 +447,7 @@ def read_plan(path: Path) -> Plan:
     Parameters
     ----------
     path : Path
-        Paths inside resolve from its folder.
+        Paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, with `DEFAULT_FITS`.
 
     Raises
     ------
@@ -434,6 +455,8 @@ def read_plan(path: Path) -> Plan:
         Everything that is wrong, by file, line and key.
     """
     path = named(path, "plan.toml")
+    if path.name == FILE:
+        return _of_campaign(path)
     file = takes.declared(PlanFile, read_toml(path))
     study = file.study
     tows = tuple(_tow(t, path, [own.campaign for own in file.table]) for t in file.tow)

@@ -398,7 +398,7 @@ def refuse_shape(path: Path) -> None:
         more = f" and {len(inside) - MOST_NAMED} more" if len(inside) > MOST_NAMED else ""
         advice = f"In it: {', '.join(inside[:MOST_NAMED])}{more}." if inside else ""
         if (path / "campaign.toml").is_file():
-            advice = "This is a campaign. coeflab run PLAN.toml fits it and writes the file, with [[table]] campaign = its folder in the plan."
+            advice = f"This is a campaign: coeflab run {path} fits it and writes the file."
         raise InputError("a folder", "a parameter file, NAME.parameters.json", file=path, advice=advice)
 
 

@@ -59,6 +59,23 @@ def test_the_summary_has_one_page_and_a_name_of_its_own(coeflab, study, tmp_path
     assert len(pymupdf.open(tmp_path / "made" / "summary.pdf")) == 1
 
 
+def test_a_campaign_is_a_study_of_its_own(coeflab, study, tmp_path):
+    """Slopes at the origin, law, parameter file and report without a plan; of a shipped one by its name."""
+    place = study.relative_to(tmp_path) / "campaign"
+    done = coeflab("run", place)
+    assert done.returncode == 0, done.stderr
+    (made,) = (tmp_path / "reports").iterdir()
+    assert (made / "report.html").is_file()
+    (file,) = made.glob("*.parameters.json")
+    symbols = [c["symbol"] for c in json.loads(file.read_bytes())["coefficients"]]
+    assert {"Yv'", "Nv'", "Yr'", "Nr'"} <= set(symbols)
+    assert commands_in(made / "report.html")[-1] == "coeflab report campaign.toml --to html,pdf"
+    told = coeflab("report", place, "--to", "html", "--out", "again")
+    assert told.returncode == 0, told.stderr
+    assert (tmp_path / "again" / "report.html").read_bytes() == (made / "report.html").read_bytes()
+    assert coeflab("run", "suboff_roddy_3", "--out", "shipped").returncode == 0
+
+
 def test_only_the_named_sections(coeflab, study, tmp_path):
     done = coeflab("report", study, "--section", "checks", "--section", "Verdict", "--json", "--out", "made")
     assert done.returncode == 0, done.stderr
@@ -95,11 +112,12 @@ def test_the_appendix_comes_on_request_and_is_found_by_section(coeflab, study, t
         (("boat", "--summary", "--section", "verdict"), ("--summary",)),
         (("boat", "--summary", "--full"), ("--summary",)),
         (("subof",), ("subof", "Did you mean suboff?")),
-        (("boat/campaign",), ("a folder without plan.toml", 'campaign = "boat/campaign"')),
+        (("empty",), ("a folder without plan.toml and campaign.toml", "a campaign or a validation")),
         (("nowhere.toml",), ("nowhere.toml",)),
     ],
 )
 def test_one_error_and_nothing_written(coeflab, study, tmp_path, arguments, words):
+    (tmp_path / "empty").mkdir()
     before = files_in(tmp_path)
     done = coeflab("report", *arguments, "--out", "made")
     assert done.returncode == 2
