@@ -109,6 +109,18 @@ def _spelled(unit: str) -> str:
     return _EXPONENT.sub(lambda found: _BEHIND.sub("^", found[0]), plain)
 
 
+def _in_small_letters(unit: str, dimension: str) -> str:
+    """Advice where only the capitals are wrong."""
+    small = unit.lower()
+    if small == unit:
+        return ""
+    try:
+        factor(small, dimension)
+    except UnitsError:
+        return ""
+    return f"Did you mean {small}? Capitals count."
+
+
 @functools.cache
 def factor(unit: str, dimension: str) -> float:
     """Factor that turns a number in ``unit`` into SI.
@@ -147,9 +159,13 @@ def factor(unit: str, dimension: str) -> float:
         value, double = float(one.to(si).magnitude), float((2.0 * one).to(si).magnitude)
         turns = dict(one.to_root_units().unit_items()).get("radian", 0)
     except pint.DimensionalityError:
-        raise UnitsError(f"[{unit}], a unit of another dimension", expected) from None
+        raise UnitsError(
+            f"[{unit}], a unit of another dimension", expected, advice=_in_small_letters(unit, dimension)
+        ) from None
     except pint.UndefinedUnitError:
-        raise UnitsError(f"the unknown unit {shown(unit)}", expected) from None
+        raise UnitsError(
+            f"the unknown unit {shown(unit)}", expected, advice=_in_small_letters(unit, dimension)
+        ) from None
     except (
         pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, ArithmeticError, AssertionError, LookupError,
         TokenError,

@@ -97,6 +97,16 @@ def test_si_units_are_themselves(dimension: str) -> None:
     assert factor(SI[dimension], dimension) == 1.0
 
 
+@pytest.mark.parametrize(
+    ("unit", "dimension", "meant"),
+    [("MM", "length", "mm"), ("DEG", "angle", "deg"), ("KG", "length", ""), ("zz", "length", "")],
+)
+def test_capitals_count(unit: str, dimension: str, meant: str) -> None:
+    with pytest.raises(UnitsError) as why:
+        factor(unit, dimension)
+    assert why.value.advice == (f"Did you mean {meant}? Capitals count." if meant else "")
+
+
 @settings(max_examples=300, deadline=2000)
 @given(st.text(alphabet="Nmkgsradeft*/^()-1290 ._·°'\"[]\\;µ", max_size=60), st.sampled_from(sorted(SI)))
 def test_any_text_gives_a_factor_or_one_error(unit: str, dimension: str) -> None:

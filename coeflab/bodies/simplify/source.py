@@ -110,7 +110,7 @@ def _factor(unit: str, path: Path) -> float:
     try:
         return factor(unit, "length")
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, column="--unit") from None
+        raise UnitsError(why.found, why.expected, file=path, column="--unit", advice=why.advice) from None
 
 
 def _declared(axes: str) -> Any:
