@@ -21,6 +21,7 @@ from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedJoint, PlannedTow
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import suited_fit
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
@@ -431,12 +432,13 @@ def plan_at(place: str | Path) -> Path:
 
 
 def _of_campaign(path: Path) -> Plan:
-    """The plan of a campaign alone: its slopes at the origin and its law."""
-    campaign = read_campaign(path)
+    """The plan of a campaign alone: the fit that suits it, slopes at the origin with the law."""
+    campaign, suited = read_campaign(path), suited_fit(path.parent)
+    fits = DEFAULT_FITS if suited in DEFAULT_FITS else (suited,)
     return Plan(
         stem(campaign.name),
         campaign.title,
-        (table_at(path.parent, DEFAULT_FITS),),
+        (table_at(path.parent, fits),),
         file=InputFile(path.name, sha256_of(path)),
     )
 
@@ -447,7 +449,7 @@ def read_plan(path: Path) -> Plan:
     Parameters
     ----------
     path : Path
-        Paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, with `DEFAULT_FITS`.
+        Paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, by the fit that suits it.
 
     Raises
     ------
