@@ -19,7 +19,7 @@ KINDS = {
     "body": "",
     "glider": "motion.glider.glider.GliderFile",
     "tuning": "motion.tune.plan.TuningFile",
-    "tank": "tank.declaration.TankFile",
+    "tank": "tank.tank_keys.TankFile",
     "parameters": "",
 }
 
