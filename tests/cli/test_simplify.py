@@ -249,7 +249,7 @@ def test_a_bracket_is_parted(fresh: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("huuv.stl",), "Mesh files do not say their unit"),
+        (("huuv.stl",), "A mesh file does not say its unit and axes"),
         (("huuv.stl", "--unit", "mm"), "--axes"),
         (("huuv.stl", "--unit", "kg", "--axes", "FLU"), "a unit of another dimension"),
         (("huuv.stl", "--unit", "mm", "--axes", "forward,port,down"), "left-handed"),

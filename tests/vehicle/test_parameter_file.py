@@ -329,7 +329,7 @@ def test_versions_that_are_none(tmp_path: Path, version: object) -> None:
 
 
 def test_places_without_a_file(tmp_path: Path) -> None:
-    assert "found a folder; expected a parameter file." in refused(tmp_path) + "."
+    assert "found a folder; expected a parameter file, NAME.parameters.json." in refused(tmp_path)
     (tmp_path / "sub.parameters.json").write_bytes(SAMPLE.read_bytes())
     assert f"In it: {tmp_path / 'sub.parameters.json'}." in refused(tmp_path)
     (tmp_path / "hull.STL").write_bytes(bytes(84))

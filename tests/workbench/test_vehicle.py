@@ -31,7 +31,6 @@ from coeflab.motion.simulation import simulate
 from coeflab.report.answer import answer
 from coeflab.report.content import document
 from coeflab.report.sections.estimates import (
-    _apart,
     answer_of_merge,
     estimates_table,
     main_spread,
@@ -413,19 +412,6 @@ def test_a_mesh_that_is_longest_across_is_a_warning(steered: Study, tmp_path: Pa
         (check,) = longest_axis.check(replace(steered, shape=shape))
         assert check.severity is found
     assert longest_axis.check(steered) == []  # no mesh
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ((10.6, 7.05, 14.5), ["11", "7", "14"]),
-        ((24.02, 23.61, 24.43), ["24.0", "23.6", "24.4"]),
-        ((123.0, 118.0, 131.0), ["120", "120", "130"]),
-        ((121.0, 120.6, 121.4), ["121.0", "120.6", "121.4"]),
-    ],
-)
-def test_the_ends_of_an_interval_are_two_numbers(values: tuple[float, ...], words: list[str]) -> None:
-    assert _apart(values) == words
 
 
 def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
