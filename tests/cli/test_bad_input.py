@@ -96,7 +96,10 @@ def test_a_campaign_in_place_of_a_parameter_file_is_told_the_way(coeflab: Run, s
     assert "s/campaign: found a folder; expected a parameter file" in flat(done.stderr)
     assert "coeflab run s/campaign fits it and writes the file" in flat(done.stderr)
     coeflab("run", "s/plan.toml")
-    assert "In it: reports/my_study/my_vehicle.parameters.json." in coeflab("compare", "reports/my_study", "reports/my_study").stderr
+    assert (
+        "In it: reports/my_study/my_vehicle.parameters.json."
+        in coeflab("compare", "reports/my_study", "reports/my_study").stderr
+    )
 
 
 def test_unknown_validation_names_the_near_one(coeflab: Run) -> None:
