@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from coeflab.core.text.toml import quoted
 from coeflab.core.types import Array
 
 UPRIGHT = 2.0  # rise over reach, or reach over rise, from which a fin is upright, or level
+SEAL = "# Replaced by `coeflab vehicle` as long as nobody edits it: "
 NOTHING = 1e-4  # of the length: a place nearer to an axis is on it
 CONTROLS = {  # of a tail: the angle, what turns by it, the axis and its sense
     "dr": ("upright", "[0.0, 0.0, 1.0]", "dr positive with the trailing edge to port"),
@@ -59,8 +61,8 @@ def drafted(
     foils = outline.foils if outline is not None else ()
     nothing = NOTHING * shape.length
     low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
-    return f"""\
-# Made by `coeflab vehicle` from the mesh alone. Complete it, then run: coeflab vehicle {folder.name} --mass MASS
+    text = f"""\
+# Made by `coeflab vehicle` from the mesh alone. Complete it, then give this folder to `coeflab vehicle`, with --mass.
 [body]
 name = {quoted(body.name)}
 reader = "mesh"
@@ -88,6 +90,17 @@ how_obtained = {quoted(f"{mesh.name}, a mesh")}
 # axis = [1, 0, 0]  # of positive thrust
 # curve = [[0, 0], [RPM, NEWTON]]  # rpm, N; straight lines between
 """
+    return f"{SEAL}{_digest(text)}\n{text}"
+
+
+def is_untouched(text: str) -> bool:
+    """Whether a body.toml is as `drafted` made it, of whatever unit and axes."""
+    first, _, rest = text.partition("\n")
+    return first == f"{SEAL}{_digest(rest)}"
+
+
+def _digest(text: str) -> str:
+    return sha256(text.encode()).hexdigest()[:16]
 
 
 def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:

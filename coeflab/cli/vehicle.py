@@ -146,7 +146,7 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
 def _on_draft(folder: Path, draft: Mapping[str, bytes], kept: bool) -> str:
     """What became of the body.toml of a bare mesh."""
     if kept:
-        return f"{folder / 'body.toml'} was edited and is kept; coeflab vehicle {folder} takes it"
+        return f"{folder / 'body.toml'} was edited and is kept, with the unit and axes that it states; coeflab vehicle {folder} takes it"
     held = "the fins that were found, rudder and thruster to complete"
     return f"{folder / next(iter(draft))}: {held}; then coeflab vehicle {folder}" if draft else ""
 

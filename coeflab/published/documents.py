@@ -185,10 +185,10 @@ def _meant(study: str) -> Plan | str:
             f"{shown(study, 300)}, a folder without {PLAN} and campaign.toml",
             f"a {PLAN}, a folder with one, a campaign or a validation",
         )
-    campaign = shipped("cfd_data") / study / "campaign.toml"
-    if study not in validations() and not campaign.is_file():
-        raise _unknown(study, shown(study, 300))
     if study not in validations():
+        campaign = shipped("cfd_data") / study / "campaign.toml"
+        if not campaign.is_file():
+            raise _unknown(study, shown(study, 300))
         return read_plan(campaign)
     plan = shipped("cfd_data") / study / PLAN
     return read_plan(plan) if plan.is_file() else study

@@ -397,7 +397,7 @@ def _campaign_text(
     files = "; ".join(f"{name} sha256 {sha256_of(path)[:16]}..." for name, path in inputs.items())
     at = tank.conditions
     how = (
-        f"{version}, run by coeflab {VERSION}. Means over plateaus, se from batch means "
+        f"{version}, run by coeflab {VERSION}. Means over plateaus, se from batch means and range "
         "(iteration noise only). Half bodies are doubled. Runs: runs.csv." + (f" {files}." if files else "")
     )
     if made:

@@ -11,7 +11,7 @@ import numpy as np
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
-from coeflab.bodies.drafted import drafted
+from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.file import SELF_DESCRIBED
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
@@ -321,7 +321,7 @@ def completed_by_hand(
 ) -> tuple[dict[str, bytes], bool]:  # fmt: skip
     """A body.toml of a bare mesh for its owner to complete, by its name; none of another body.
 
-    Where the folder has one that was completed, there is none either, and the second is true.
+    Where the folder has one that was edited, there is none either, and the second is true.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def completed_by_hand(
         body, shape, path, folder, unit or own[0], axes or own[1], repair=repair, fill=fill, sheets=sheets
     ).encode()
     there = folder / BODY
-    kept = there.exists() and there.read_bytes() != text
+    kept = there.exists() and not is_untouched(there.read_text(encoding="utf-8", errors="replace"))
     return {} if kept else {BODY: text}, kept
 
 

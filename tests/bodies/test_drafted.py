@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.drafted import drafted
+from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.simplify.source import mesh_body
@@ -45,6 +45,8 @@ def test_as_it_is_made_it_is_the_mesh_and_nothing_turns(tmp_path: Path) -> None:
     assert found.reference_point == pytest.approx(bare.reference_point, abs=1e-4)
     assert (found.controls, found.thrusters) == ((), ())
     assert 'path = "../torpedo.stl"' in file.read_text()
+    assert is_untouched(file.read_text())
+    assert not is_untouched(file.read_text().replace('"FLU"', '"FRD"'))
 
 
 def test_completed_its_pairs_of_fins_are_rudder_and_stern_planes(tmp_path: Path) -> None:

@@ -189,9 +189,14 @@ def test_a_bare_mesh_brings_a_body_file_to_complete_which_is_never_overwritten(c
     assert b'# name = "dr"' in first
     coeflab(*bare)
     assert file.read_bytes() == first
+    coeflab(*(("FRD" if word == "FLU" else word) for word in bare))  # axes were wrong: an untouched one follows
+    assert 'axes = "FRD"' in file.read_text()
     file.write_text(file.read_text() + "# mine\n")
     done = coeflab(*bare)
-    assert "made/body.toml was edited and is kept; coeflab vehicle made takes it" in flat(done.stdout)
+    assert (
+        "made/body.toml was edited and is kept, with the unit and axes that it states; coeflab vehicle made takes it"
+        in flat(done.stdout)
+    )
     assert file.read_text().endswith("# mine\n")
     own = coeflab("vehicle", "made", *QUICK, "--mass", "78")
     assert own.returncode == 0, own.stderr

@@ -38,7 +38,7 @@ from coeflab.report.sections.estimates import (
     replaced_section,
     shares_figure,
 )
-from coeflab.study.checks import buoyancy, export_loss, ideal_fluid, longest_axis
+from coeflab.study.checks import buoyancy, export_loss, longest_axis
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
@@ -419,21 +419,6 @@ def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
         InputError, match=r"a centre of gravity 1\.6\d* m from .*; expected at most half the length of the body, 1\.5 m"
     ):
         weighed(bare, Stated(390.0, np.array([1.6, 0.0, 0.02])), 998.2)
-
-
-def test_a_coupling_next_to_zero_is_no_second_added_mass(steered: Study) -> None:
-    """Two methods give the moment of a nearly symmetrical hull with signs of their own; beside its diagonal both are none."""
-    (file,) = steered.parameter_files.values()
-    size = abs(file.added_mass.matrix[1, 1] * file.added_mass.matrix[5, 5]) ** 0.5
-    primed = file.scaling.unit("Xrr", file.conditions.density)
-    for share, found in ((0.02, Severity.PASS), (0.2, Severity.WARN)):
-        own = Coefficient("Xrr'", 1e-7, 1e-8, Status.ESTIMATE, potential=-share * size / primed)
-        other = file.model_copy(update={"coefficients": (own,)})
-        shape = replace(
-            steered.shape, estimates=replace(steered.shape.estimates, shares={"Xrr": {"hull, ideal fluid": 1e-7}})
-        )
-        (check,) = ideal_fluid.check(replace(steered, shape=shape, parameter_files={"toy": other}))
-        assert check.severity is found
 
 
 def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

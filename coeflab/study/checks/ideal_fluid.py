@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from coeflab.core.table import Check, Severity
 from coeflab.core.wording import listed
 from coeflab.estimates import IDEAL, every_way
@@ -17,16 +15,13 @@ summary = "estimates of the ideal fluid against the potential part that the adde
 citations = ("lamb1932", "fossen2011")
 
 ROUNDING, WHOLE = 1e-6, 1e-6
-SHARE = 0.10  # U95 of the estimated ideal fluid of a hull, over its value
-COUPLING = {"Xrr": (1, 5), "Xqq": (2, 4)}  # products that are an entry off the diagonal of the added mass
 
 
 def check(study: Study) -> Sequence[Check]:
     """Value and potential part of every estimate that is ideal fluid alone.
 
     A body of bluff parts takes both from one matrix. Of a hull with fins they are two estimates, by sections and by the added
-    mass of the whole, and agree within U95. Entries off the diagonal pass through zero, where a share of their value says
-    nothing: there the share is one of the root of both diagonal entries.
+    mass of the whole, and agree within U95.
     """
     if study.shape is None:
         return []
@@ -46,8 +41,7 @@ def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one
         if abs(ideal - c.value) > WHOLE * abs(c.value):
             continue
         found.append(c.symbol)
-        within = ROUNDING * abs(c.potential) if one else max(c.u95 or 0.0, _next_to_zero(parameters, d.text))
-        if abs(c.value - c.potential) > within:
+        if abs(c.value - c.potential) > (ROUNDING * abs(c.potential) if one else c.u95 or 0.0):
             apart.append(f"{c.symbol} = {c.value:.4g}, potential {c.potential:.4g}")
     if not found:
         return []
@@ -60,13 +54,3 @@ def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one
             "value = potential" if one else "value = potential within U95", comment if apart else "",
         )
     ]  # fmt: skip
-
-
-def _next_to_zero(parameters: ParameterFile, symbol: str) -> float:
-    """What the estimates' share of the ideal fluid comes to of the two diagonal entries of a coupling, primed; 0 for other products."""
-    if symbol not in COUPLING or parameters.added_mass is None:
-        return 0.0
-    i, j = COUPLING[symbol]
-    matrix = parameters.added_mass.matrix
-    size = float(np.sqrt(abs(matrix[i, i] * matrix[j, j])))
-    return SHARE * size / parameters.scaling.unit(symbol, parameters.conditions.density)
