@@ -64,6 +64,8 @@ def test_completed_its_pairs_of_fins_are_rudder_and_stern_planes(tmp_path: Path)
     assert found.outline is not None
     turning = {f.name: f for f in found.outline.foils if f.control}
     assert set(turning) == {"foil_upper", "foil_lower", "foil_starboard", "foil_port"}
+    upper = turning["foil_upper"]  # half of the root chord lies a quarter of it behind the quarter chord
+    assert turned["dr"].hinge == pytest.approx([upper.root[0] - 0.25 * upper.root_chord, 0.0, 0.0], abs=1e-3)
     # Positive: the trailing edge of a rudder to port, of a plane down; sign counts from root to tip, up and to starboard.
     assert turning["foil_upper"].sign == -turning["foil_lower"].sign == -1.0
     assert turning["foil_starboard"].sign == -turning["foil_port"].sign == 1.0
