@@ -278,7 +278,6 @@ def on_predictions(study: Study) -> tuple[str, ...]:
 def _without_verdict(found: Sequence[Validation]) -> str:
     """Coefficients that are computed and measured but not judged, a clause a reason; campaigns where it is not one of all."""
     pairs = [(primed(v.symbol), v.simulation) for v in found]
-    symbols = list(dict.fromkeys(s for s, _ in pairs))
     by: dict[str, list[tuple[str, str]]] = {}
     for v, pair in zip(found, pairs, strict=True):
         for why in v.reasons:
@@ -286,14 +285,10 @@ def _without_verdict(found: Sequence[Validation]) -> str:
     each = []
     for why, those in by.items():
         mine = list(dict.fromkeys(s for s, _ in those))
-        if set(those) == set(pairs):
-            each.append(why)
-        elif set(those) == {pair for pair in pairs if pair[0] in mine}:
-            each.append(f"for {listed(mine)}, {why}")
-        else:
-            each.append(f"for {listed([f'{s} of {campaign}' for s, campaign in those])}, {why}")
-    verb, get = ("was", "gets") if len(symbols) == 1 else ("were", "get")
-    return in_sentences(f"{listed(symbols)} {verb} also computed and measured, but {get} no verdict: ", each)
+        of_all = set(those) == {pair for pair in pairs if pair[0] in mine}
+        names = mine if of_all else [f"{s} of {campaign}" for s, campaign in those]
+        each.append(f"for {listed(names)}, {why}")
+    return in_sentences("Computed and measured, but no verdict: ", each)
 
 
 KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")
@@ -309,7 +304,8 @@ def headline_of_study(study: Study) -> tuple[str, ...]:
         return ()
     good, count = (sum(map(f, (found for _, found in kinds))) for f in (sum, len))
     each = ", ".join(f"{sum(found)} of {len(found)} {name}" for name, found in kinds)
-    return (f"{good} of the {count} compared numbers lie within their tolerance: {each}.", *on_predictions(study))
+    lie = f"All {count} compared numbers lie" if good == count > 1 else f"{good} of the {count} compared numbers lie"
+    return (f"{lie} within their tolerance: {each}.", *on_predictions(study))
 
 
 def headline(numbers: Held) -> tuple[str, ...]:

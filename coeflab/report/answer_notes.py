@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from coeflab.core.axes import point_in_words
 from coeflab.core.types import brief
-from coeflab.core.wording import listed
+from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.glide_polar import munk_in_words
 from coeflab.fits.uncertainty.budget import RIG
 from coeflab.law.coefficient import CoefficientSet
@@ -17,6 +17,7 @@ from coeflab.report.document import AnswerRow
 from coeflab.report.tables.results import lost_by_move
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
+from coeflab.study.towed import towed
 from coeflab.study.validation import by_measured_number, validations
 from coeflab.vehicle.reference import Reference, Relation
 
@@ -162,7 +163,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report states {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"uncertainties that the test report states: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -176,15 +177,32 @@ def _independent(study: Study) -> str:
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
     shares: dict[str, list[str]] = {}
-    for v in (v for v in found if v.weak and v.share not in shares.get(v.symbol, ())):
-        shares.setdefault(v.symbol, []).append(v.share)
-    weak = [f"{primed(s)} (U_V {' and '.join(each)} of {primed(s)})" for s, each in shares.items()]
+    for v in (v for v in found if v.weak):
+        shares.setdefault(primed(v.symbol), []).append(v.share)
+    weak = [f"{s} (U_V is {_span(each)} of its value)" for s, each in shares.items()]
+    uncounted = [
+        primed(r.symbol)
+        for tow in towed(study)
+        for r in tow.rows
+        if r.verdict is None and r.validation is not None and r.validation.beyond
+    ]
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
+    said += (
+        in_sentences(" Not counted, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)
+        if uncounted
+        else ""
+    )
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
         f"Independent evidence: CFD predicts {inside} of {len(numbers)} measured coefficients ({bodies}) within the validation "
         f"uncertainty U_V.{said}"
     )
+
+
+def _span(shares: Sequence[str]) -> str:
+    """The smallest and the largest of several per cents."""
+    low, *_, high = sorted((*shares, *shares), key=lambda s: float(s.removesuffix(" %")))
+    return high if low == high else f"{low.removesuffix(' %')} to {high}"
 
 
 def _readings(first: Scaling, other: Scaling) -> str:

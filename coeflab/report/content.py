@@ -60,8 +60,8 @@ Part = TypeVar("Part")
 MOST = 4
 NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
-    ("at_rest", "law"): "the force law keeps the fitted Z0 and M0",
-    ("at_rest", "apart"): "the force law leaves out the fitted Z0 and M0",
+    ("at_rest", "law"): "the force law contains the fitted Z0 and M0",
+    ("at_rest", "apart"): "the force law does not contain the fitted Z0 and M0",
 }
 _JOBS: list[Callable[[], object]] = []
 
@@ -179,9 +179,9 @@ def first_lines(text: str) -> str:
 
 
 def _setting(name: str, value: object) -> str:
-    """A setting of a fit, behind what it means where its name does not say that."""
+    """A setting of a fit, and what it means where its name does not say that."""
     meaning = SETTINGS.get((name, value), "")
-    return f"{meaning} ({name} = {value})" if meaning else f"{name} = {value}"
+    return f"{name} = {value} ({meaning})" if meaning else f"{name} = {value}"
 
 
 def _found(anchor: str, known: set[str]) -> str:
@@ -325,8 +325,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     text: tuple[str, ...] = (
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
-        "law misses a point by more, its range ends before that point. If at least half of the tested range remains, this is a warning. "
-        "If less remains, the study fails. A law of X, or one that has only slopes, never fails the study.",
+        "law misses a point by more, its range ends before that point. A shortened range is a warning. "
+        "If less than half of the tested range remains, the study fails; not for X, nor for a law that has only slopes.",
         format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
@@ -397,7 +397,5 @@ def _settings(fit: FitResult) -> str:
     """What a fit is, and its settings; estimates are no plugin of their own."""
     summary = FITS.load(fit.fit).summary if fit.fit in FITS.names() else ""
     each = [_setting(k, v) for k, v in sorted(fit.settings.items())]
-    whole = f"Settings of the fit {fit.fit}{f' ({summary})' * bool(summary)}: {', '.join(each)}."
-    if len(whole) <= THREE_LINES:
-        return whole
-    return f"{f'The fit {fit.fit}: {summary}. ' * bool(summary)}{in_sentences(f'Settings of {fit.fit}: ', each, join=', '.join)}"
+    settings = in_sentences(f"Setting{'s' * (len(each) > 1)} of {fit.fit}: ", each, join=", ".join)
+    return f"{f'Fit {fit.fit}: {summary}. ' * bool(summary)}{settings}"

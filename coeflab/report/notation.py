@@ -76,6 +76,13 @@ class Raised:
 
 
 @dataclass(frozen=True, slots=True)
+class Command:
+    """A command to type, without the backticks that it was written between."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Kept:
     """Texts of users that are set as they stand wherever a sentence holds them; by their beginnings, as titles are cut."""
 
@@ -83,7 +90,7 @@ class Kept:
     beginnings: re.Pattern[str]
 
 
-Run = str | Symbol | Raised
+Run = str | Symbol | Raised | Command
 Given = ParamSpec("Given")
 Made = TypeVar("Made")
 BEGINNING, SHORT = 20, 4
@@ -116,6 +123,7 @@ _END = rf"(?!(?![{HIGH}])[\w$\\'])(?!\.\w)"
 _TOKENS = re.compile(
     "|".join(
         (
+            r"(?P<command>`coeflab [^`]+`)",
             rf"(?P<primed>{_EDGE}-?[XYZKMN](?:0|{_FACTORS}{{1,5}})'{_END})",
             rf"(?P<dotted>{_EDGE}-?[XYZKMN](?=[uvwpqrdot|bs]*(?:dot|\|)){_FACTORS}{{1,5}}{_END})",
             rf"(?P<prime>{_EDGE}(?:[XYZKMNuvwpqrmk]|[xyz]G|d[rsb])'{_END})",
@@ -305,6 +313,8 @@ def _joined(pieces: list[Run]) -> tuple[Run, ...]:
 
 def _pieces(found: re.Match[str]) -> tuple[Run, ...]:
     kind, text = str(found.lastgroup), found[0]
+    if kind == "command":
+        return (Command(text.strip("`")),)
     if kind in ("primed", "dotted", "model", "known") and text.startswith("-"):
         return (MINUS, _symbol(kind, text[1:]))
     if kind in ("primed", "dotted", "prime", "model", "bare", "known", "greek", "letter"):
@@ -481,6 +491,8 @@ def _element(piece: Run) -> str:
         return escape(visible(piece))
     if isinstance(piece, Raised):
         return f"<sup><b>^</b>{piece.text}</sup>"
+    if isinstance(piece, Command):
+        return f"<code>{escape(visible(piece.text))}</code>"
     under = piece.index + "".join(_below(f) for f in piece.factors)
     link = "<b>_</b>" if "_" in piece.text else ""
     out = f"<i>{piece.letter}</i>"
@@ -501,6 +513,8 @@ def _letters(piece: Run) -> str:
         return piece
     if isinstance(piece, Raised):
         return piece.text.translate(_RAISED) if set(piece.text) <= set(LEVEL) else f"^{piece.text}"
+    if isinstance(piece, Command):
+        return piece.text
     link = "_" if "_" in piece.text and piece.index and piece.letter.isascii() else ""
     return piece.letter + link + piece.index + "".join(_factor(f) for f in piece.factors) + PRIME * piece.primed
 

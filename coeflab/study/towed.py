@@ -139,8 +139,10 @@ def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
     if not copies:
         return ()
     own, sources = (listed(names) for names in zip(*copies, strict=True))
-    hold, are = ("holds", "It is") if len(copies) == 1 else ("hold", "They are")
-    return (f"{own} {hold} no runs. {are} {sources} rotated by 90 deg about x.",)
+    verb = "is" if len(copies) == 1 else "are"
+    return (
+        f"{own} {verb} {sources} rotated by 90 deg about x; no runs were made for {'it' if len(copies) == 1 else 'them'}.",
+    )
 
 
 def _row(

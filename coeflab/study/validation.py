@@ -3,13 +3,14 @@
 ASME V&V 20-2009, section 1-5; ITTC 7.5-03-01-01: E = S - D, U_V^2 = U_D^2 + U_SN^2 + U_input^2. When |E| lies within
 U_V, a modelling error cannot be told from the uncertainties; otherwise E is about the modelling error, known to U_V.
 
-There is no verdict where U_V lacks the numerical error of the grid, nor on a force of friction at another Reynolds number.
+There is no verdict where U_V lacks the numerical error of the grid, nor on a force of friction at another Reynolds number, nor
+on what the symmetry of the body makes zero: its computation predicts nothing, and what was measured is a bias of the test.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import derivative
 from coeflab.study.study import Study
+from coeflab.study.symmetry import zeros
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
 
@@ -120,6 +122,8 @@ class Validation:
         What U_V does not hold of the computation and of the experiment.
     reynolds : tuple of 2 floats or None
         Reynolds numbers of computation and experiment on one length; None where a campaign does not tell.
+    zero : bool
+        Whether the body's symmetry makes the coefficient zero, and the computation finds it zero.
     """
 
     symbol: str
@@ -135,6 +139,7 @@ class Validation:
     lacking: tuple[str, ...]
     lacking_measured: tuple[str, ...]
     reynolds: tuple[float | None, float | None] = (None, None)
+    zero: bool = False
 
     @property
     def error(self) -> float:
@@ -159,6 +164,7 @@ class Validation:
     def why_none(self) -> str:
         """Why there is no verdict; empty where there is one."""
         reasons = (
+            "zero by symmetry" if self.zero else "",
             "the test has no U95" if self.u_measured is None else "",
             without_grid(self.lacking),
             self._friction(),
@@ -176,6 +182,7 @@ class Validation:
             "divergent": "the grid study diverged",
         }.get(state, f"the grid study gives no error ({state})")
         clauses = (
+            "symmetry makes it zero, and the test has a bias" if self.zero else "",
             "the test has no U95" if self.u_measured is None else "",
             grid,
             self._friction("the two Reynolds numbers"),
@@ -238,7 +245,9 @@ def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]
                 continue
             length = sets[s.campaign].scaling.length
             reynolds = (reynolds_of(study, s.campaign, length), reynolds_of(study, d.campaign, length))
-            out.append(validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling), reynolds))
+            one = validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling), reynolds)
+            own = next(c for c in sets[s.campaign].coefficients if c.symbol == s.symbol.removesuffix("'"))
+            out.append(replace(one, zero=bool(zeros(study, s.campaign, (own,)))))
     return tuple(out)
 
 

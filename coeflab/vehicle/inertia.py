@@ -211,14 +211,14 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
         out[i, j] = out[j, i] = (value + other) / 2.0
         if i < j and other != value:
             unit = "kg m^2" if i > 2 else "kg m" if j > 2 else "kg"
-            said.append(
-                f"the added-mass matrix must be symmetric, but {primed(name)} and {primed(mirror)} of the file give {value:.4g} and "
-                f"{other:.4g} {unit}; their mean is used"
-            )
             across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
-            if (size := float(np.sqrt(abs(np.prod(list(across)))))) > 0.0:
-                apart = f"{100.0 * abs(value - other) / size:.2g} % of the geometric mean of their diagonal entries"
-                said[-1] += f". {primed(name)} and {primed(mirror)} differ by {apart}"
+            size = float(np.sqrt(abs(np.prod(list(across)))))
+            first, second = (primed(f"{COMPONENTS[k]}{MOTIONS[k]}dot") for k in (i, j))
+            apart = f", {100.0 * abs(value - other) / size:.2g} % of sqrt({first} {second}) apart" if size > 0.0 else ""
+            said.append(
+                f"{primed(name)} and {primed(mirror)} must be equal, but are {value:.4g} and {other:.4g} {unit} in the file{apart}; "
+                "their mean is used"
+            )
     return out, tuple(said)
 
 

@@ -25,7 +25,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 
-X_APART = "The valid range of exports and motions comes from the other components, not from X."
+X_APART = "The law of X ends before these points. X does not limit exports and motions; the other components do."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
@@ -379,7 +379,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
                 f"inside it {100.0 * f.worst / largest:.2g} % at most (allowed {allowed:.2g} %)"
             )
         if taken := _taken_off(parameters, f.component, f.table):
-            said += f". An offset of the set-up is subtracted, up to {100.0 * taken / largest:.2g} %: the part of X that changes its sign with the drift"
+            said += f". An error of the set-up is subtracted, up to {100.0 * taken / largest:.2g} %: the part of X that is odd in the drift"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
@@ -392,7 +392,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         elif f.beyond:
             severity = Severity.WARN
             comment = (
-                X_APART if f.component == "X" else "Exports and motions use the smaller range, without these points."
+                X_APART if f.component == "X" else "The law ends before these points, and so do exports and motions."
             )
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)

@@ -11,9 +11,10 @@ from coeflab.formats.export import Export
 from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
-from coeflab.report.sections.coefficients import form_not_assessed, is_zero
+from coeflab.report.sections.coefficients import form_not_assessed
 from coeflab.report.tables import results
 from coeflab.report.tables.results import works
+from coeflab.study.symmetry import is_zero
 from tests.motion.vehicles import made as vehicle_file
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
@@ -253,6 +254,11 @@ def test_campaigns_stand_with_body_and_source_where_there_are_several():
     assert [(*row[:3], row[-1]) for row in found.rows] == [
         ("tow", "body of tow", first.source.kind, "-"), ("other", "another hull", "cfd", "-"),
     ]  # fmt: skip
+    turned = replace(
+        first, by_symmetry=first.name, motion={**first.motion, "w": first.motion["v"], "v": 0.0 * first.motion["v"]}
+    )
+    (row, _) = results.campaigns(replace(study, tables=(first, turned, other))).rows
+    assert (first.varies, row[3]) == (("v",), "v' (by symmetry w')")
     assert (
         document(replace(study, tables=(first, other)), full=False).sections[1].tables[0].title
         == "What was tested and computed"

@@ -18,7 +18,7 @@ from coeflab.report.document import AnswerRow, Document, Section
 from coeflab.report.formats import REPORTERS, Renderer
 from coeflab.report.formats.html import Ends, bar_of, published, row_of
 from coeflab.report.sections.body import hull_figure, hull_scene
-from coeflab.report.sections.coefficients import zeros
+from coeflab.study.symmetry import zeros
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 BODY = read_body(shipped("geometry") / "suboff_bare_hull" / "body.toml")

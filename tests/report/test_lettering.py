@@ -30,6 +30,7 @@ def said(markup: str) -> str:
         ("Ydr'", "<i>Y</i><sub><i>δ</i><sub>r</sub></sub><u><b>'</b></u>"),
         ("G_h = -1.56e-05", "<i>G</i><sub><b>_</b>h</sub> = −1.56\u202f×\u202f10<sup><b>^</b>−5</sup>"),
         ("U95 of 3 deg", "<i>U</i><sub>95</sub> of 3°"),
+        ("use `coeflab fit F --to a&Yv`", "use <code>coeflab fit F --to a&amp;Yv</code>"),
         ("a < b & 'c'", "a &lt; b &amp; &#x27;c&#x27;"),
     ],
 )

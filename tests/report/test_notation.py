@@ -55,6 +55,7 @@ def test_symbols_and_numbers_are_found(text, pieces):
         "Nu Kp Nr 5",
         "C_D_alphabet, my_long_name, x_boat",
         "https://example.org/x?y=-",
+        "`my_x` and ``coeflab``",
     ],
 )
 def test_what_is_no_symbol_stays_text(text):

@@ -98,6 +98,9 @@ def test_an_index_over_an_uncertain_denominator_has_limits_by_drawing():
     value = float(by_half[0.3][2])
     assert low < value < high
     assert value - low > 1.1 * (high - value)
+    (sentence,) = in_words(with_files(with_u95(STABLE, 0.3)))
+    assert f"; Monte Carlo {low:g} to {high:g})" in sentence
+    assert "Monte Carlo" not in in_words(with_files(with_u95(STABLE, 0.05)))[0]
 
 
 def test_derivatives_of_the_literature_are_named_beside_measured_ones():

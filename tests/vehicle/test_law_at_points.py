@@ -171,7 +171,7 @@ def test_odd_x_of_the_set_up_is_taken_off_the_points_and_said() -> None:
     assert at.share < 1e-9
     share = 100.0 * 7e-4 * V.max() / float(np.abs(table.primed_force("X", 2.0)).max())
     assert (
-        f"An offset of the set-up is subtracted, up to {share:.2g} %: the part of X that changes its sign with the drift"
+        f"An error of the set-up is subtracted, up to {share:.2g} %: the part of X that is odd in the drift"
         in found.statistic
     )
     assert found.severity is Severity.PASS

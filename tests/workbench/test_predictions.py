@@ -16,7 +16,7 @@ from coeflab.report.tables.uncertainty import predictions
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.study.validation import Validation, validation, validations
+from coeflab.study.validation import Validation, by_measured_number, validation, validations
 from coeflab.workbench import run
 from tests.workbench.test_own_tows import HEAD, tow_of_the_bare_hull
 
@@ -67,6 +67,15 @@ def test_drag_at_another_reynolds_number_has_no_verdict(
         assert "friction differs by 9 %" in v.why_none or "friction differs by 8 %" in v.why_none
 
 
+def test_what_symmetry_makes_zero_has_no_verdict() -> None:
+    """A test that finds K on a body of revolution has a bias: no computation predicts it, and none misses it."""
+    v = replace(compared(0.0, 0.002, symbol="Kv"), zero=True)
+    assert v.beyond
+    assert (v.within, v.why_none) == (None, "zero by symmetry")
+    assert v.reasons == ("symmetry makes it zero, and the test has a bias",)
+    assert not by_measured_number((v,))
+
+
 def test_a_weak_prediction_lies_within_a_wide_u_v() -> None:
     wide, narrow, missed = compared(-0.029, 0.008), compared(-0.029, 0.006), compared(-0.040, 0.008)
     assert (wide.weak, narrow.weak, missed.weak) == (True, False, False)
@@ -93,7 +102,7 @@ def test_a_measured_number_counts_once(
             "CFD predicts 1 measured coefficient in 2 comparisons. A coefficient that two campaigns compute counts once"
             in said
         )
-        assert "Nv' was also computed and measured, but gets no verdict: there is no grid study." in said
+        assert "Computed and measured, but no verdict: for Nv', there is no grid study." in said
         assert f"CFD predicts {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 

@@ -106,7 +106,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - rows * ROW)
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
-    caption = f"{name} is the value at |{sweep.variable}'| = 0. A linear force puts the points on a horizontal line."
+    caption = f"Plotted: {quotient}. {name} is its value at |{sweep.variable}'| = 0. A linear force puts the points on a horizontal line."
     wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
     caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
@@ -169,7 +169,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         return None
     name = f"value / {compared}" if compared else "value ± U95, over the value"
     title = (
-        f"Every coefficient, divided by that of {compared}"
+        f"Coefficients, divided by those of {compared}"
         if compared
         else "U95 of every coefficient, divided by its value"
     )

@@ -17,7 +17,7 @@ from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
-from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
+from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.report.printable import BREAK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
@@ -304,6 +304,8 @@ def _piece(piece: Run) -> Any:
         return _folding(glyphs(piece))
     if isinstance(piece, Raised):
         return {"up": piece.text}
+    if isinstance(piece, Command):
+        return {"command": True, "text": piece.text}
     return {
         "letter": piece.letter,
         "text": piece.text,

@@ -31,7 +31,7 @@ from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
-from coeflab.report.sections.coefficients import in_one_line, zeros
+from coeflab.report.sections.coefficients import in_one_line
 from coeflab.report.sections.oscillations import oscillation_sections
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
@@ -39,6 +39,7 @@ from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
+from coeflab.study.symmetry import zeros
 from coeflab.study.towed import Towed, towed
 from coeflab.study.validation import validations
 from coeflab.tables.force_table import STUDIES, ForceTable
@@ -325,7 +326,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Own tows are CFD runs in coeflab's virtual towing tank, not tank tests. Each body has one campaign. Grid: the part of U95 that the grid study gives, "
+        "Own tows are CFD runs in coeflab's virtual towing tank, not tank tests. Grid: the part of U95 that the grid study gives, "
         "in % of the value.",
         "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
         "needs a steady test of the same body.",

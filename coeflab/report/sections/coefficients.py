@@ -8,26 +8,19 @@ from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.symbols import primed, read_factors
+from coeflab.law.symbols import primed
 from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.results import without
 from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.study.study import Study
-from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
+from coeflab.study.symmetry import zeros
 
-# What changes sign in each symmetry: in a mirror the motions across and the turns along it, in half a turn about x both across.
-FLIPS = {
-    PORT_STARBOARD: frozenset(("Y", "K", "N", "v", "p", "r", "dr")),
-    UP_DOWN: frozenset(("Z", "K", "M", "w", "p", "q", "ds", "db")),
-    FOURFOLD: frozenset(("Y", "Z", "M", "N", "v", "w", "q", "r", "dr", "ds", "db")),
-}
-OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "A slope averages over all forms and ranges. A term of higher degree depends on one chosen form; the notes below the tables name these terms.",
+    "A slope depends on no single form. A term of higher degree does: it comes from the one form that its force law has. The notes below the tables name these terms.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
     "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. A term of higher degree is fitted "
@@ -46,43 +39,6 @@ CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point ar
 OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients."
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
-
-
-def symmetries(study: Study, campaign: str, body: str) -> frozenset[str]:
-    """Symmetries that tables of a campaign declare, or the shape of its body has.
-
-    Parameters
-    ----------
-    study : Study
-    campaign, body : str
-    """
-    declared = {name for t in study.tables if t.campaign == campaign for name in t.symmetry}
-    shapes = {p for h in study.hulls.values() if h.body.name == body for p in h.mirror_planes}
-    return frozenset(declared | {OF_SHAPES[p] for p in shapes if p in OF_SHAPES})
-
-
-def is_zero(symbol: str, under: frozenset[str]) -> bool:
-    """Whether a body of these symmetries has zero for a derivative; factors between bars do not change sign.
-
-    Parameters
-    ----------
-    symbol : str
-        Such as ``Kv|v|``, with or without prime.
-    under : frozenset of str
-        Of `coeflab.tables.campaign.SYMMETRIES`.
-    """
-    plain = symbol.removesuffix("'")
-    signed = [name.removesuffix("dot") for name, absolute in read_factors(plain[1:]) or () if not absolute]
-    return any(sum(name in FLIPS[s] for name in (plain[0], *signed)) % 2 == 1 for s in under)
-
-
-def zeros(study: Study, campaign: str, among: Sequence[Coefficient]) -> tuple[Coefficient, ...]:
-    """Those that symmetry makes zero and whose interval holds zero; an asymmetry that was measured is none of them."""
-    under = {body: symmetries(study, campaign, body) for body in {c.body or "" for c in among}}
-    return tuple(
-        c for c in among
-        if c.value is not None and c.u95 is not None and abs(c.value) <= c.u95 and is_zero(c.symbol, under[c.body or ""])
-    )  # fmt: skip
 
 
 def in_one_line(found: Sequence[Coefficient]) -> str:

@@ -226,7 +226,7 @@ AXES_ROWS = (
     "moments of the fluid on the body."
 )
 ANGLES = (
-    "Angles: v' = v/U = sin(beta), positive when the body moves to starboard; w' = w/U = sin(alpha) cos(beta), "
+    "Angles: v' = v/U = sin(beta), positive when the body moves to starboard (ITTC's drift angle has the other sign); w' = w/U = sin(alpha) cos(beta), "
     "positive when it moves down."
 )
 CONTROLS = (

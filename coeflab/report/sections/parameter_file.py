@@ -135,7 +135,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     return [" ".join((*out, *_one_body(study), *_by_others(study)))] if out else []
 
 
-PLACES = 130  # letters of the parameter files that one sentence names beside its verdict
+PLACES = 170  # letters of the parameter files that one sentence names beside its verdict
 SOURCES = {"experiment": "test", "cfd": "CFD"}
 
 
@@ -187,7 +187,10 @@ def from_literature(parameters: ParameterFile, index: str) -> list[str]:
 
 
 def _value(d: Derived) -> str:
-    return f"{d.name} = {d.value:.3g}" if d.result is None else f"{d.name} = {plus_minus(d.value, d.result.linear)}"
+    if d.result is None:
+        return f"{d.name} = {d.value:.3g}"
+    skewed = f"; Monte Carlo {number(d.result.low, 3)} to {number(d.result.high, 3)}" if d.limits else ""
+    return f"{d.name} = {plus_minus(d.value, d.result.linear)}{skewed}"
 
 
 def stability_sections(study: Study) -> tuple[Section, ...]:
@@ -265,7 +268,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     told = (
-        "published: the index that the source prints. Ours is not judged against it: the verdict on recomputed indices uses the source's derivatives.",
+        "published: the index that the source prints. Ours gets no pass or fail against it, because ours uses our own derivatives.",
         *notes,
     )
     return Table(

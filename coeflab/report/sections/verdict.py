@@ -86,11 +86,13 @@ def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
         reasons: dict[tuple[str, ...], list[str]] = {}
         for r in tow.rows:
             if r.verdict is None and r.validation is not None and r.validation.beyond:
-                reasons.setdefault(r.reasons, []).append(primed(r.symbol))
+                of = r.validation
+                apart = f" ({100.0 * of.error / of.measured:+.0f} %)" if of.measured else ""
+                reasons.setdefault(r.reasons, []).append(f"{primed(r.symbol)}{apart}")
         for why, symbols in reasons.items():
             differ, them = ("differs", "it") if len(symbols) == 1 else ("differ", "them")
             out.append(
-                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} by more than U_V. We do not count {them}: {listed(why)}."
+                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} from the test by more than U_V. We do not count {them}: {listed(why)}."
             )
     return out
 

@@ -29,8 +29,8 @@ from coeflab.vehicle.second_order import ROUNDING, products_once
 NAMED = 3
 MOST_APART = 1000.0  # per cent of a force; a larger difference is not told from this one
 IN_PERCENT = (
-    "Largest and rms: difference of law and points, in % of the largest force of the component in that table; where: the point with the largest difference. Two offsets of the set-up are subtracted from the points first: a force "
-    "at zero angle and rate that the law does not have, and the part of X that changes its sign with the drift."
+    "Largest and rms: difference of law and points, in % of the largest force of the component in that table; where: the point with the largest difference. Two errors of the set-up are subtracted from the points first: a force "
+    "at zero angle and rate that the law does not contain, and the part of X that is odd in the drift."
 )
 
 

@@ -291,7 +291,7 @@ def side_by_side(study: Study) -> Table:
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
-        digits = "The first page gives the test report's own digits where we have that report."
+        digits = "The first page has the digits of the test report itself."
         return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
     another = "by another method for the same body" if r.body in ours else "for another body"
     return f"{r.name}: {another}, {r.body}. Source: {r.place or r.citation}. {r.note}".strip()
@@ -310,7 +310,7 @@ def campaigns(study: Study) -> Table:
         ]
         kinds = ", ".join(dict.fromkeys(t.source.kind for t in mine))
         bodies = ", ".join(dict.fromkeys(t.body for t in mine))
-        varied = ", ".join(dict.fromkeys(m if m in t.controls else f"{m}'" for t in mine for m in t.varies))
+        varied = _varied(mine)
         speed = np.concatenate([np.atleast_1d(t.speed) for t in mine])
         known = [r for t in mine if (r := t.reynolds(t.scaling.length)) is not None]
         reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
@@ -331,6 +331,20 @@ def campaigns(study: Study) -> Table:
     notes += [f"Parameter files, roots and manoeuvres hold for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
+
+
+def _varied(tables: Sequence[ForceTable]) -> str:
+    """Motions that runs vary, and those that only tables turned by symmetry do."""
+    own, turned = (
+        list(
+            dict.fromkeys(
+                m if m in t.controls else f"{m}'" for t in tables if bool(t.by_symmetry) is copied for m in t.varies
+            )
+        )
+        for copied in (False, True)
+    )
+    more = [m for m in turned if m not in own]
+    return ", ".join(own) + f" (by symmetry {', '.join(more)})" * bool(more)
 
 
 def _span(values: Array) -> str:
