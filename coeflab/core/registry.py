@@ -7,8 +7,9 @@ import importlib
 import inspect
 import logging
 import pkgutil
+import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -103,6 +104,15 @@ class Registry(Generic[Port]):
                 out.append((name, str(why).removesuffix(".")))
         return out
 
+    def _described_by(self, word: str) -> list[str]:
+        """Names of the plugins whose summary has the word: gz for gazebo; one that cannot be imported has none."""
+        found = []
+        for name in self.names():
+            with suppress(ImportError, PluginError):
+                words = re.findall(r"\w+", getattr(self.load(name), "summary", "").casefold())
+                found += [name] * (word.casefold() in words)
+        return found
+
     def load(self, name: str) -> Port:
         """Import one plugin.
 
@@ -113,7 +123,7 @@ class Registry(Generic[Port]):
             another package cannot be imported.
         """
         if name not in self.names():
-            near = difflib.get_close_matches(name, self.names(), n=3)
+            near = difflib.get_close_matches(name, self.names(), n=3) or self._described_by(name)
             hint = f": did you mean {' or '.join(near)}?" if near else "."
             known = ", ".join(self.names()) or "none in this release"
             refused = "".join(f" {reason[0].upper()}{reason[1:]}." for n, reason in self._claims[1] if n == name)

@@ -25,7 +25,9 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Registry[G
     package = tmp_path / "greeters"
     package.mkdir()
     (package / "__init__.py").write_text("")
-    (package / "polite.py").write_text("summary = 's'\ndef greet() -> str:\n    return 'good day'\n")
+    (package / "polite.py").write_text(
+        "summary = 'a concierge, well-mannered'\ndef greet() -> str:\n    return 'good day'\n"
+    )
     (package / "mute.py").write_text("summary = 's'\n")
     (package / "broken.py").write_text("import a_module_that_does_not_exist\n")
     (package / "_helper.py").write_text("")
@@ -47,6 +49,8 @@ def test_unknown_name_suggests_near_ones(room: Registry[Greeter]) -> None:
         room.load("polit")
     with pytest.raises(PluginError, match=r'no greeter is called "zzzz"\. Known: broken'):
         room.load("zzzz")
+    with pytest.raises(PluginError, match=r'no greeter is called "Concierge": did you mean polite\?'):
+        room.load("Concierge")
     with pytest.raises(PluginError):
         room.load("_helper")
 

@@ -268,7 +268,8 @@ def hull_marks(study: Study, body: Body, files: tuple[str, ...]) -> tuple[tuple[
         else:
             marks.append(weight)
         found, missing = _pressures(study, parameters, of_file)
-        marks += found
+        several = f" {files.index(name) + 1}" if len(files) > 1 else ""
+        marks += [replace(m, label=f"{m.label}{several}") for m in found]
         unknown += missing
     return _once(marks), tuple(dict.fromkeys(unknown))
 
