@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from coeflab.bodies.readers import read_body
@@ -123,6 +124,13 @@ def test_the_policy_names_the_script_and_nothing_else():
     script = re.search(r'<script type="module">(.*?)</script>', text, flags=re.DOTALL)[1]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     assert f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{digest}'" in text
+
+
+def test_a_stated_centre_of_gravity_is_marked_in_the_outlines():
+    plain, marked = hull_figure(BODY, "b").svg, hull_figure(BODY, "b", gravity=np.array([0.1, 0.0, 0.02])).svg
+    assert "centre of gravity" not in plain
+    assert "centre of gravity" in marked
+    assert marked.count("<use") == plain.count("<use") + 3, "one a view and one in the legend"
 
 
 def with_a_view() -> str:

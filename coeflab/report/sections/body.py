@@ -47,7 +47,7 @@ WIDTH, TALLEST, GAP, CAPTION = 340.0, 90.0, 12.0, 16.0
 
 
 @as_users_wrote
-def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
+def hull_figure(body: Body, anchor: str, width: float = WIDTH, gravity: Array | None = None) -> Figure:
     """Side and top views at one scale.
 
     Parameters
@@ -58,6 +58,8 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
         Unique in the document.
     width : float, optional
         Points.
+    gravity : (3,) array, optional
+        The centre of gravity, FRD, from the body's datum; marked where it is given.
     """
     shape = body.require_shape()
     if isinstance(shape, Parts):  # a plate without thickness encloses nothing that a mesh could show
@@ -66,8 +68,14 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
     size = np.ptp(surface[0], axis=0)
     scale = float(min((width - 2.0 * MARGIN) / size[0], TALLEST / max(size[1], size[2])))
     rows = [CAPTION + scale * size[2], CAPTION + scale * size[1]]
-    height = sum(rows) + GAP + 2.0 * MARGIN + CAPTION
-    marks = {"centre of buoyancy": (shape.centre_of_volume, "o"), "reference point": (body.reference_point, "+")}
+    marks = {
+        "centre of buoyancy": (np.asarray(shape.centre_of_volume), "o"),
+        "reference point": (body.reference_point, "+"),
+    }
+    if gravity is not None:
+        marks["centre of gravity"] = (gravity, "x")
+    lines = -(-len(marks) // 2)
+    height = sum(rows) + GAP + 2.0 * MARGIN + CAPTION * lines
     title = f"{body.name}: outline"
     said = f"Outlines of {body.name} from starboard and from above, {size[0]:.3g} by {size[1]:.3g} by {size[2]:.3g} m."
     with settings():
@@ -81,11 +89,9 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH) -> Figure:
             _view(axes, view, surface, scale, width, top, marks)
             top -= row + GAP
         for k, (name, (_, marker)) in enumerate(marks.items()):
-            at = MARGIN + 6.0 + 0.5 * width * k
-            axes.plot(
-                at, MARGIN, marker=marker, markersize=6.0, color=COLOURS["ink"], fillstyle="none", linestyle="none"
-            )
-            axes.text(at + 10.0, MARGIN - 3.0, name, fontsize=8.75)
+            at, low = MARGIN + 6.0 + 0.5 * width * (k % 2), MARGIN + CAPTION * (lines - 1 - k // 2)
+            axes.plot(at, low, marker=marker, markersize=6.0, color=COLOURS["ink"], fillstyle="none", linestyle="none")
+            axes.text(at + 10.0, low - 3.0, name, fontsize=8.75)
         svg = svg_text(figure, anchor, title, said)
     caption = f"Outlines of {body.name} at one scale; the bow points to the right."
     return Figure(anchor, svg, title, caption, said)
@@ -355,11 +361,13 @@ def drawn_body(study: Study, body: Body, files: tuple[str, ...], anchor: str) ->
         Unique in the document.
     """
     shape = body.require_shape()
+    marks, unknown = hull_marks(study, body, files)
     if isinstance(shape, Parts):
         drawn = body_figure(body.name, shape, None, f"{anchor}-parts")
     else:
-        drawn = hull_figure(body, f"{anchor}-outline")
-    return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files), body.pieces))
+        gravity = [m.place for m in marks if m.label == "CG"]
+        drawn = hull_figure(body, f"{anchor}-outline", gravity=gravity[0] if len(gravity) == 1 else None)
+    return replace(drawn, scene=hull_scene(body.name, shape, marks, unknown, body.pieces))
 
 
 def added_mass_sections(study: Study) -> tuple[Section, ...]:

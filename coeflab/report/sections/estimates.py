@@ -307,7 +307,10 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         if first is not None
         else None
     )
-    outline = hull_figure(shape.weighed.body, "answer-body", COLUMN)
+    of, mass = shape.weighed, shape.weighed.configuration.mass
+    is_stated = mass is not None and "centre" not in of.assumed
+    gravity = of.body.reference_point + mass.centre_of_gravity if mass is not None and is_stated else None
+    outline = hull_figure(of.body, "answer-body", COLUMN, gravity)
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
 
