@@ -24,7 +24,7 @@ from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, prime
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.force_law import by_coefficients, force_of_tables, steered_terms
 from coeflab.vehicle.inertia import COMPUTED, MEASURED, WaterInertia, known_mass, stated_accelerations, water_inertia
-from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
+from coeflab.vehicle.law_at_points import SMALL, LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 
@@ -297,9 +297,21 @@ class Loss:
 
     @property
     def worse_than_nothing(self) -> tuple[str, ...]:
-        """Components in which the target is further from the file than no force at all would be, in the root mean square."""
+        """Components in which the target is further from the file than no force at all would be, in the root mean square.
+
+        One that is too small to judge is none of them.
+        """
         least = LOSSLESS * self.largest.max(initial=0.0)
-        return tuple(c for c, r, s in zip(COMPONENTS, self.rms, self.size, strict=True) if r > max(s, least))
+        judged = zip(COMPONENTS, self.rms, self.size, strict=True)
+        return tuple(c for c, r, s in judged if r > max(s, least) and c not in self.too_small)
+
+    @property
+    def too_small(self) -> tuple[str, ...]:
+        """Components that are next to nothing beside their like in the file, and differ in the target."""
+        largest = self.forces.largest
+        of = np.repeat([float(largest[:3].max()), float(largest[3:].max())], 3)
+        each = zip(COMPONENTS, largest, of, self.relative, strict=True)
+        return tuple(c for c, own, like, share in each if own < SMALL * like and share > LOSSLESS)
 
     @property
     def lossless(self) -> bool:

@@ -276,19 +276,21 @@ def on_predictions(study: Study) -> tuple[str, ...]:
 
 
 def _without_verdict(found: Sequence[Validation]) -> str:
-    """Coefficients that are computed and measured but not judged, a clause a reason; campaigns where it is not one of all."""
+    """Coefficients that are computed and measured but not judged, with the reasons of each; campaigns where it is not one of all."""
     pairs = [(primed(v.symbol), v.simulation) for v in found]
-    by: dict[str, list[tuple[str, str]]] = {}
+    by: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for v, pair in zip(found, pairs, strict=True):
-        for why in v.reasons:
-            by.setdefault(why, []).append(pair)
+        by.setdefault(v.reasons, []).append(pair)
     each = []
     for why, those in by.items():
         mine = list(dict.fromkeys(s for s, _ in those))
         of_all = set(those) == {pair for pair in pairs if pair[0] in mine}
         names = mine if of_all else [f"{s} of {campaign}" for s, campaign in those]
-        each.append(f"for {listed(names)}, {why}")
-    return in_sentences("Computed and measured, but no verdict: ", each)
+        each.append(f"{listed(names)} ({'; '.join(why)})")
+    far = [f"{primed(v.symbol)} of {v.simulation}" for v in found if v.beyond]
+    lie = "lies" if len(far) == 1 else "lie"
+    beyond = in_sentences(" Of these, ", far, f" {lie} beyond U_V.", join=listed) if far else ""
+    return in_sentences("Computed and measured, but no verdict: ", each, join=", ".join) + beyond
 
 
 KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")
@@ -304,7 +306,7 @@ def headline_of_study(study: Study) -> tuple[str, ...]:
         return ()
     good, count = (sum(map(f, (found for _, found in kinds))) for f in (sum, len))
     each = ", ".join(f"{sum(found)} of {len(found)} {name}" for name, found in kinds)
-    lie = f"All {count} compared numbers lie" if good == count > 1 else f"{good} of the {count} compared numbers lie"
+    lie = f"All {count} judged numbers lie" if good == count > 1 else f"{good} of the {count} judged numbers lie"
     return (f"{lie} within their tolerance: {each}.", *on_predictions(study))
 
 

@@ -165,7 +165,7 @@ def _tows(study: Study, beside: Beside) -> tuple[Towed, ...]:
 def _published(
     study: Study, reference: Reference, body: str, symbol: str, among: CoefficientSet | None
 ) -> tuple[float | None, str]:
-    """A printed value by our length, as it is read first, and as text; of a quoted column in the digits of the report that it rounds."""
+    """A printed value by our length, as it is read first, and as text; of a quoted column in the digits of the report that it rounds or cuts."""
     if among is None or not _about_ours(reference, among):
         return None, ""
     read = reference.readings(symbol, among.scaling)
@@ -182,10 +182,12 @@ def _published(
         ]
         places = len(printed.printed.partition(".")[2])
         for r in reports:
-            stated = r.printed(symbol)
-            for _, v in r.readings(symbol, among.scaling):
-                if stated is not None and round(v, places) == round(value, places):
-                    return v, in_digits_of(v, stated.printed)
+            stated = r.printed_by_any_method(symbol)
+            if stated is None or stated.value is None:
+                continue
+            v = stated.value * r.scaling.ratio(symbol, among.scaling)
+            if abs(v - value) < 10.0**-places:  # the paper on SUBOFF quotes 0.005251 as 0.0052
+                return v, in_digits_of(v, stated.printed)
     return value, text
 
 
@@ -340,7 +342,7 @@ def _exports(study: Study) -> Chip:
     if not made and not refused:
         return Chip("Simulator files", "none planned", Severity.NOTE)
     loss = sum(not e.lossless for e in study.exports)
-    text = f"{made} made, {f'{loss} incomplete' if loss else 'all complete'}" + (
+    text = f"{made} made, {f'{loss} with losses' if loss else 'all complete'}" + (
         f", {refused} refused" if refused else ""
     )
     return Chip(

@@ -63,9 +63,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         if beside.among:
             about = f"{point_in_words(beside.among.reference_point, beside.among.datum)}"
             by += f"{'; moments are' if by else ' Moments are'} about {about}"
-        count = len({f.campaign for f in study.fits})
-        of = f", {len(sources)} of {count} campaigns" if count > len(sources) else ""
-        out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}{of}.{by}{'.' * bool(by)}")
+        out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}.{by}{'.' * bool(by)}")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     out += lost_by_move(study)
@@ -168,7 +166,8 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
 
 def _independent(study: Study) -> str:
     """How many computed coefficients agree with those measured on the same body; empty where none is compared."""
-    numbers = by_measured_number(validations(study, study.budgets))
+    every = validations(study, study.budgets)
+    numbers, found_without = by_measured_number(every), [v for v in every if v.within is None]
     if not numbers:
         return ""
     found = [v for one in numbers for v in one]
@@ -186,6 +185,7 @@ def _independent(study: Study) -> str:
         for r in tow.rows
         if r.verdict is None and r.validation is not None and r.validation.beyond
     ]
+    uncounted += [primed(v.symbol) for v in found_without if v.beyond]
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
     said += (
         in_sentences(" Not counted, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)
@@ -194,7 +194,7 @@ def _independent(study: Study) -> str:
     )
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
-        f"Independent evidence: CFD predicts {inside} of {len(numbers)} measured coefficients ({bodies}) within the validation "
+        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} measured coefficients within the validation "
         f"uncertainty U_V.{said}"
     )
 
@@ -208,7 +208,7 @@ def _span(shares: Sequence[str]) -> str:
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     force, moment = (f"{100.0 * (other.ratio(symbol, first) - 1.0):+.1f} %" for symbol in ("Yv", "Nr"))
-    return f"{first.length_name} assumed ({other.length_name}: Yv' {force}, Nr' {moment})"
+    return f"{first.length_name} assumed (if {other.length_name}: Yv' {force}, Nr' {moment})"
 
 
 def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:

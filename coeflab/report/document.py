@@ -383,7 +383,7 @@ def reproduction(study: Study) -> Section:
         )
     name = shipped_name(study.plan)
     if name:
-        where = f"The study {name} is shipped with coeflab, its plan and its data. Run this in any folder."
+        where = f"coeflab ships with the plan and the data of the study {name}. Run this in any folder."
         return _section((where, SAME), (command(name),), study.inputs)
     where = (
         f"Run this in the folder of {file.name}; the files that the plan names must be at the paths it states. coeflab run {file.name} writes "

@@ -140,9 +140,7 @@ def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:
         return ()
     own, sources = (listed(names) for names in zip(*copies, strict=True))
     verb = "is" if len(copies) == 1 else "are"
-    return (
-        f"{own} {verb} {sources} rotated by 90 deg about x; no runs were made for {'it' if len(copies) == 1 else 'them'}.",
-    )
+    return (f"{own}, in the vertical plane, {verb} {sources} rotated by 90 deg about x: no runs of their own.",)
 
 
 def _row(

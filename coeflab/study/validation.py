@@ -178,11 +178,11 @@ class Validation:
         state = lacking.removeprefix("grid study ")
         grid = {
             "": "",
-            "no grid study": "there is no grid study",
-            "divergent": "the grid study diverged",
-        }.get(state, f"the grid study gives no error ({state})")
+            "no grid study": "no grid study",
+            "divergent": "grid study diverged",
+        }.get(state, f"no error from the grid study: {state}")
         clauses = (
-            "symmetry makes it zero, and the test has a bias" if self.zero else "",
+            "zero by symmetry, and the test has a bias" if self.zero else "",
             "the test has no U95" if self.u_measured is None else "",
             grid,
             self._friction("the two Reynolds numbers"),
@@ -200,7 +200,7 @@ class Validation:
         if abs(ratio) <= FRICTION:
             return ""
         between = between or f"Re {in_millions(computed)} and {in_millions(measured)}"
-        return f"friction differs by {100.0 * abs(ratio):.0f} % between {between} (ITTC 1957)"
+        return f"friction differs by {100.0 * abs(ratio):.0f} % between {between}, ITTC 1957"
 
     @property
     def within(self) -> bool | None:

@@ -8,8 +8,9 @@ Flegal & Jones 2010), and Geyer's initial monotone sequence (Geyer 1992) without
 The autocorrelation time is the larger of Geyer's and that of a first-order autoregression (Kendall 1954), for a short window
 shows too little of a long correlation. Where fewer than eight batches fit, the history is too short, unless all of the window
 lies within a drift that does not matter; the error is then that of a rectangular distribution over the range of the window
-(JCGM 100, 4.3.7). A solver that is known to be steady has no smaller one, however many batches fit: it ends in cycles, which
-no mean makes smaller (Stern et al. 2001 take half of the range), and one that was interrupted ends in others.
+(JCGM 100, 4.3.7). A solver that is known to be steady ends in a cycle of two values, and one that was interrupted in another
+one. Its error is no smaller than half of the range, the standard deviation of such a cycle, however many batches fit; no mean
+makes it smaller (Stern et al. 2001).
 
 A drift is a slope through the batch means that is significant, at 3 % for all components of a run together, and moves the
 value by more than a share of it.
@@ -80,8 +81,8 @@ class Mean:
     trend, trend_error : float
         Change over the window by a straight line, and its standard error.
     status : Convergence
-    spread : float
-        Standard deviation of a rectangular distribution over the range of the window.
+    half_range : float
+        Half of the range of the window: the standard deviation of a cycle of two values.
     """
 
     value: float
@@ -91,12 +92,12 @@ class Mean:
     trend: float
     trend_error: float
     status: Convergence
-    spread: float = 0.0
+    half_range: float = 0.0
 
     @property
     def steady_error(self) -> float:
         """Of the mean of a steady solver's iterations: no smaller than their range allows."""
-        return max(self.error, self.spread)
+        return max(self.error, self.half_range)
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +232,7 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     if m < LEAST_ROWS or batches < LEAST_BATCHES:
         steady = within <= tolerance and m >= LEAST_ROWS
         status = Convergence.CONVERGED if steady else Convergence.TOO_SHORT
-        return Mean(value, max(by_range, floor), 0.0, time, line, np.nan, status, by_range)
+        return Mean(value, max(by_range, floor), 0.0, time, line, np.nan, status, within / 2.0)
     from scipy.special import stdtrit
 
     size = m // batches
@@ -247,7 +248,7 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     # A mean of a value that still moves is uncertain by the range of the line as well.
     error = float(np.hypot(error, trend / np.sqrt(12.0))) if drifts else error
     status = Convergence.DRIFTING if drifts else Convergence.CONVERGED
-    return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status, by_range)
+    return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status, within / 2.0)
 
 
 def scales(sizes: Mapping[str, float], groups: Mapping[str, str], length: float = 0.0) -> dict[str, float]:

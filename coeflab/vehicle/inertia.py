@@ -213,11 +213,10 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
             unit = "kg m^2" if i > 2 else "kg m" if j > 2 else "kg"
             across = (stated[k, k][1] if (k, k) in stated else float(matrix[k, k]) for k in (i, j))
             size = float(np.sqrt(abs(np.prod(list(across)))))
-            first, second = (primed(f"{COMPONENTS[k]}{MOTIONS[k]}dot") for k in (i, j))
+            first, second = (f"{COMPONENTS[k]}{MOTIONS[k]}dot" for k in (i, j))
             apart = f", {100.0 * abs(value - other) / size:.2g} % of sqrt({first} {second}) apart" if size > 0.0 else ""
             said.append(
-                f"{primed(name)} and {primed(mirror)} must be equal, but are {value:.4g} and {other:.4g} {unit} in the file{apart}; "
-                "their mean is used"
+                f"{name} and {mirror} must be equal, but are {-value:.4g} and {-other:.4g} {unit} in the file{apart}; their mean is used"
             )
     return out, tuple(said)
 

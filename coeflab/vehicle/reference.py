@@ -94,6 +94,11 @@ class Reference:
         """The published value of a symbol, if there is one."""
         return next((v for v in self.values if v.symbol == symbol), None)
 
+    def printed_by_any_method(self, symbol: str) -> PublishedValue | None:
+        """The same, or else the value that the source prints by another method, such as an oscillation."""
+        others = (v for kind in self.literature for v in kind.values if v.symbol == symbol)
+        return self.printed(symbol) or next(others, None)
+
     def stated(self, symbol: str) -> float | None:
         """The relative uncertainty that the source states for a symbol, if it does."""
         return self.uncertainties.get(symbol, self.uncertainties.get("default"))

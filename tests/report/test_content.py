@@ -165,7 +165,7 @@ def test_without_published_values_there_is_no_verdict_and_no_comparison():
 
 def test_a_pass_says_what_it_means():
     text = words(small_study(FULL, published=True), "verdict")
-    assert "of the same data pass: every difference lies within U95." in text
+    assert "of their data pass: every difference lies within U95." in text
     assert "Re-analyses use the authors' own measurements" in text
 
 
@@ -198,7 +198,7 @@ def test_failed_checks_reach_the_verdict():
 
 def test_absent_coefficients_are_named_with_advice():
     text = words(small_study(FULL), "verdict")
-    assert "Nr' of tow (no table varies r)." in text
+    assert "Nr' of tow (no run varies r)." in text
     assert "Measure next: runs of body of tow that vary r." in text
 
 

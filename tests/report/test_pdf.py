@@ -221,10 +221,9 @@ def test_an_empty_document_is_a_page():
     assert len(opened(Document("", "", ()))) == 1
 
 
-def test_works_are_numbered():
+def test_works_are_listed():
     text = text_of(opened(Document("T", "", (), works=(("a", "First work, 1990."), ("b", "Second work.")))))
-    assert "[1]Firstwork,1990." in text
-    assert "[2]Secondwork." in text
+    assert "WorksusedFirstwork,1990.Secondwork." in text
 
 
 def test_what_cannot_be_typeset_is_an_error():

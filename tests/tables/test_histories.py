@@ -145,7 +145,7 @@ def test_the_cycles_of_a_steady_solver_are_known_to_their_range_however_long_the
     whole = np.tile([0.234841, 0.234754], 60)
     other = np.tile([0.235142, 0.234552], 60)
     found = [plateau({"Y": y}).means["Y"] for y in (whole, other)]
-    assert [m.steady_error for m in found] == pytest.approx([8.7e-5 / np.sqrt(12.0), 5.9e-4 / np.sqrt(12.0)], rel=1e-6)
+    assert [m.steady_error for m in found] == pytest.approx([8.7e-5 / 2.0, 5.9e-4 / 2.0], rel=1e-6)
     assert abs(found[0].value - found[1].value) <= np.hypot(found[0].steady_error, found[1].steady_error)
     assert abs(found[0].value - found[1].value) > 3.0 * np.hypot(found[0].error, found[1].error)
 

@@ -38,7 +38,7 @@ def test_measured_entries_stand_and_the_computed_matrix_completes_them() -> None
     (campaign,) = {c.campaign for c in accelerating().coefficients if "dot" in c.symbol}
     assert f"Yvdot', Nvdot', Yrdot', Nrdot', Zqdot' (fit, {campaign})" in found.source
     (said,) = found.warnings
-    wanted = "Yrdot' and Nvdot' must be equal, but are 3.2 and 4.8 kg m in the file, 6.9 % of sqrt(Yvdot' Nrdot') apart; their mean is used"
+    wanted = "Yrdot and Nvdot must be equal, but are -3.2 and -4.8 kg m in the file, 6.9 % of sqrt(Yvdot Nrdot) apart; their mean is used"
     assert said == wanted
     # 2e-4 by L^4 of 4000 kg m a unit, over the root of 1.2e-2 (4000 kg) and 7e-4 (16000 kg m^2)
 

@@ -72,7 +72,7 @@ def test_what_symmetry_makes_zero_has_no_verdict() -> None:
     v = replace(compared(0.0, 0.002, symbol="Kv"), zero=True)
     assert v.beyond
     assert (v.within, v.why_none) == (None, "zero by symmetry")
-    assert v.reasons == ("symmetry makes it zero, and the test has a bias",)
+    assert v.reasons == ("zero by symmetry, and the test has a bias",)
     assert not by_measured_number((v,))
 
 
@@ -102,7 +102,7 @@ def test_a_measured_number_counts_once(
             "CFD predicts 1 measured coefficient in 2 comparisons. A coefficient that two campaigns compute counts once"
             in said
         )
-        assert "Computed and measured, but no verdict: for Nv', there is no grid study." in said
+        assert "Computed and measured, but no verdict: Nv' (no grid study)." in said
         assert f"CFD predicts {good} of 1 measured coefficients" in answer_notes._independent(study)
 
 

@@ -82,7 +82,7 @@ def test_the_first_page_says_how_the_printed_polar_compares(carried_out: Callabl
     assert "both wanted coefficients found" in found.sentence
     assert "18 of 18 printed coefficients inside their fitted U95" in found.sentence
     said = " ".join(found.notes)
-    assert "Ours: coeflab's fits to thauv_case_01_synthetic, 1 of 3 campaigns." in said
+    assert "Ours: coeflab's fits to thauv_case_01_synthetic." in said
     assert "Munk moment (m3 - m1) u w of 236.7 kg that the plan adds, which turns its sign" in said
     models = tuple(m for f in carried_out("thauv_synthetic").fits for m in f.models)
     titles = [t.title for t in qualities(models)]

@@ -446,7 +446,9 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
         if b is None or b.u95 is None or not outside:
             changed.append(c)
         else:
-            changed.append(replace(c, u95=b.u95, parts=replace(c.parts, input=outside)))
+            is_open = c.status is Status.OK and c.value is not None and abs(c.value) <= b.u95
+            status = Status.SIGN_OPEN if is_open else c.status
+            changed.append(replace(c, u95=b.u95, status=status, parts=replace(c.parts, input=outside)))
     wider = replace(among, coefficients=tuple(changed), covariance=covariance(among, tuple(mine.values())))
     return replace(fit, coefficients=wider)
 

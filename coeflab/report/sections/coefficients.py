@@ -20,14 +20,14 @@ from coeflab.study.symmetry import zeros
 TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "A slope depends on no single form. A term of higher degree does: it comes from the one form that its force law has. The notes below the tables name these terms.",
+    "No slope depends on a single shape of curve. Terms fitted with the slopes fixed do: they assume the shape of the force law. The notes below the tables name these terms.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
-    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. A term of higher degree is fitted "
-    "to all runs of its force law, also to runs in which two motions vary. A dash: not applicable or not assessed; not in U95.",
+    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term fitted with the slopes "
+    "fixed, n counts the points at which its own motions are not zero, also of runs in which two motions vary. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
-SLOPE = "Slope: for a term of higher degree, the part that comes from the U95 of the slope in its fit."
+SLOPE = "Slope: for a term fitted with the slopes fixed, the part that comes from their U95."
 OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
 FIXED = (

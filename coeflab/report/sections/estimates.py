@@ -324,7 +324,7 @@ def _exports(study: Study) -> Chip:
     """How many exports were made, and how many refused."""
     made, refused = len(study.exports), len(study.refused)
     loss = sum(not e.lossless for e in study.exports)
-    said = f"{made} made{f', {loss} incomplete' if loss else ''}" if made else "" if refused else "none asked for"
+    said = f"{made} made{f', {loss} with losses' if loss else ''}" if made else "" if refused else "none asked for"
     said = ", ".join(filter(None, (said, f"{refused} refused" if refused else "")))
     return Chip("Exports", said, Severity.WARN if refused else Severity.NOTE, "exports" if made else "")
 

@@ -35,7 +35,6 @@ from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 from coeflab.vehicle.inertia import against_computed
-from coeflab.vehicle.law_at_points import SMALL
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
 
@@ -148,7 +147,7 @@ def _one_body(study: Study) -> list[str]:
             kinds = dict.fromkeys(SOURCES.get(t.source.kind, t.source.kind) for t in study.tables if t.campaign in of)
             by.setdefault(p.body, {})[p.name] = " and ".join(kinds)
     return [
-        f"{listed([f'{name} (from {kind})' for name, kind in files.items()])} describe the same body, {body.replace('_', ' ')}."
+        f"The parameter files {listed([f'{name} ({kind})' for name, kind in files.items()])} describe one body, the {body.replace('_', ' ')}."
         for body, files in by.items()
         if len(files) > 1
     ]
@@ -295,7 +294,7 @@ def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
             rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
     headers = ("parameter file", "index", "computed from", "derivatives from")
     notes = (
-        "m' and xG' come from the table Mass and inertia used; --full prints it. The indices above have four digits, so that they can be "
+        "m' and xG' are from the appendix (--full), Mass and inertia used. The indices above have four digits, so that they can be "
         "recomputed from these numbers.",
     )
     return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))
@@ -336,7 +335,7 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 
 SIMULATED = (
-    "Each manoeuvre is computed from one parameter file of this study. A result that uses motions beyond the data is marked "
+    "Each manoeuvre uses one parameter file of this study. A result that uses motions beyond the data is marked "
     "extrapolated. A result that the data do not determine has no value, and its reason is given.",
 )
 WITHOUT_U95 = (
@@ -358,8 +357,8 @@ def without_u95(study: Study) -> str:
     """Why the quantities of the manoeuvres have no U95, or that there is none to have one."""
     if any(f.value is not None for made in study.manoeuvres for f in made.figures):
         return WITHOUT_U95
-    every = {1: "The manoeuvre", 2: "Neither manoeuvre"}.get(len(study.manoeuvres), "None of the manoeuvres")
-    return f"{every} could {'not ' * (len(study.manoeuvres) == 1)}be computed, so there is no U95."
+    names = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
+    return f"{names[:1].upper()}{names[1:]} could not be computed, so there is no U95."
 
 
 def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
@@ -430,9 +429,7 @@ def added_masses(study: Study) -> tuple[str, ...]:
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
     said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
-        f"Added mass of {name}, for roots, motions and exports: {words[:1].lower()}{words[1:]}."
-        for name, words in said.items()
-        if words
+        f"Added mass of {name}, for roots, motions and exports. {words}." for name, words in said.items() if words
     )
 
 
@@ -456,7 +453,7 @@ KINDS = {
 
 
 ACCELERATIONS = {
-    "measured": "the file's acceleration derivatives, else computed added mass",
+    "measured": "the file's acceleration derivatives; computed where it has none",
     "computed": "computed added mass only",
 }
 
@@ -473,7 +470,7 @@ def summary(study: Study) -> Table:
     kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
         *(
-            ("accepted: the plan accepts the loss, so the file is written.",)
+            ("accepted: the study's plan allows this loss, so the file is written.",)
             if any("accepted" in row[2] for row in rows)
             else ()
         ),
@@ -484,7 +481,7 @@ def summary(study: Study) -> Table:
             if any(row[4] == used for row in rows)
         ),
         *(["files: each with a loss report, .loss.txt, beside it."] if lossy else []),
-        "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. A "
+        "Largest difference in %: export minus parameter file, of any force or acceleration, divided by its largest value. A "
         "component below 1 % of the largest force or moment is too small to judge. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
     )
@@ -507,7 +504,7 @@ def _worst(made: Export) -> str:
     if made.loss is None:
         return ABSENT
     name, worst = made.loss.furthest
-    small = _too_small(made.loss)
+    small = made.loss.too_small
     if name not in small:
         return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
     shares = {c: float(x) for c, x in zip(COMPONENTS, np.nan_to_num(made.loss.relative), strict=True) if c not in small}
@@ -521,17 +518,6 @@ def _worst(made: Export) -> str:
         else loss_tables.percent(shares[name])
     )
     return f"{rest}; {', '.join(small)} too small to judge"
-
-
-def _too_small(loss: Loss) -> list[str]:
-    """Components that are next to nothing beside their like in the file, and differ in the target."""
-    largest = loss.forces.largest
-    of = np.repeat([float(largest[:3].max()), float(largest[3:].max())], 3)
-    return [
-        c
-        for c, own, like, share in zip(COMPONENTS, largest, of, loss.relative, strict=True)
-        if own < SMALL * like and share > LOSSLESS
-    ]
 
 
 def _place(made: Export) -> str:

@@ -33,7 +33,7 @@ def _named(c: Comparison) -> str:
 WHAT_COUNTS = (
     "A prediction compares a coefficient from CFD with the one measured on the same body; its tolerance is the validation uncertainty U_V. "
     "A re-analysis compares our coefficient from the authors' data with theirs; its tolerance is U95. For a recomputed index, we compute "
-    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. The checks of --full list these indices.",
+    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. The appendix (--full) lists these indices.",
 )
 TWO_KINDS = (
     "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
@@ -51,12 +51,12 @@ def _re_analysis(study: Study) -> list[str]:
     failed = [c for c in judged if c.passed is False]
     count = _counted(len(judged), "comparison")
     if failed:
-        start = f"{len(failed)} of {count} with the authors' own evaluation of the same data failed, beyond U95: "
+        start = f"{len(failed)} of {count} with the test authors' evaluation of their data failed, beyond U95: "
         out = [in_sentences(start, [_named(c) for c in failed], join=listed)]
     else:
         every, verb = ("The one", "passes") if len(judged) == 1 else ("All", "pass")
         out = [
-            f"{every} {count} with the authors' own evaluation of the same data {verb}: every difference lies within U95."
+            f"{every} {count} with the test authors' evaluation of their data {verb}: every difference lies within U95."
         ]
     if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
         one = len(wide) == 1
@@ -92,7 +92,7 @@ def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
         for why, symbols in reasons.items():
             differ, them = ("differs", "it") if len(symbols) == 1 else ("differ", "them")
             out.append(
-                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} from the test by more than U_V. We do not count {them}: {listed(why)}."
+                f"{listed(symbols)} of {tow.tow.campaign} {'also ' * also}{differ} from the test by more than U_V. We do not count {them}: {'; '.join(why)}."
             )
     return out
 
@@ -130,7 +130,7 @@ def verdict(study: Study) -> Section:
     if study.failed:
         text.append("The study as a whole fails.")
     elif study.checks or study.comparisons:
-        both = "no comparison with the authors' own evaluation and no check failed"
+        both = "no re-analysis and no check failed"
         text.append(f"The study does not fail: {both if study.comparisons else 'no check failed'}.")
     return Section("verdict", "Verdict", tuple(text))
 
@@ -223,7 +223,7 @@ def _next(study: Study) -> list[str]:
         each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
         among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
         out.append(
-            f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the runs "
+            f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the three runs "
             "that narrow U95 most."
         )
     return out
@@ -232,4 +232,4 @@ def _next(study: Study) -> list[str]:
 def _not_varied(symbols: Sequence[str]) -> str:
     """Motions of these derivatives, which no table of a campaign varies."""
     motions = dict.fromkeys(v for s in symbols for v in derivative(s).factors)
-    return f" (no table varies {' or '.join(motions)})" if motions else ""
+    return f" (no run varies {' or '.join(motions)})" if motions else ""

@@ -115,4 +115,4 @@ def _test(test: str, printed: Sequence[str]) -> str:
     """Where the measured side of a tow comes from, with the printed values beside our fit."""
     if test.endswith(AS_PRINTED):
         return test
-    return f"our fit to the points of {test}" + (f" (printed: {', '.join(printed)})" if printed else "")
+    return f"our fit to the points of {test}" + (f" (published: {', '.join(printed)})" if printed else "")

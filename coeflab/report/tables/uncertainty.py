@@ -17,7 +17,7 @@ from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import WIDE, Validation
+from coeflab.study.validation import FRICTION, WIDE, Validation
 from coeflab.vehicle.derived import Derived
 
 SMALL = 0.01
@@ -371,7 +371,7 @@ def predictions(found: Sequence[Validation]) -> Table:
     notes = (
         "S is computed and D is measured, independently, on the same body. D is our fit to the points of the test. E is formed before "
         f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
-        "A coefficient gets no verdict if its grid study gives no error. Drag also gets none if the friction at the two Reynolds numbers differs (see Verdict).",
+        f"There is no verdict without an estimate of the grid error, nor on drag where friction at the two Reynolds numbers differs by over {100.0 * FRICTION:.0f} %.",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
