@@ -276,21 +276,25 @@ def on_predictions(study: Study) -> tuple[str, ...]:
 
 
 def _without_verdict(found: Sequence[Validation]) -> str:
-    """Coefficients that are computed and measured but not judged, with the reasons of each; campaigns where it is not one of all."""
-    pairs = [(primed(v.symbol), v.simulation) for v in found]
-    by: dict[tuple[str, ...], list[tuple[str, str]]] = {}
-    for v, pair in zip(found, pairs, strict=True):
-        by.setdefault(v.reasons, []).append(pair)
-    each = []
-    for why, those in by.items():
-        mine = list(dict.fromkeys(s for s, _ in those))
-        of_all = set(those) == {pair for pair in pairs if pair[0] in mine}
-        names = mine if of_all else [f"{s} of {campaign}" for s, campaign in those]
-        each.append(f"{listed(names)} ({'; '.join(why)})")
-    far = [f"{primed(v.symbol)} of {v.simulation}" for v in found if v.beyond]
-    lie = "lies" if len(far) == 1 else "lie"
-    beyond = in_sentences(" Of these, ", far, f" {lie} beyond U_V.", join=listed) if far else ""
-    return in_sentences("Computed and measured, but no verdict: ", each, join=", ".join) + beyond
+    """Coefficients that are computed and measured but not judged, with the reasons that all computations of them share, if any."""
+    by: dict[tuple[str, ...], dict[str, list[str]]] = {}
+    for symbol in dict.fromkeys(v.symbol for v in found):
+        mine = [v for v in found if v.symbol == symbol]
+        shared = tuple(why for why in mine[0].reasons if all(why in v.reasons for v in mine))
+        for v in mine[:1] if shared else mine:
+            place = "" if shared else f" of {v.simulation}"
+            by.setdefault(shared or v.reasons, {}).setdefault(place, []).append(primed(symbol))
+    each = [
+        f"{listed([f'{listed(s)}{place}' for place, s in places.items()])} ({'; '.join(why)})"
+        for why, places in by.items()
+    ]
+    far: dict[str, list[str]] = {}
+    for v in (v for v in found if v.beyond):
+        apart = "" if v.zero or not v.measured else f" ({100.0 * v.error / v.measured:+.0f} %)"
+        far.setdefault(v.simulation, []).append(f"{primed(v.symbol)}{apart}")
+    beyond = [f"{listed(symbols)} of {campaign}" for campaign, symbols in far.items()]
+    out = in_sentences("Computed and measured, but no verdict: ", each, join=", ".join)
+    return f"{out} {in_sentences('Of these, beyond U_V: ', beyond)}" if beyond else out
 
 
 KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")

@@ -161,7 +161,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"uncertainties that the test report states: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states uncertainties: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:

@@ -22,14 +22,13 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.study import PlannedTow, Study
-from coeflab.study.validation import Validation, reynolds_of, validation, without_grid
+from coeflab.study.validation import Validation, against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.reference import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
-AS_PRINTED = ", as printed"
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 RUNS = {"": "straight", "v": "drift", "w": "attack", "p": "rolling", "q": "pitching", "r": "turning"}
 STATES = {"unconverged": "did not converge", "not run": "not started", "drifting": "still drifting"}
@@ -243,16 +242,9 @@ def _against(
                 length = ours.scaling.length
                 reynolds = (reynolds_of(study, budget.campaign, length), reynolds_of(study, campaign, length))
                 return validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling), reynolds), others
-        stated = _literature(r, own.symbol)
-        if stated is not None and _published(study, fits, r, own.symbol, ours.scaling) is not None:
-            value, share, method = stated
-            size = abs(value) * share
-            test = replace(
-                budget, campaign=f"{r.name}, {method}{AS_PRINTED}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
-            )  # fmt: skip
-            ratio = r.scaling.ratio(own.symbol, ours.scaling)
-            by_method = {f"the test used another method, {method}": f"the test used another method ({method})"}
-            return validation(budget, test, ratio), others | by_method
+        printed = against_printed(budget, r, ours)
+        if printed is not None:
+            return printed, others
     return None
 
 

@@ -23,6 +23,7 @@ from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
+from coeflab.vehicle.reference import Reference
 
 
 @brief
@@ -97,6 +98,7 @@ NUMERICAL = ("random", "grid", STUDIES["domain"], STUDIES["iterations"])
 MODEL = STUDIES["turbulence"]
 REDUCTION = ("model form", "random and model form")
 WIDE = 0.25  # of the measured or published value: a wider uncertainty passes what a reader would call a difference
+AS_PRINTED = ", as printed"
 FRICTION = 0.05  # of the friction line between two Reynolds numbers: more than drag is compared to
 
 
@@ -124,6 +126,8 @@ class Validation:
         Reynolds numbers of computation and experiment on one length; None where a campaign does not tell.
     zero : bool
         Whether the body's symmetry makes the coefficient zero, and the computation finds it zero.
+    method : str
+        Of a measured side that is a printed derivative by another method, such as ``PMM``; empty for our fit to a steady test.
     """
 
     symbol: str
@@ -140,6 +144,7 @@ class Validation:
     lacking_measured: tuple[str, ...]
     reynolds: tuple[float | None, float | None] = (None, None)
     zero: bool = False
+    method: str = ""
 
     @property
     def error(self) -> float:
@@ -165,11 +170,12 @@ class Validation:
         """Why there is no verdict; empty where there is one."""
         reasons = (
             "zero by symmetry" if self.zero else "",
+            f"the test used another method, {self.method}" if self.method else "",
             "the test has no U95" if self.u_measured is None else "",
             without_grid(self.lacking),
             self._friction(),
         )
-        return ", ".join(filter(None, reasons))
+        return "; ".join(filter(None, reasons))
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -183,6 +189,7 @@ class Validation:
         }.get(state, f"no error from the grid study: {state}")
         clauses = (
             "zero by symmetry, and the test has a bias" if self.zero else "",
+            f"the test used another method, {self.method}" if self.method else "",
             "the test has no U95" if self.u_measured is None else "",
             grid,
             self._friction("the two Reynolds numbers"),
@@ -234,7 +241,7 @@ class Validation:
 
 
 def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]:
-    """Every pair of a computed and a measured coefficient of one body about one reference point."""
+    """Every pair of a computed and a measured coefficient of one body about one reference point, printed ones by another method too."""
     sets = {f.campaign: f.coefficients for f in study.fits if f.sweeps}
     out = []
     for s in found:
@@ -248,7 +255,35 @@ def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]
             one = validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling), reynolds)
             own = next(c for c in sets[s.campaign].coefficients if c.symbol == s.symbol.removesuffix("'"))
             out.append(replace(one, zero=bool(zeros(study, s.campaign, (own,)))))
+        if s.kind == "cfd":
+            printed = (against_printed(s, r, sets[s.campaign]) for r in study.references if r.body == s.body)
+            out += [v for v in printed if v is not None]
     return tuple(out)
+
+
+def against_printed(s: Budget, reference: Reference, among: CoefficientSet) -> Validation | None:
+    """S against the derivative that a source prints by another method, with the uncertainty that it states; None without one.
+
+    Parameters
+    ----------
+    s : Budget
+        Of the computation.
+    reference : Reference
+    among : CoefficientSet
+        Of the computation: its length and reference point.
+    """
+    symbol, point = s.symbol.removesuffix("'"), reference.reference_point
+    if point is not None and not np.allclose(point, among.reference_point, atol=1e-6):
+        return None
+    for kind in reference.literature:
+        for v in kind.values:
+            if v.symbol == symbol and v.value is not None:
+                half = abs(v.value) * kind.uncertainty
+                d = replace(
+                    s, campaign=f"{reference.name}, {kind.method}{AS_PRINTED}", value=v.value, u95=half, parts=(), unassessed=(), kind="literature",
+                )  # fmt: skip
+                return replace(validation(s, d, reference.scaling.ratio(symbol, among.scaling)), method=kind.method)
+    return None
 
 
 def without_grid(lacking: Sequence[str]) -> str:

@@ -451,14 +451,12 @@ def test_suboff(suboff: Study):
     )
     assert said[6] == (
         "Computed and measured, but no verdict: Kv' (zero by symmetry, and the test has a bias), X0' (grid study diverged; friction "
-        "differs by 9 % between the two Reynolds numbers, ITTC 1957), Xvv' (grid study diverged). Of these, Kv' of suboff_cfd_barehull "
-        "and X0' of suboff_cfd_barehull lie beyond U_V."
+        "differs by 9 % between the two Reynolds numbers, ITTC 1957), Xvv' (grid study diverged). Computed and measured, but no "
+        "verdict: Yr' and Nr' (the test used another method, PMM). Of these, beyond U_V: Kv', X0' (+3 %), Yr' (-70 %) and Nr' (-46 %) "
+        "of suboff_cfd_barehull; Yr' (-62 %) and Nr' (-41 %) of suboff_tow_bare_hull."
     )
     assert said[7].startswith("Only the predictions are independent evidence.")
-    assert said[8] == (
-        "Yr' (-62 %) and Nr' (-41 %) of suboff_tow_bare_hull differ from the test by more than U_V. We do not count them: the test used "
-        "another method (PMM); grid study diverged."
-    )
+    assert not any("differ from the test by more than U_V" in one for one in said), "said once"
     assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
@@ -483,4 +481,4 @@ def test_suboff(suboff: Study):
         "+0.59",
         "####",
     ]
-    assert lines[6].split()[:9] == ["Yr'", "-0.002", "+-", "0.013", "(>", "100", "%)", "0.0052", "0.0044"]
+    assert lines[6].split()[:9] == ["Yr'", "-0.002", "+-", "0.013", "(>", "100", "%)", "0.005251", "0.0044"]

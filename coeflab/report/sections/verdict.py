@@ -82,11 +82,12 @@ def _re_analysis(study: Study) -> list[str]:
 def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
     """Coefficients of own tows beyond U_V that do not count, and why; ``also``: others that count are beyond it as well."""
     out = []
+    known = {(v.symbol, v.simulation) for v in validations(study, study.budgets)}
     for tow in towed(study):
         reasons: dict[tuple[str, ...], list[str]] = {}
         for r in tow.rows:
-            if r.verdict is None and r.validation is not None and r.validation.beyond:
-                of = r.validation
+            of = r.validation
+            if r.verdict is None and of is not None and of.beyond and (of.symbol, of.simulation) not in known:
                 apart = f" ({100.0 * of.error / of.measured:+.0f} %)" if of.measured else ""
                 reasons.setdefault(r.reasons, []).append(f"{primed(r.symbol)}{apart}")
         for why, symbols in reasons.items():

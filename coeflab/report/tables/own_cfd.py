@@ -9,8 +9,8 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.tables.uncertainty import sentences_on_open
-from coeflab.study.towed import AS_PRINTED, Towed
-from coeflab.study.validation import Validation, in_millions
+from coeflab.study.towed import Towed
+from coeflab.study.validation import AS_PRINTED, Validation, in_millions
 
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
 

@@ -17,7 +17,7 @@ from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import FRICTION, WIDE, Validation
+from coeflab.study.validation import AS_PRINTED, FRICTION, WIDE, Validation
 from coeflab.vehicle.derived import Derived
 
 SMALL = 0.01
@@ -361,7 +361,7 @@ def predictions(found: Sequence[Validation]) -> Table:
     """Comparison error of every computed coefficient, those with a verdict first, in digits that go with U_V."""
     rows = tuple(
         (
-            primed(v.symbol), v.simulation, v.experiment, _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
+            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), _beside(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
             *with_u95(v.error, v.u_validation), _verdict(v),
         )
         for v in sorted(found, key=lambda v: v.within is None)
