@@ -261,7 +261,7 @@ def on_predictions(study: Study) -> tuple[str, ...]:
         most = max(len(one) for one in numbers)
         by, every = ("two", "both comparisons pass") if most == 2 else ("several", "all comparisons pass")
         out.append(
-            f"CFD predicts {len(numbers)} measured coefficient{'s' * (len(numbers) > 1)} in {len(judged)} comparisons. A coefficient that {by} campaigns compute "
+            f"{len(judged)} comparisons judge {len(numbers)} coefficient{'s' * (len(numbers) > 1)} from CFD. A coefficient that {by} campaigns compute "
             f"counts once; it passes only if {every}."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
@@ -271,7 +271,7 @@ def on_predictions(study: Study) -> tuple[str, ...]:
             )
         )
     if none := [v for v in found if v.within is None]:
-        out.append(_without_verdict(none))
+        out += [_without_verdict(none), *_beyond(none)]
     return tuple(out)
 
 
@@ -288,16 +288,20 @@ def _without_verdict(found: Sequence[Validation]) -> str:
         f"{listed([f'{listed(s)}{place}' for place, s in places.items()])} ({'; '.join(why)})"
         for why, places in by.items()
     ]
+    return in_sentences("Computed and measured, but no verdict: ", each, join=", ".join)
+
+
+def _beyond(found: Sequence[Validation]) -> list[str]:
+    """Which of them differ by more than U_V, and how much of the measured value."""
     far: dict[str, list[str]] = {}
     for v in (v for v in found if v.beyond):
         apart = "" if v.zero or not v.measured else f" ({100.0 * v.error / v.measured:+.0f} %)"
         far.setdefault(v.simulation, []).append(f"{primed(v.symbol)}{apart}")
-    beyond = [f"{listed(symbols)} of {campaign}" for campaign, symbols in far.items()]
-    out = in_sentences("Computed and measured, but no verdict: ", each, join=", ".join)
-    return f"{out} {in_sentences('Of these, beyond U_V: ', beyond)}" if beyond else out
+    each = [f"{listed(symbols)} of {campaign}" for campaign, symbols in far.items()]
+    return [in_sentences("No verdict, but beyond U_V (computed / measured - 1): ", each)] if each else []
 
 
-KINDS = ("measured numbers predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")
+KINDS = ("coefficients predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")
 
 
 def headline_of_study(study: Study) -> tuple[str, ...]:

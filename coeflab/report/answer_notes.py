@@ -194,7 +194,7 @@ def _independent(study: Study) -> str:
     )
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
-        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} measured coefficients within the validation "
+        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} judged coefficients within the validation "
         f"uncertainty U_V.{said}"
     )
 

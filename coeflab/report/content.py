@@ -196,7 +196,7 @@ def _short(reproduce: Section, digest: str) -> Section:
         f"Made by coeflab {VERSION}, which is not released yet. Record the commit of its sources with this report. To install that commit, run in "
         "its sources: pip install . -c constraints.txt",
         "Equal inputs, sources and libraries give this report byte for byte."
-        + (f" Digest of the inputs under Provenance: {digest}." if digest else ""),
+        + (f" Digest of all input files: {digest}." if digest else ""),
         *reproduce.paragraphs[-1:],
     )
     return replace(reproduce, paragraphs=three_lines(text))

@@ -97,13 +97,12 @@ def test_a_measured_number_counts_once(
             monkeypatch.setattr(module, "validations", lambda *_, found=found: found)
         assert held_of_study(study)[Basis.PREDICTED] == (good, 1)
         said = " ".join(headline_of_study(study))
-        assert f"{good} of 1 measured numbers predicted by CFD" in said
+        assert f"{good} of 1 coefficients predicted by CFD" in said
         assert (
-            "CFD predicts 1 measured coefficient in 2 comparisons. A coefficient that two campaigns compute counts once"
-            in said
+            "2 comparisons judge 1 coefficient from CFD. A coefficient that two campaigns compute counts once" in said
         )
         assert "Computed and measured, but no verdict: Nv' (no grid study)." in said
-        assert f"CFD predicts {good} of 1 measured coefficients" in answer_notes._independent(study)
+        assert f"CFD predicts {good} of 1 judged coefficients" in answer_notes._independent(study)
 
 
 @pytest.fixture(scope="module")

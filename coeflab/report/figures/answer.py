@@ -207,7 +207,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
         svg = svg_text(figure, "answer-forest", title, said)
     outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
-    caption = "Bars: our U95." + (f" Line: {compared}." if compared else "")
+    caption = "Bars: our U95; at the right, in % of our value." + (f" Line: {compared}." if compared else "")
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (

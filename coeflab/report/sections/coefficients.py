@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+
+import numpy as np
 
 from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.symbols import primed
+from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
@@ -20,11 +22,11 @@ from coeflab.study.symmetry import zeros
 TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "No slope depends on a single shape of curve. Terms fitted with the slopes fixed do: they assume the shape of the force law. The notes below the tables name these terms.",
+    "Values with a form part depend on no single shape of curve. The others assume that of the force law; the notes below the tables name them.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
     "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term fitted with the slopes "
-    "fixed, n counts the points at which its own motions are not zero, also of runs in which two motions vary. A dash: not applicable or not assessed; not in U95.",
+    "fixed, n counts the points where its motions are not zero, combined runs included; for a constant, all points. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: for a term fitted with the slopes fixed, the part that comes from their U95."
@@ -54,7 +56,7 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     without = [c for c in found if c.status is Status.FORM_ASSUMED and c.u95 is not None and c.parts.model_form is None]
     if not without:
         return ""
-    end = " includes only the scatter and the uncertainty of the slope. The error from choosing this form is not included."
+    end = " includes only the random and slope parts, not the error of the assumed force law."
     return in_sentences("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
 
 
@@ -124,7 +126,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
     computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
-        in_one_line(zero), form_not_assessed(shown),
+        in_one_line(zero), form_not_assessed(shown), _shorter(shown, tied),
         *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
@@ -134,6 +136,23 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     return without(
         whole, *(n for i, n in enumerate(headers) if n in ("input", "slope") and all(row[i] == ABSENT for row in rows))
     )
+
+
+def _shorter(found: Sequence[Coefficient], tied: Collection[str]) -> str:
+    """Terms of force laws that end before the slopes of their component do, with their ranges; empty without any."""
+    reach = {c.symbol[0]: max(map(abs, c.window)) for c in found if c.symbol not in tied and c.window}
+    by: dict[str, list[str]] = {}
+    for c in found:
+        most = max(map(abs, c.window)) if c.symbol in tied and c.window else np.inf
+        if most < 0.95 * reach.get(c.symbol[0], 0.0):
+            by.setdefault(f"|{c.window_over or _motion(c.symbol)}'| = {most:.3g}", []).append(primed(c.symbol))
+    each = [f"{listed(symbols)} to {end}" for end, symbols in by.items()]
+    return in_sentences("Fitted to a shorter range: ", each) if each else ""
+
+
+def _motion(symbol: str) -> str:
+    """The first motion of a term's product, which its window is over."""
+    return next((name for name, _ in read_factors(symbol.removesuffix("'")[1:]) or ()), "v")
 
 
 def _is_open(c: Coefficient) -> bool:

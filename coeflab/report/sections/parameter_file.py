@@ -267,7 +267,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     told = (
-        "published: the index that the source prints. Ours gets no pass or fail against it, because ours uses our own derivatives.",
+        "published: the index that the source prints. It gives no verdict on ours, which uses our own Yv', Nv', Zw' or Mw'.",
         *notes,
     )
     return Table(
@@ -294,7 +294,7 @@ def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
             rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
     headers = ("parameter file", "index", "computed from", "derivatives from")
     notes = (
-        "m' and xG' are from the appendix (--full), Mass and inertia used. The indices above have four digits, so that they can be "
+        "m' and xG' are those of the appendix (--full), \"Mass and inertia used\". The indices above have four digits, so that they can be "
         "recomputed from these numbers.",
     )
     return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))

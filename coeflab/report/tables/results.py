@@ -284,8 +284,10 @@ def side_by_side(study: Study) -> Table:
         for name, reading in columns
     )
     headers = ("", "campaign", "ours", "U95", "random", "form", *names)
-    notes = tuple(_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS)
-    return Table("Our coefficients beside published ones", headers, tuple(rows), notes, frozenset({0, 1}))
+    notes = [_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS]
+    if study.plan.tows and any(NO_DATA in row for row in rows):
+        notes.insert(0, f"{NO_DATA}: from these campaigns; own tows are under Own CFD.")
+    return Table("Our coefficients beside published ones", headers, tuple(rows), tuple(notes), frozenset({0, 1}))
 
 
 def _published_in(r: Reference, ours: Collection[str]) -> str:

@@ -179,6 +179,8 @@ def check(study: Study) -> Sequence[Check]:
         groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:
             out.append(_points(s, f.coefficients[s.symbol].status))
+            if s.by_symmetry:  # a copy has the findings of its source
+                continue
             found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + replicates(s, groups)
             out += [c for c in found if c not in out]
     return out
