@@ -142,7 +142,7 @@ def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():
     both = replace(fit.coefficients, coefficients=(*others, tied))
     study = replace(study, fits=(replace(fit, coefficients=both, sweeps=fit.sweeps[:-1]),))
     table = next(s for s in document(study).sections if s.anchor == "coefficients").tables[0]
-    said = [n for n in table.notes if "choosing this form" in n]
+    said = [n for n in table.notes if "assumed force law" in n]
     assert said == ["U95 of Yv|v|' includes only the random and slope parts, not the error of the assumed force law."]
     assert form_not_assessed([replace(tied, parts=Parts(random=1e-5, model_form=0.0))]) == ""
 
