@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief, locked
-from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
+from coeflab.law.scaling import powers_of
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import Term
 from coeflab.law.transforms import body_forces, incidence
 
@@ -100,7 +101,7 @@ class ForceTerm:
     @property
     def length_power(self) -> int:
         """The k of 1/2 rho L^k; 0 for SI."""
-        return 0 if self.kind in ("rest", "table") else derivative(self.symbol).powers[1]
+        return 0 if self.kind in ("rest", "table") else powers_of(self.symbol)[1]
 
     @property
     def written(self) -> float:

@@ -14,11 +14,33 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.stored import Means
 from coeflab.core.types import Array
-from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS, derivative
+
 
 # Powers of U, of L and of 1/2 rho in one unit of what is no derivative.
+def powers_of(symbol: str) -> tuple[int, int, int]:
+    """Powers of U, of L and of 1/2 rho that make one primed unit of a derivative dimensional, such as (1, 2, 1) of Yv.
+
+    Parameters
+    ----------
+    symbol : str
+        With or without prime.
+    """
+    d = derivative(symbol)
+    speed, length = 2, 3 if d.component in MOMENTS else 2
+    for factor in d.factors:
+        if factor in LINEAR:
+            speed -= 1
+        elif factor in ANGULAR:
+            speed, length = speed - 1, length + 1
+        elif factor.endswith("dot"):
+            speed -= 2
+            length += 1 if factor[0] in LINEAR else 2
+    return speed, length, 1
+
+
 QUANTITIES: dict[str, tuple[int, int, int]] = {
-    **{component: derivative(f"{component}0").powers for component in COMPONENTS},
+    **{component: powers_of(f"{component}0") for component in COMPONENTS},
     **dict.fromkeys(LINEAR, (1, 0, 0)),
     **dict.fromkeys(ANGULAR, (1, -1, 0)),
     **dict.fromkeys([f"{v}dot" for v in LINEAR], (2, -1, 0)),
@@ -189,14 +211,14 @@ class Scaling(takes.Declaration):
             No such symbol.
         """
         known = QUANTITIES.get(symbol.removesuffix("'"))
-        of_speed, of_length, of_pressure = known or derivative(symbol).powers
+        of_speed, of_length, of_pressure = known or powers_of(symbol)
         out = (0.5 * density if of_pressure else 1.0) * speed**of_speed
         out = out * self.length**of_length if of_length >= 0 else out / self.length**-of_length
         return out if isinstance(out, np.ndarray) else float(out)
 
     def ratio(self, symbol: str, other: Scaling) -> float:
         """Multiply a value primed by this length with this to prime it by ``other``."""
-        power = derivative(symbol).powers[1]
+        power = powers_of(symbol)[1]
         return float((self.length / other.length) ** power)
 
     def require(self, other: Scaling) -> None:

@@ -51,20 +51,6 @@ class Derivative:
     text: str
 
     @property
-    def powers(self) -> tuple[int, int, int]:
-        """Powers (of U, of L, of 1/2 rho) that make one primed unit of this derivative dimensional."""
-        speed, length = 2, 3 if self.component in MOMENTS else 2
-        for factor in self.factors:
-            if factor in LINEAR:
-                speed -= 1
-            elif factor in ANGULAR:
-                speed, length = speed - 1, length + 1
-            elif factor.endswith("dot"):
-                speed -= 2
-                length += 1 if factor[0] in LINEAR else 2
-        return speed, length, 1
-
-    @property
     def unit(self) -> str:
         """SI unit, for example ``N/(m/s)`` for Yv or ``N*m/(rad/s)`` for Nr."""
         names = {**dict.fromkeys(LINEAR, "m/s"), **dict.fromkeys(ANGULAR, "rad/s"), **dict.fromkeys(CONTROLS, "rad")}

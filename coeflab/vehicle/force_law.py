@@ -18,6 +18,7 @@ from coeflab.core.types import Array, brief
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.law.force_law import AHEAD, CONTROLS, WIND, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
@@ -49,7 +50,7 @@ def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
                 d.component,
                 parse_suffix(d.text[1:]),
                 value,
-                0 if rest else d.powers[0],
+                0 if rest else powers_of(d.text)[0],
                 per_prime,
                 "rest" if rest else "prime",
                 c.value,

@@ -6,6 +6,7 @@ import numpy as np
 
 from coeflab.core.axes import Datum
 from coeflab.law.added_mass import AddedMass
+from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import CONTROLS, derivative
 from coeflab.law.terms import parse_suffix
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -60,7 +61,12 @@ def control_force(file: ParameterFile, nu: np.ndarray, delta: np.ndarray) -> np.
     for c in file.coefficients:
         d = derivative(c.symbol)
         if set(d.factors) & set(CONTROLS):
-            scale = 0.5 * file.conditions.density * file.scaling.length ** d.powers[1] * speed ** d.powers[0]
+            scale = (
+                0.5
+                * file.conditions.density
+                * file.scaling.length ** powers_of(d.text)[1]
+                * speed ** powers_of(d.text)[0]
+            )
             out[:, "XYZKMN".index(d.component)] += c.value * scale * parse_suffix(d.text[1:]).evaluate(columns)
     return out
 

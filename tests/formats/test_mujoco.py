@@ -16,8 +16,7 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import Kind
 from coeflab.formats.mujoco import write as exporter
 from coeflab.formats.stated_file import Stated, stated_file
-from coeflab.law.scaling import Conditions, Scaling
-from coeflab.law.symbols import derivative
+from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study
@@ -55,7 +54,7 @@ def remus(*names: str) -> ParameterFile:
     """Coefficients of REMUS under these names, with its added mass."""
     scaling, at = Scaling(1.33, "LOA"), Conditions(1030.0, 1.54)
     per_uv = {CANONICAL[n]: v for n, v in REMUS.items()} | REMUS
-    values = {n: (per_uv[n] / (0.5 * at.density * scaling.length ** derivative(n).powers[1]), "motion") for n in names}
+    values = {n: (per_uv[n] / (0.5 * at.density * scaling.length ** powers_of(n)[1]), "motion") for n in names}
     matrix = np.diag([0.93, 35.5, 35.5, 0.0704, 4.88, 4.88])
     return stated_file(Stated("remus", "remus", scaling, at, values, matrix=matrix), [], ())
 

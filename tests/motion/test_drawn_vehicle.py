@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.law.symbols import derivative
+from coeflab.law.scaling import powers_of
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.uncertainty.draws import drawn, uncertain, unfelt
 from coeflab.motion.vehicle import vehicle
@@ -70,7 +70,7 @@ def test_a_coefficient_of_zero_is_drawn_too() -> None:
     found = drawn(body, file, varied.symbols, np.array([[0.03]])).member(0)
     nu = np.array([[1.5, 0.4, 0.0, 0.0, 0.0, 0.0]])
     change = (found.force(nu, np.zeros((1, 3))) - body.force(nu, np.zeros((1, 3))))[0]
-    scale = 0.5 * body.density * body.length ** derivative("Yvv'").powers[1]
+    scale = 0.5 * body.density * body.length ** powers_of("Yvv'")[1]
     np.testing.assert_allclose(change, [0.0, 0.03 * scale * 0.4**2, 0.0, 0.0, 0.0, 0.0], atol=1e-12)
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import derivative
 from coeflab.published.flyingfish.model import FlyingFish, thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -19,7 +20,7 @@ def parameter_file(
     """Derivatives in SI at the speed above, centre of gravity at the reference point."""
     coefficients = []
     for symbol, value in si.items():
-        speed, length, half = derivative(symbol).powers
+        speed, length, half = powers_of(symbol)
         prime = value / ((0.5 * DENSITY) ** half * SPEED**speed * LENGTH**length)
         coefficients.append(
             {

@@ -33,7 +33,8 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.law.force_law import ForceLaw, ForceTerm
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.scaling import powers_of
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import centre_of_gravity
@@ -145,7 +146,7 @@ def _model(parameters: ParameterFile) -> dict[str, Any]:
                 "value": f"acceleration.{name}",
                 "force": COMPONENTS.index(name[0]),
                 "motion": MOTIONS.index(name[1:].removesuffix("dot")),
-                "length_power": derivative(name).powers[1],
+                "length_power": powers_of(name)[1],
             }
             for name in dots
         ],

@@ -28,7 +28,8 @@ from coeflab.formats.exported_law import (
 )
 from coeflab.formats.mss.m_file import assignments
 from coeflab.law.force_law import ForceTerm
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.scaling import powers_of
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -143,7 +144,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
 
 
 def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
-    scales = {t.length_power for t in terms} | {derivative(a).powers[1] for a in accelerations}
+    scales = {t.length_power for t in terms} | {powers_of(a)[1] for a in accelerations}
     lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
     lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
     lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
@@ -158,7 +159,7 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
     rows = []
     for component in COMPONENTS:
         names = [f"{component}{motion}dot" for motion in MOTIONS]
-        rows.append(" ".join(f"r{derivative(n).powers[1]}*h.{n}" if n in accelerations else "0" for n in names))
+        rows.append(" ".join(f"r{powers_of(n)[1]}*h.{n}" if n in accelerations else "0" for n in names))
     return ["MA = -[" + ";\n       ".join(rows) + "];"]
 
 

@@ -26,7 +26,8 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.law.force_law import ForceTerm
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.scaling import powers_of
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -189,11 +190,11 @@ def _scales(powers: set[int]) -> list[str]:
 
 
 def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
-    lines = _scales({derivative(a).powers[1] for a in accelerations})
+    lines = _scales({powers_of(a)[1] for a in accelerations})
     lines.append("        self.MA = -np.array([")
     for component in COMPONENTS:
         names = [f"{component}{motion}dot" for motion in MOTIONS]
-        cells = (f"r{derivative(n).powers[1]} * self.{n}" if n in accelerations else "0.0" for n in names)
+        cells = (f"r{powers_of(n)[1]} * self.{n}" if n in accelerations else "0.0" for n in names)
         lines.append(f"            [{', '.join(cells)}],")
     return [*lines, "        ])"]
 

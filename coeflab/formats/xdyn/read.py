@@ -32,7 +32,7 @@ from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
-from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import parse_suffix
 from coeflab.law.transforms import force_transfer, moved
@@ -486,7 +486,7 @@ def _symbol(component: str, product: Product, spelling: dict[tuple[str, Product]
     written = "".join(n * powers[n] for n in order if n in powers) or "0"
     symbol = spelling.get((component, rest), component + written)
     try:
-        wanted = derivative(symbol).powers[0]
+        wanted = powers_of(symbol)[0]
     except InputError:
         raise ArithmeticProblem(f"{component} with {_words(product)}") from None
     if speed not in (wanted, 0):
