@@ -276,18 +276,14 @@ def on_predictions(study: Study) -> tuple[str, ...]:
 
 
 def _without_verdict(found: Sequence[Validation]) -> str:
-    """Coefficients that are computed and measured but not judged, with the reasons that all computations of them share, if any."""
-    by: dict[tuple[str, ...], dict[str, list[str]]] = {}
+    """Coefficients that are computed and measured but not judged, with what all computations of them share first."""
+    by: dict[str, list[str]] = {}
     for symbol in dict.fromkeys(v.symbol for v in found):
         mine = [v for v in found if v.symbol == symbol]
-        shared = tuple(why for why in mine[0].reasons if all(why in v.reasons for v in mine))
-        for v in mine[:1] if shared else mine:
-            place = "" if shared else f" of {v.simulation}"
-            by.setdefault(shared or v.reasons, {}).setdefault(place, []).append(primed(symbol))
-    each = [
-        f"{listed([f'{listed(s)}{place}' for place, s in places.items()])} ({'; '.join(why)})"
-        for why, places in by.items()
-    ]
+        shared = [why for why in mine[0].reasons if all(why in v.reasons for v in mine)]
+        own = [f"{why} in {v.simulation}" for v in mine for why in v.reasons if why not in shared]
+        by.setdefault("; ".join((*shared, *own)), []).append(primed(symbol))
+    each = [f"{listed(symbols)} ({why})" for why, symbols in by.items()]
     return in_sentences("Computed and measured, but no verdict: ", each, join=", ".join)
 
 

@@ -178,7 +178,7 @@ def _independent(study: Study) -> str:
     shares: dict[str, list[str]] = {}
     for v in (v for v in found if v.weak):
         shares.setdefault(primed(v.symbol), []).append(v.share)
-    weak = [f"{s} (U_V is {_span(each)} of its value)" for s, each in shares.items()]
+    weak = [f"{s} (U_V is {_span(each)} of the measured value)" for s, each in shares.items()]
     uncounted = [
         primed(r.symbol)
         for tow in towed(study)

@@ -379,7 +379,7 @@ def _checks(study: Study) -> Section:
     found = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
     whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
     shown = filled(replace(tables.without(tables.checks(grave), "rule"), title="Failures and warnings"))
-    return Section("checks", "Checks", (f"{found}. Only a failure makes the study fail.",), shown, subsections=(whole,))
+    return Section("checks", "Checks", (f"{found}. Warnings do not make the study fail.",), shown, subsections=(whole,))
 
 
 def _provenance(study: Study) -> Section:

@@ -232,7 +232,7 @@ def against_computed(parameters: ParameterFile) -> str:
         if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
     ]
     return (
-        f"added mass computed{_method(parameters.added_mass)} differs from the file's: {', '.join(apart)}"
+        f"for comparison, the added mass of {parameters.added_mass.body}{_method(parameters.added_mass)} against the file's: {', '.join(apart)}"
         if apart
         else ""
     )

@@ -11,7 +11,7 @@ from coeflab.formats.export import Export
 from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
-from coeflab.report.sections.coefficients import form_not_assessed
+from coeflab.report.sections.coefficients import form_not_assessed, shorter_ranges
 from coeflab.report.tables import results
 from coeflab.report.tables.results import works
 from coeflab.study.symmetry import is_zero
@@ -132,6 +132,21 @@ def test_what_is_zero_by_symmetry_has_one_line_and_no_section():
     campaign = next(s for s in flat(made.sections) if s.anchor == "campaign-tow")
     assert table.notes[0] in campaign.paragraphs
     assert [s.anchor for s in campaign.subsections] == ["campaign-tow-yv", "campaign-tow-nv"]
+
+
+def test_terms_of_a_force_law_that_ends_before_the_slope_are_named_with_its_end():
+    """12 deg as radians; a rate, whose range is another, is compared with its own slope alone."""
+    slope = Coefficient("Kv", 1.0, 0.1, Status.OK, "b", window=(-0.3, 0.3))
+    rate = Coefficient("Kr", 1.0, 0.1, Status.OK, "b", window=(-0.6, 0.6))
+    short = replace(slope, symbol="Kv|v|", window=(-0.2, np.radians(12.0)))
+    whole, turning = (
+        replace(slope, symbol="Kvvv", window=(-0.299, 0.29)),
+        replace(rate, symbol="Kr|r|", window=(-0.4, 0.5)),
+    )
+    found = [slope, rate, short, whole, turning]
+    said = shorter_ranges(found, {"Kv|v|", "Kvvv", "Kr|r|"})
+    assert said == "Fitted to a shorter range: Kv|v|', up to 12 deg; Kr|r|', up to |r'| = 0.5."
+    assert shorter_ranges([slope, rate, whole], {"Kvvv"}) == ""
 
 
 def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():

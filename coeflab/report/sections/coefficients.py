@@ -22,11 +22,11 @@ from coeflab.study.symmetry import zeros
 TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "Values with a form part depend on no single shape of curve. The others assume that of the force law; the notes below the tables name them.",
+    "Values with a form part assume no single shape of curve. The others, named below the tables, assume the shape of the force law.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
-    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term fitted with the slopes "
-    "fixed, n counts the points where its motions are not zero, combined runs included; for a constant, all points. A dash: not applicable or not assessed; not in U95.",
+    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with a slope part, "
+    "n counts the points where its motions are not zero, combined runs included; for a constant with one, all points. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: for a term fitted with the slopes fixed, the part that comes from their U95."
@@ -126,7 +126,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
     computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
-        in_one_line(zero), form_not_assessed(shown), _shorter(shown, tied),
+        in_one_line(zero), form_not_assessed(shown), shorter_ranges(shown, tied),
         *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
@@ -138,15 +138,29 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     )
 
 
-def _shorter(found: Sequence[Coefficient], tied: Collection[str]) -> str:
-    """Terms of force laws that end before the slopes of their component do, with their ranges; empty without any."""
-    reach = {c.symbol[0]: max(map(abs, c.window)) for c in found if c.symbol not in tied and c.window}
+def shorter_ranges(found: Sequence[Coefficient], tied: Collection[str]) -> str:
+    """Terms of force laws that end before a slope of their component over the same motion does, with their ends.
+
+    Parameters
+    ----------
+    found : sequence of Coefficient
+        Of one campaign.
+    tied : collection of str
+        Symbols of the terms.
+
+    Returns
+    -------
+    str
+        Empty without any.
+    """
+    windows = [(c, c.window_over or _motion(c.symbol), max(map(abs, c.window))) for c in found if c.window]
+    reach = {(c.symbol[0], over): most for c, over, most in windows if c.symbol not in tied}
     by: dict[str, list[str]] = {}
-    for c in found:
-        most = max(map(abs, c.window)) if c.symbol in tied and c.window else np.inf
-        if most < 0.95 * reach.get(c.symbol[0], 0.0):
-            by.setdefault(f"|{c.window_over or _motion(c.symbol)}'| = {most:.3g}", []).append(primed(c.symbol))
-    each = [f"{listed(symbols)} to {end}" for end, symbols in by.items()]
+    for c, over, most in windows:
+        if c.symbol in tied and most < 0.99 * reach.get((c.symbol[0], over), 0.0):
+            end = f"|{over}'| = {most:.3g}" if c.window_is_rate else f"{np.degrees(most):.3g} deg"
+            by.setdefault(end, []).append(primed(c.symbol))
+    each = [f"{listed(symbols)}, up to {end}" for end, symbols in by.items()]
     return in_sentences("Fitted to a shorter range: ", each) if each else ""
 
 

@@ -267,7 +267,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     told = (
-        "published: the index that the source prints. It gives no verdict on ours, which uses our own Yv', Nv', Zw' or Mw'.",
+        "published: the index that the source prints. We do not judge ours by it, as ours uses our own Yv', Nv', Zw' or Mw'.",
         *notes,
     )
     return Table(
@@ -402,7 +402,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
 EXPORTED = (
     "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
     "those of the parameter file. The difference is the error that the target simulator adds.",
-    "Some simulators add the Coriolis force of the added mass, -C_A(nu) nu. Their files have linear derivatives without the potential part, which would count twice.",
+    "Some simulators add the Coriolis force of the added mass, -C_A(nu) nu. The files for these omit the potential part of the linear derivatives, which would count twice.",
 )
 
 
@@ -429,7 +429,7 @@ def added_masses(study: Study) -> tuple[str, ...]:
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
     said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
-        f"Added mass of {name}, for roots, motions and exports. {words}." for name, words in said.items() if words
+        f"Added mass of {name} in roots, motions and exports: {words}." for name, words in said.items() if words
     )
 
 

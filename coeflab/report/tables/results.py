@@ -286,7 +286,7 @@ def side_by_side(study: Study) -> Table:
     headers = ("", "campaign", "ours", "U95", "random", "form", *names)
     notes = [_published_in(r, quoted) for r in study.references if r.relation is not Relation.RE_ANALYSIS]
     if study.plan.tows and any(NO_DATA in row for row in rows):
-        notes.insert(0, f"{NO_DATA}: from these campaigns; own tows are under Own CFD.")
+        notes.insert(0, f"{NO_DATA}: no run of these campaigns varies the motion; our CFD is under Own CFD.")
     return Table("Our coefficients beside published ones", headers, tuple(rows), tuple(notes), frozenset({0, 1}))
 
 
@@ -324,6 +324,12 @@ def campaigns(study: Study) -> Table:
         configuration = study.body.configuration(body) if study.body else None
         if configuration is not None and configuration.title:
             notes.append(f"{body}: {configuration.title}")
+    titled = {t.body for t in study.tables if study.body and study.body.configuration(t.body) is not None}
+    notes += (
+        [f"{t.body}: {t.name}" for t in study.plan.tows if t.added is None and t.body not in titled]
+        if study.body
+        else []
+    )
     at = dict.fromkeys(f"{p.conditions.speed:.3g} m/s" for p in study.parameter_files.values())
     notes = [in_sentences("", notes)] if notes else []
     angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]

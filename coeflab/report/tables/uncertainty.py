@@ -368,12 +368,12 @@ def predictions(found: Sequence[Validation]) -> Table:
     )  # fmt: skip
     headers = ("", "CFD campaign", "test campaign", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
-    printed = " Against another method, D is the printed value." if any(v.method for v in found) else ""
+    printed = " For a test by another method, D is the printed value." if any(v.method for v in found) else ""
     notes = (
         f"S is computed and D is measured, independently, on the same body. D is our fit to the points of the test.{printed} E is formed before "
         f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
-        f"There is no verdict without an estimate of the grid error, against a test by another method, on what symmetry makes zero, and on drag where "
-        f"friction at the two Reynolds numbers differs by over {100.0 * FRICTION:.0f} %.",
+        "There is no verdict if the grid error is not estimated, the test used another method, symmetry makes the value zero, or, for drag, friction at "
+        f"the two Reynolds numbers differs by over {100.0 * FRICTION:.0f} %.",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
