@@ -3,12 +3,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from coeflab.core.table import Check, Severity
 from coeflab.core.wording import Verbatim, in_sentences, listed
 from coeflab.formats.export import Export
-from coeflab.law.coefficient import Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
 from coeflab.report.sections.coefficients import form_not_assessed, shorter_ranges
