@@ -94,7 +94,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False,
 
 def summarise(study: Study, folder: Path) -> None:
     """The answer, the findings that matter, and with ``--wide`` every table."""
-    from coeflab.report.answer import answer
+    from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import results as tables
 
@@ -151,7 +151,7 @@ def _why(made: Simulation) -> str:
 
 def answered(found: Answer) -> None:
     """What a reader wants first: the sentence, the wanted coefficients, and how it stands."""
-    from coeflab.report.answer import answer_table
+    from coeflab.report.first_page import answer_table
 
     show.sentence(found.sentence)
     show.text()
@@ -184,8 +184,8 @@ def _every_table(study: Study) -> None:
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
-    from coeflab.vehicle.derived import stability
     from coeflab.vehicle.force_law import points_of
+    from coeflab.vehicle.stability import stability
 
     show.sentence(tables.headline(study))
     show.text()

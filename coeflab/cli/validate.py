@@ -73,7 +73,7 @@ def _print(found: Acceptance) -> None:
     """The answer, and the numbers that do not hold; every number with ``--wide``."""
     from coeflab.cli.run import answered
     from coeflab.report import acceptance as acceptance_tables
-    from coeflab.report.answer import answer
+    from coeflab.report.first_page import answer
 
     answered(answer(found, drawn=False))
     for whole in found.shown:

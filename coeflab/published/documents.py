@@ -14,8 +14,8 @@ from coeflab.core.types import brief
 from coeflab.published import PLAN, validation, validations
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
-from coeflab.report.answer import acceptance_summary, study_summary
 from coeflab.report.document import Document, Section
+from coeflab.report.first_page import acceptance_summary, study_summary
 from coeflab.report.formats import REPORTERS
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.plan import plan_at, read_plan

@@ -1,6 +1,6 @@
 """What a workbench page needs of a study: sweeps to change, and what follows from their slopes.
 
-The page computes in the browser what `coeflab.fits`, `coeflab.vehicle.derived` and `coeflab.motion` compute here. A zigzag
+The page computes in the browser what `coeflab.fits`, `coeflab.vehicle.stability` and `coeflab.motion` compute here. A zigzag
 takes the file's law with the changed slopes in it; terms that were tied to these follow them, nothing else is fitted again.
 """
 
@@ -33,8 +33,8 @@ from coeflab.motion.simulation import moved
 from coeflab.motion.trajectory import covered_ranges
 from coeflab.motion.vehicle import Vehicle
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import INDICES
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import INDICES
 
 CONSTANTS = (
     "NOTHING", "SIZES", "COARSE", "NUISANCE", "REMAINDER", "SCATTER", "BEYOND", "FAR", "NO_REMAINDER", "NOTHING_CURVED",

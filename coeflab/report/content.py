@@ -26,10 +26,10 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
+from coeflab.report.first_page import answer
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.acceptance import PROVENANCE
 from coeflab.report.sections.body import added_mass_sections, body_sections

@@ -109,7 +109,7 @@ def _parts(*several: Part) -> Part:
 def _picture(figure: Figure | None) -> Part:
     if figure is None:
         return ""
-    from coeflab.report.figures.answer import renamed
+    from coeflab.report.figures.first_page import renamed
     from coeflab.report.figures.svg import size_of
 
     caption = f"<figcaption>{html(figure.caption)}</figcaption>" if figure.caption else ""
@@ -230,7 +230,7 @@ def answer(found: Answer) -> tuple[Part, ...]:
 
 def _answer(found: Answer) -> Part:
     """Pictures, then the rows of `answer_table` with the bars drawn, chips and notes."""
-    from coeflab.report.answer import answer_table
+    from coeflab.report.first_page import answer_table
 
     table = answer_table(found)
     if found.table is not None:
@@ -255,7 +255,7 @@ def _answer(found: Answer) -> Part:
 @_card
 def study(found: Study) -> tuple[Part, ...]:
     """Its answer, and what else it holds."""
-    from coeflab.report.answer import answer as answer_of
+    from coeflab.report.first_page import answer as answer_of
 
     first = answer_of(found)
     about = (
@@ -269,7 +269,7 @@ def study(found: Study) -> tuple[Part, ...]:
 @_card
 def acceptance(found: Acceptance) -> tuple[Part, ...]:
     """A publication reproduced: its answer."""
-    from coeflab.report.answer import answer as answer_of
+    from coeflab.report.first_page import answer as answer_of
 
     first = answer_of(found)
     return (_heading(first.sentence, f"Publication reproduced: {found.name}"), _answer(first))

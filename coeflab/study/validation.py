@@ -22,8 +22,8 @@ from coeflab.law.symbols import derivative
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 from coeflab.tables.force_table import STUDIES, ForceTable
-from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
 from coeflab.vehicle.reference import Reference
+from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
 
 @brief

@@ -14,7 +14,7 @@ from coeflab.bodies.profiles import Myring
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
 from coeflab.study.plan import read_plan
-from coeflab.vehicle.derived import index_gradient, stability_index
+from coeflab.vehicle.stability import index_gradient, stability_index
 from coeflab.workbench import rendered, run
 from tests.cli.conftest import COEFLAB, Run, flat
 

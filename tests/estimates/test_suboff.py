@@ -13,7 +13,7 @@ from coeflab.core.files import shipped
 from coeflab.law.coefficient import Status
 from coeflab.published.estimates.acceptance import Row, acceptance, goals, ring_wing, rows, table
 from coeflab.report.acceptance import Acceptance
-from coeflab.report.answer import answer
+from coeflab.report.first_page import answer
 from coeflab.study.plan import table_at
 from coeflab.tables.reading import read_tables
 from coeflab.workbench import tow

@@ -8,7 +8,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.motion.steady_state import root_locus, roots_at
 from coeflab.motion.vehicle import vehicle
-from coeflab.vehicle.derived import stability_index
+from coeflab.vehicle.stability import stability_index
 from tests.motion.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made
 
 Q = 0.5 * DENSITY * LENGTH**2

@@ -249,8 +249,8 @@ def test_what_is_kept_is_readable(tmp_path: Path) -> None:
 
 
 def test_the_interval_of_g_h_is_that_of_the_report() -> None:
-    """Against the Latin hypercube of `coeflab.vehicle.derived.stability`, within the error of both."""
-    from coeflab.vehicle.derived import stability
+    """Against the Latin hypercube of `coeflab.vehicle.stability.stability`, within the error of both."""
+    from coeflab.vehicle.stability import stability
 
     file = uncertain_torpedo()
     found = next(s for s in uncertainty(file, replace(SHORT, members=100)).spreads if s.figure.name == "G_h")

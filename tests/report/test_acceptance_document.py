@@ -5,8 +5,8 @@ from dataclasses import replace
 from coeflab.core.provenance import InputFile
 from coeflab.report import acceptance as acceptance_tables
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
-from coeflab.report.answer import acceptance_summary
 from coeflab.report.document import Figure
+from coeflab.report.first_page import acceptance_summary
 from coeflab.report.sections import acceptance as acceptance_document
 
 DRAWN = Figure("a-b", '<svg viewBox="0 0 340 100"></svg>', "A & B", "cap", "two lines")

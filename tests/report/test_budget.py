@@ -15,7 +15,7 @@ from coeflab.report.tables import results
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty
-from coeflab.vehicle.derived import centre_of_pressure
+from coeflab.vehicle.stability import centre_of_pressure
 from tests.report.studies import FULL, HOSTILE, budgets, small_study
 
 DECLARED = InputUncertainty(angle=float(np.radians(0.1)), speed=0.005, reference_point=0.01)

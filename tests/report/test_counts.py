@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from coeflab.core.provenance import Source
 from coeflab.fits.uncertainty.budget import RIG
-from coeflab.report.answer import answer
+from coeflab.report.first_page import answer
 from coeflab.report.sections.verdict import verdict
 from tests.report.studies import FULL, budgets, small_study
 

@@ -18,7 +18,7 @@ from coeflab.core.table import Check, Severity, Table
 from coeflab.fits import FITS
 from coeflab.law.added_mass import AddedMass
 from coeflab.motion.simulation import simulate
-from coeflab.report.answer import answer
+from coeflab.report.first_page import answer
 from coeflab.report.tables import results
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables

@@ -15,9 +15,9 @@ import pytest
 
 from coeflab.core.wording import Verbatim
 from coeflab.report import notation as lettering
-from coeflab.report.answer import study_summary
 from coeflab.report.content import document
 from coeflab.report.figures.sweep import sweep_figure
+from coeflab.report.first_page import study_summary
 from coeflab.report.formats import html as page
 from coeflab.report.formats import pdf
 from coeflab.report.notation import Symbol, cell_runs, keeping, kept, runs, users_texts

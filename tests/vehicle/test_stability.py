@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.vehicle.derived import index_gradient, stability_index
+from coeflab.vehicle.stability import index_gradient, stability_index
 
 MASS, MASS_MOMENT = 0.018296, -0.127467e-4
 VERTICAL = (-0.013910, 0.010324, -0.007545, -0.003702)

@@ -9,7 +9,7 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart
-from coeflab.report import acceptance, answer_notes
+from coeflab.report import acceptance, first_page_notes
 from coeflab.report.acceptance import Basis, headline_of_study, held_of_study
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.report.tables.uncertainty import predictions
@@ -93,7 +93,7 @@ def test_a_measured_number_counts_once(
     open_one = compared(-0.029, 0.006, symbol="Nv", open_parts=("grid",))
     study = replace(bodies[0], comparisons=(), references=())
     for found, good in (((first, second, open_one), 1), ((first, missed, open_one), 0)):
-        for module in (acceptance, answer_notes):
+        for module in (acceptance, first_page_notes):
             monkeypatch.setattr(module, "validations", lambda *_, found=found: found)
         assert held_of_study(study)[Basis.PREDICTED] == (good, 1)
         said = " ".join(headline_of_study(study))
@@ -102,7 +102,7 @@ def test_a_measured_number_counts_once(
             "2 comparisons judge 1 coefficient from CFD. A coefficient that two campaigns compute counts once" in said
         )
         assert "Computed and measured, but no verdict: Nv' (no grid study)." in said
-        assert f"CFD predicts {good} of 1 judged coefficients" in answer_notes._independent(study)
+        assert f"CFD predicts {good} of 1 judged coefficients" in first_page_notes._independent(study)
 
 
 @pytest.fixture(scope="module")

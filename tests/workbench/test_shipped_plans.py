@@ -12,7 +12,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
-from coeflab.report.answer import answer
+from coeflab.report.first_page import answer
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.tables.models import qualities
 from coeflab.study.plan import read_plan

@@ -28,8 +28,8 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative
 from coeflab.motion.simulation import simulate
-from coeflab.report.answer import answer
 from coeflab.report.content import document
+from coeflab.report.first_page import answer
 from coeflab.report.sections.estimates import (
     answer_of_merge,
     estimates_table,

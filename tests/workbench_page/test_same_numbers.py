@@ -12,7 +12,7 @@ from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.motion.manoeuvres import zigzag
 from coeflab.motion.marching import Ensemble, march
 from coeflab.motion.simulation import determined_until, moved
-from coeflab.vehicle.derived import sense, stability
+from coeflab.vehicle.stability import sense, stability
 from tests.workbench_page.conftest import SCALING, TABLES, fitted, parameter_file
 
 SLOPE, MOTION, PICTURE = 1e-9, 1e-6, 1e-6

@@ -22,10 +22,10 @@ from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.marching import Ensemble
 from coeflab.motion.vehicle import Vehicle
-from coeflab.vehicle.derived import INDICES, stability_index
 from coeflab.vehicle.force_law import open_places
 from coeflab.vehicle.inertia import MEASURED, entry_of, stated_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import INDICES, stability_index
 
 CELLS = Sequence[Sequence[float | None]]
 CORRELATED = 0.1  # a shared variance of 1 %: below it two coefficients are counted as sources of their own
@@ -340,7 +340,7 @@ def drawn_stability(
 ) -> dict[str, tuple[Figure, Array, str]]:
     """Name to the index at the file's values, its values at the draws (n,), and why it has no interval, in words.
 
-    The rules are those of `coeflab.vehicle.derived.stability`: every coefficient in it needs an uncertainty, and no denominator may
+    The rules are those of `coeflab.vehicle.stability.stability`: every coefficient in it needs an uncertainty, and no denominator may
     reach zero.
 
     Parameters

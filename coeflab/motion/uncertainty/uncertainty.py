@@ -27,9 +27,9 @@ from coeflab.motion.uncertainty.draws import Uncertain, drawn, drawn_stability, 
 from coeflab.motion.uncertainty.sobol import SobolDesign, known_share, share_noise, sobol_design, sobol_indices
 from coeflab.motion.uncertainty.spread import MOST_LACKING, Importance, Spread, shares, spread
 from coeflab.motion.vehicle import Vehicle
-from coeflab.vehicle.derived import INDICES
 from coeflab.vehicle.inertia import MEASURED, WaterInertia
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import INDICES
 
 FEWEST_MEMBERS = 40
 

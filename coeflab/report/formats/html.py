@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import ABSENT, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
-from coeflab.report.figures.answer import share_text
+from coeflab.report.figures.first_page import share_text
 from coeflab.report.figures.svg import size_of
 from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label

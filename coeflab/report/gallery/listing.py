@@ -21,8 +21,8 @@ from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import brief
 from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
-from coeflab.vehicle.derived import INDICES, sense, stability
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.stability import INDICES, sense, stability
 
 SERVED = {
     ".html": "text/html; charset=utf-8",

@@ -39,8 +39,8 @@ from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.added_mass import particulars
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import CENTRES, Derived, centre_of_pressure
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import CENTRES, Derived, centre_of_pressure
 
 PANELS = 3000
 WIDTH, TALLEST, GAP, CAPTION = 340.0, 90.0, 12.0, 16.0

@@ -43,8 +43,8 @@ from coeflab.study.symmetry import zeros
 from coeflab.study.towed import Towed, towed
 from coeflab.study.validation import validations
 from coeflab.tables.force_table import STUDIES, ForceTable
-from coeflab.vehicle.derived import centre_of_pressure, stability
 from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.stability import centre_of_pressure, stability
 
 LONGEST = 80
 AS_BEFORE = "Data, sources and the table of all coefficients stand in the section of the first fit of this campaign."

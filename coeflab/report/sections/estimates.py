@@ -16,16 +16,16 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
-from coeflab.report.figures.answer import forest_figure, share_text
+from coeflab.report.figures.first_page import forest_figure, share_text
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
 from coeflab.report.sections.body import hull_figure
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
 from coeflab.study.study import FromShape, Study
-from coeflab.vehicle.derived import Derived, sense, stability
 from coeflab.vehicle.merge import Merged, estimates_of
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import Derived, sense, stability
 
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 COLUMN = 244.0  # points: 86 mm

@@ -33,10 +33,10 @@ from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 from coeflab.vehicle.inertia import against_computed
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 
 UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
 IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}

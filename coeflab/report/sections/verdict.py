@@ -10,7 +10,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors
 from coeflab.report.acceptance import headline_of_study
 from coeflab.report.document import Section
-from coeflab.report.figures.answer import share_text
+from coeflab.report.figures.first_page import share_text
 from coeflab.report.sections.estimates import verdict_of_shape
 from coeflab.report.sections.parameter_file import in_words
 from coeflab.report.tables import results as tables

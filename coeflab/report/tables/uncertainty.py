@@ -18,7 +18,7 @@ from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
 from coeflab.study.validation import AS_PRINTED, FRICTION, WIDE, Validation
-from coeflab.vehicle.derived import Derived
+from coeflab.vehicle.stability import Derived
 
 SMALL = 0.01
 LISTED = 5

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.study.study import Study
-from coeflab.vehicle.derived import centre_of_pressure
+from coeflab.vehicle.stability import centre_of_pressure
 
 summary = "x = Nv'/Yv' and -Mw'/Zw' with intervals"
 citations = ("feldman1979",)

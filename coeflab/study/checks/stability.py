@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.study.study import Study
 from coeflab.study.validation import PrintedIndex, printed_indices
-from coeflab.vehicle.derived import INDICES, sense, stability, without_restoring
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import INDICES, sense, stability, without_restoring
 
 summary = "stability indices G_h and G_v with U95 and verdict"
 citations = ("feldman1979", "roddy1990")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.report.answer import answer
 from coeflab.report.document import Document, digest_of
+from coeflab.report.first_page import answer
 from coeflab.report.formats import REPORTERS
 from coeflab.report.gallery import listing
 from coeflab.report.gallery.listing import Shelf

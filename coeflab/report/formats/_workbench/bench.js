@@ -1,5 +1,5 @@
 "use strict";
-// From an edit to value, U95, G_h and the terms of the force law, as coeflab/fits and coeflab/vehicle/derived.py have them.
+// From an edit to value, U95, G_h and the terms of the force law, as coeflab/fits and coeflab/vehicle/stability.py have them.
 const benchOf = (data) => {
   const slope = slopeAtOrigin(data.constants), known = new Map();
   const untouched = { limit: null, dropped: [], without: [] };

@@ -12,14 +12,14 @@ import pytest
 from coeflab.cli.show import plain_lines
 from coeflab.core.table import Severity, in_digits_of, percent
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.report import answer as first_page
-from coeflab.report.answer import answer, answer_table, study_summary
-from coeflab.report.answer_notes import _several
+from coeflab.report import first_page
 from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Document, Section
-from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, slope_figure
+from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, share_text, slope_figure
 from coeflab.report.figures.panel import SIZE
 from coeflab.report.figures.svg import text_width
+from coeflab.report.first_page import answer, answer_table, study_summary
+from coeflab.report.first_page_notes import _several
 from coeflab.report.formats import html, pdf
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.report.sections.verdict import verdict

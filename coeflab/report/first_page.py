@@ -17,11 +17,18 @@ from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
-from coeflab.report.answer_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
-from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
+from coeflab.report.figures.first_page import (
+    axes_figure,
+    forest_figure,
+    renamed,
+    share_text,
+    shares_figure,
+    slope_figure,
+)
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
+from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
@@ -29,8 +36,8 @@ from coeflab.report.sections.parameter_file import from_literature
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.vehicle.derived import ALONE, INDICES, Derived, sense, stability
 from coeflab.vehicle.reference import Comparison, Reference, Relation
+from coeflab.vehicle.stability import ALONE, INDICES, Derived, sense, stability
 
 LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
