@@ -452,7 +452,7 @@ def test_suboff(suboff: Study):
     assert said[6] == (
         "Computed and measured, but no verdict: Kv' (zero by symmetry, and the test has a bias), X0' (grid study diverged; friction "
         "differs by 9 % between the two Reynolds numbers, ITTC 1957), Xvv' (grid study diverged). Computed and measured, but no "
-        "verdict: Yr' and Nr' (the test used another method, PMM)."
+        "verdict: Yr' and Nr' (the test used another method, PMM; grid study diverged in suboff_tow_bare_hull)."
     )
     assert said[7] == (
         "No verdict, but beyond U_V (computed / measured - 1): Kv', X0' (+3 %), Yr' (-70 %) and Nr' (-46 %) of suboff_cfd_barehull; "
