@@ -294,7 +294,7 @@ def _beyond(found: Sequence[Validation]) -> list[str]:
         apart = "" if v.zero or not v.measured else f" ({100.0 * v.error / v.measured:+.0f} %)"
         far.setdefault(v.simulation, []).append(f"{primed(v.symbol)}{apart}")
     each = [f"{listed(symbols)} of {campaign}" for campaign, symbols in far.items()]
-    return [in_sentences("No verdict, but beyond U_V (computed / measured - 1): ", each)] if each else []
+    return [in_sentences("No verdict, but beyond U_V (difference in % of the measured value): ", each)] if each else []
 
 
 KINDS = ("coefficients predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")

@@ -455,7 +455,7 @@ def test_suboff(suboff: Study):
         "verdict: Yr' and Nr' (the test used another method, PMM; grid study diverged in suboff_tow_bare_hull)."
     )
     assert said[7] == (
-        "No verdict, but beyond U_V (computed / measured - 1): Kv', X0' (+3 %), Yr' (-70 %) and Nr' (-46 %) of suboff_cfd_barehull; "
+        "No verdict, but beyond U_V (difference in % of the measured value): Kv', X0' (+3 %), Yr' (-70 %) and Nr' (-46 %) of suboff_cfd_barehull; "
         "Yr' (-62 %) and Nr' (-41 %) of suboff_tow_bare_hull."
     )
     assert said[8].startswith("Only the predictions are independent evidence.")
