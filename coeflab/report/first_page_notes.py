@@ -84,7 +84,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:
         if r.other_scaling is not None:
-            out.append(f"{r.name}: length of primes not stated; {_readings(r.scaling, r.other_scaling)}.")
+            out.append(f"{r.name}: length not stated; {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 

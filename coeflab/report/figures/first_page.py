@@ -106,7 +106,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - rows * ROW)
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
-    caption = f"Plotted: {quotient}. {name} is its value at |{sweep.variable}'| = 0. A linear force puts the points on a horizontal line."
+    caption = f"{name} is the value of {quotient} at |{sweep.variable}'| = 0. A linear force gives a horizontal line."
     wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
     caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
@@ -207,13 +207,11 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
         svg = svg_text(figure, "answer-forest", title, said)
     outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
-    caption = "Bars: our U95; at the right, in % of our value." + (f" Line: {compared}." if compared else "")
+    caption = "Bars: our U95, at the right in % of ours." + (f" Line: {compared}." if compared else "")
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
     caption += (
-        " Arrow: the bar continues outside the plot."
-        if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1]
-        else ""
+        " Arrow: the bar goes on." if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1] else ""
     )
     return Figure("answer-forest", svg, title, caption, said, (panel,))
 

@@ -335,7 +335,7 @@ def validation(found: Sequence[Validation]) -> Table:
     verdicts = {True: "|E| < U_V", False: "|E| > U_V", None: "no verdict"}
     rows = tuple(
         (
-            primed(v.symbol), v.simulation, v.experiment, coefficient(v.computed), coefficient(v.measured),
+            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), coefficient(v.computed), coefficient(v.measured),
             coefficient(v.error), coefficient(v.u_measured), coefficient(v.u_numerical), coefficient(v.u_reduction),
             coefficient(v.u_input), coefficient(v.u_validation), verdicts[v.within],
         )
