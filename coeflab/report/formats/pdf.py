@@ -23,7 +23,7 @@ from coeflab.report.printable import BREAK, WORD, breakable, glyphs, shortened
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
 citations: tuple[str, ...] = ()
 
-TEMPLATE = ("data", "symbols", "page", "figures", "tables", "answer", "report")
+TEMPLATE = ("data", "symbols", "page", "figures", "tables", "first_page", "report")
 CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
 LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
