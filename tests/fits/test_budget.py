@@ -19,6 +19,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.slope_at_origin import fit
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, with_budget
 from coeflab.fits.uncertainty.grid_convergence import Convergence, gravest, grid_studies
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import derivative
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty, read_campaign
@@ -256,6 +257,19 @@ def test_a_ratio_over_an_interval_with_zero_has_none() -> None:
     x = centre_of_pressure(with_budget(result, found).coefficients, result.campaign)[0]
     assert x.result is None
     assert "divides by Yv'" in x.statement
+
+
+def test_a_grid_error_as_large_as_the_value_opens_its_sign() -> None:
+    result, tables = both(None)
+    plain = budgets_of(result, tables)
+    wide = [
+        replace(b, u95=1.01 * abs(b.value), parts=(*b.parts, BudgetPart("grid", abs(b.value), None))) for b in plain
+    ]
+    before = {c.symbol: c.status for c in with_budget(result, plain).coefficients.coefficients if c.value}
+    after = {c.symbol: c.status for c in with_budget(result, wide).coefficients.coefficients if c.value}
+    known = [b.symbol for b in plain if b.u95 is not None and before[b.symbol] is Status.OK]
+    assert known
+    assert all(after[symbol] is Status.SIGN_OPEN for symbol in known)
 
 
 def parameters(values: dict[str, tuple[float, float]], mass: bool = True) -> ParameterFile:

@@ -192,6 +192,19 @@ def test_a_force_that_is_worse_than_none_is_said() -> None:
     assert export(torpedo(), "xdyn").loss.worse_than_nothing == ()
 
 
+def test_a_component_next_to_nothing_is_not_called_worse_than_none() -> None:
+    """X, which HoloOcean's drag misses by more than itself, less than a hundredth of the largest force."""
+    loss = export(torpedo(), "holoocean").loss
+    assert loss.worse_than_nothing == ("X",)
+    share = 0.009 * loss.forces.largest.max() / loss.forces.largest[0]
+    faint = {name: np.array(getattr(loss.forces, name)) for name in ("largest", "worst", "rms", "size")}
+    for values in faint.values():
+        values[0] *= share
+    small = replace(loss, forces=replace(loss.forces, **faint))
+    assert small.too_small == ("X",)
+    assert small.worse_than_nothing == ()
+
+
 STEERED = [n for n in TARGETS if isinstance(EXPORTERS.load(n), SteeredExporter)]
 
 

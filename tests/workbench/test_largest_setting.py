@@ -16,6 +16,7 @@ from coeflab.core.files import shipped
 from coeflab.core.table import Severity
 from coeflab.fits.results.fit_result import Sensitivity
 from coeflab.fits.statistics.origin_slope import estimate
+from coeflab.study.checks import coverage
 from coeflab.study.checks.largest_setting import check, moved_by_the_rest
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
@@ -60,6 +61,27 @@ def test_a_move_below_a_tenth_is_a_note_and_a_copy_by_symmetry_says_nothing() ->
     assert found("", -0.0340) == [Severity.WARN]
     assert found("", -0.0320) == [Severity.NOTE]
     assert found("tow/other", -0.0340) == []
+
+
+def test_a_copy_by_symmetry_repeats_no_finding_on_its_settings() -> None:
+    """A sweep that begins far from zero is warned of; the one that is turned from it is not."""
+    study = small_study(FULL)
+    fit = study.fits[0]
+
+    def found(by_symmetry: str) -> list[str]:
+        far = tuple(
+            replace(s, x=np.copysign(1.0 + np.abs(s.x), s.x), by_symmetry=by_symmetry)
+            for s in fit.sweeps
+            if s.symbol == "Yv"
+        )
+        return [
+            c.statistic
+            for c in coverage.check(replace(study, fits=(replace(fit, sweeps=far),)))
+            if c.severity is Severity.WARN
+        ]
+
+    assert any(said.startswith("smallest |v'| = ") for said in found(""))
+    assert found("tow/other") == []
 
 
 @pytest.fixture(scope="module")
