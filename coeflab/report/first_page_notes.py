@@ -69,10 +69,9 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     out += lost_by_move(study)
     own = [r for r in rows if r.source in towed_rows]
     if own:
-        come, get = ("comes", "gets") if len(own) == 1 else ("come", "get")
-        out.append(
-            f"{listed([primed(r.symbol) for r in own])} {come} from our CFD {own[0].source} and {get} no verdict."
-        )
+        body = next((t.body for t in study.tables if t.campaign == own[0].source), "")
+        of = f", of body {body}" if body and body != beside.body else ""
+        out.append(f"{', '.join(primed(r.symbol) for r in own)}: our CFD {own[0].source}{of}; no verdict.")
     if any(r.agrees is not None for r in rows):
         out.append(_the_authors(study, beside, rows))
     out += filter(None, (_independent(study), _not_in_u95(study, rows)))
@@ -161,7 +160,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report states uncertainties: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states for its own derivatives: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -188,7 +187,7 @@ def _independent(study: Study) -> str:
     uncounted += [primed(v.symbol) for v in found_without if v.beyond]
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
     said += (
-        in_sentences(" Not counted, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)
+        in_sentences(" No verdict, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)
         if uncounted
         else ""
     )

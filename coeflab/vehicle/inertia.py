@@ -216,7 +216,7 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
             first, second = (f"{COMPONENTS[k]}{MOTIONS[k]}dot" for k in (i, j))
             apart = f", {100.0 * abs(value - other) / size:.2g} % of sqrt({first} {second}) apart" if size > 0.0 else ""
             said.append(
-                f"{name} and {mirror} must be equal, but are {-value:.4g} and {-other:.4g} {unit} in the file{apart}; their mean is used"
+                f"{name} and {mirror} are equal in theory, but {-value:.4g} and {-other:.4g} {unit} in the file{apart}; their mean is used"
             )
     return out, tuple(said)
 
@@ -226,13 +226,14 @@ def against_computed(parameters: ParameterFile) -> str:
     computed, stated = _computed(parameters), stated_accelerations(parameters)
     if computed is None or parameters.added_mass is None:
         return ""
+    how = "stated" if parameters.added_mass.method == STATED else f"computed by {parameters.added_mass.method}"
     apart = [
         f"{primed(name)} {100.0 * (computed[i, i] / value - 1.0):+.0f} %"
         for (i, j), (name, value) in stated.items()
         if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
     ]
     return (
-        f"for comparison, the added mass of {parameters.added_mass.body}{_method(parameters.added_mass)} against the file's: {', '.join(apart)}"
+        f"{how}, diagonal entries that differ by over {100.0 * APART:.0f} % from the file's: {', '.join(apart)}"
         if apart
         else ""
     )

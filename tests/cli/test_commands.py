@@ -60,7 +60,7 @@ def test_validation_prints_the_verdict(validated: Validated) -> None:
     for column in ("experiment", "publ. CFD", "PMM CFD"):
         assert column in done.stdout
     assert re.search(r"\n  Yr' .* \(> 100 %\)", done.stdout)
-    assert "Yr' and Nr' come from our CFD suboff_tow_aff8 and get no verdict." in flat(done.stdout)
+    assert "Yr', Nr': our CFD suboff_tow_aff8, of body suboff_aff8; no verdict." in flat(done.stdout)
     written = set(files(folder / "reports" / "suboff"))
     assert {"report.html", "suboff_fully_appended.parameters.json", "suboff_bare_hull.coefficients.csv"} <= written
     assert f"({len(written)} of {len(written)} files changed)" in flat(done.stdout)

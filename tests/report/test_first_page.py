@@ -261,7 +261,7 @@ def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyP
     assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
     assert row.difference == pytest.approx(0.0003)
     assert made.rows[:2] == beside.rows[:2]
-    assert "Nr' comes from our CFD own_tow and gets no verdict." in made.notes
+    assert "Nr': our CFD own_tow; no verdict." in made.notes
     assert "no rotating-arm data" not in made.sentence
 
 

@@ -22,14 +22,14 @@ from coeflab.study.symmetry import zeros
 TEXT = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "Values with a form part assume no single shape of curve. The others, named below the tables, assume the shape of the force law.",
     "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
     "Random: scatter of the points. Form: unknown shape of the curve.",
-    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with a slope part, "
-    "n counts the points where its motions are not zero, combined runs included; for a constant with one, all points. A dash: not applicable or not assessed; not in U95.",
+    "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law.",
+    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with an entry under slope, "
+    "n counts the points where the motions of the term are not zero, combined runs included; for a constant, all points. A dash: not applicable or not assessed; not in U95.",
 )
 INPUT = "Input: declared errors of the inputs, and the grid."
-SLOPE = "Slope: for a term fitted with the slopes fixed, the part that comes from their U95."
+SLOPE = "Slope: the part that comes from the U95 of the slopes, which the fit of the term holds fixed."
 OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
 FIXED = (

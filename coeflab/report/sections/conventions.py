@@ -255,7 +255,7 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
     """
     text = (
         f"{AXES_ROWS} Tables in other axes are converted to these when they are read.",
-        f"{ANGLES} Input files may use other signs. This report uses these signs and degrees.",
+        f"{ANGLES} Input files may use other signs. Angles are in degrees, derivatives by an angle per radian.",
         CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),

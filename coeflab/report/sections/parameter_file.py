@@ -223,8 +223,10 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
             else "Roots at the speed of the parameter file"
         )
         each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
-        notes = (f"speed of the parameter file: {each}.",) if len(speeds) > 1 else ()
-        tables.append(Table(at, heads, tuple(roots), notes, frozenset({0, 1, 2, 4})))
+        notes = [f"speed of the parameter file: {each}."] if len(speeds) > 1 else []
+        if any("BG left out" in cell for row in roots for cell in row):
+            notes.append("BG left out: these roots hold at high speed only.")
+        tables.append(Table(at, heads, tuple(roots), tuple(notes), frozenset({0, 1, 2, 4})))
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     tables += [made_of] if made_of.rows else []
     mass = Section("mass-used", "Mass and inertia used", tables=tuple(mass_table(study)), appendix=True)
@@ -429,7 +431,7 @@ def added_masses(study: Study) -> tuple[str, ...]:
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
     said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
-        f"Added mass of {name} in roots, motions and exports: {words}." for name, words in said.items() if words
+        f"Added mass of {name} for stability, motions and exports: {words}." for name, words in said.items() if words
     )
 
 
@@ -453,7 +455,7 @@ KINDS = {
 
 
 ACCELERATIONS = {
-    "measured": "the file's acceleration derivatives; computed where it has none",
+    "measured": "the file's acceleration derivatives; gaps are filled with computed added mass",
     "computed": "computed added mass only",
 }
 

@@ -33,7 +33,7 @@ def _named(c: Comparison) -> str:
 WHAT_COUNTS = (
     "A prediction compares a coefficient from CFD with the one measured on the same body; its tolerance is the validation uncertainty U_V. "
     "A re-analysis compares our coefficient from the authors' data with theirs; its tolerance is U95. For a recomputed index, we compute "
-    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. Only the appendix (--full) lists these indices.",
+    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. Only the appendix (--full) lists the recomputed indices.",
 )
 TWO_KINDS = (
     "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "

@@ -335,7 +335,11 @@ def campaigns(study: Study) -> Table:
     angles = [f"{c}: {ANGLE_NAMES[c]}" for c in ANGLE_NAMES if any(c in t.varies for t in study.tables)]
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
-    notes += [f"{name}: {text}" for name, text in computed.items() if towed_ones and name not in towed_ones]
+    notes += [
+        f"{name}, not run in the virtual tank: {text}"
+        for name, text in computed.items()
+        if towed_ones and name not in towed_ones
+    ]
     notes += [f"Parameter files and manoeuvres are for {listed(list(at))}."] if at else []
     title = "What was tested and computed"
     return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))

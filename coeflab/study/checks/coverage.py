@@ -85,7 +85,7 @@ def _extrapolation(s: Sweep) -> Check | None:
         Severity.WARN,
         f"smallest |{s.variable}'| = {size.min():.3g}, largest {size.max():.3g}",
         "a run within a quarter of the range from zero",
-        "The value at the origin is extrapolated. Run smaller settings.",
+        "The value at the origin is extrapolated. Run smaller angles or rates.",
     )
 
 
