@@ -2,14 +2,16 @@
 const contents = document.querySelector("details.contents"), list = contents.querySelector("nav");
 {
   const beside = matchMedia("(min-width: 75rem)");
-  let chosen = false;
+  let chosen = false, arranged = false;
   const arrange = () => {
-    contents.open = beside.matches || chosen;
+    contents.open = arranged = beside.matches || chosen;
     if (beside.matches) list.tabIndex = 0;
     else list.removeAttribute("tabindex");
     contents.classList.add("arranged");
   };
-  contents.addEventListener("toggle", () => { if (!beside.matches) chosen = contents.open; });
+  // The event of a toggle comes late, perhaps after the window has changed: a reader's click counts at once, and what arrange did never does.
+  contents.querySelector("summary").addEventListener("click", () => { if (!beside.matches) chosen = !contents.open; });
+  contents.addEventListener("toggle", () => { if (!beside.matches && contents.open !== arranged) chosen = contents.open; });
   beside.addEventListener("change", arrange);
   arrange();
 }
