@@ -130,7 +130,7 @@ def test_on_a_phone_a_wide_table_is_a_block_a_row_that_names_its_cells(visit, wr
     assert shown[:2] == ["table", "row"]
     assert [n.strip() for n in shown[2][1:]] == shown[3][1:]
     page.set_viewport_size({"width": 1440, "height": 900})
-    assert page.locator(".stacked").count() == 0
+    page.wait_for_function("() => !document.querySelector('.stacked')")
     page.set_viewport_size({"width": 700, "height": 390})
     page.set_viewport_size({"width": 390, "height": 700})  # a phone that is turned
     page.wait_for_function(
