@@ -17,7 +17,6 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS, derivative
 
 
-# Powers of U, of L and of 1/2 rho in one unit of what is no derivative.
 def powers_of(symbol: str) -> tuple[int, int, int]:
     """Powers of U, of L and of 1/2 rho that make one primed unit of a derivative dimensional, such as (1, 2, 1) of Yv.
 
@@ -39,6 +38,7 @@ def powers_of(symbol: str) -> tuple[int, int, int]:
     return speed, length, 1
 
 
+# Powers of U, of L and of 1/2 rho in one unit of what is no derivative.
 QUANTITIES: dict[str, tuple[int, int, int]] = {
     **{component: powers_of(f"{component}0") for component in COMPONENTS},
     **dict.fromkeys(LINEAR, (1, 0, 0)),

@@ -17,7 +17,6 @@ from coeflab.report.document import AnswerRow
 from coeflab.report.tables.results import lost_by_move
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
-from coeflab.study.towed import towed
 from coeflab.study.validation import by_measured_number, validations
 from coeflab.vehicle.reference import Reference, Relation
 
@@ -178,13 +177,8 @@ def _independent(study: Study) -> str:
     for v in (v for v in found if v.weak):
         shares.setdefault(primed(v.symbol), []).append(v.share)
     weak = [f"{s} (U_V is {_span(each)} of the measured value)" for s, each in shares.items()]
-    uncounted = [
-        primed(r.symbol)
-        for tow in towed(study)
-        for r in tow.rows
-        if r.verdict is None and r.validation is not None and r.validation.beyond
-    ]
-    uncounted += [primed(v.symbol) for v in found_without if v.beyond]
+    wanted_first = sorted(found_without, key=lambda v: v.symbol.removesuffix("'") not in study.plan.wanted)
+    uncounted = [primed(v.symbol) for v in wanted_first if v.beyond]
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
     said += (
         in_sentences(" No verdict, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)

@@ -209,17 +209,9 @@ def _published(
     read = reference.readings(symbol, scaling)
     if read:
         return read[0][1]
-    stated = _literature(reference, symbol)
-    return None if stated is None else stated[0] * reference.scaling.ratio(symbol, scaling)
-
-
-def _literature(reference: Reference, symbol: str) -> tuple[float, float, str] | None:
-    """Value, relative uncertainty and method of a derivative that the source has by another method."""
-    for kind in reference.literature:
-        for v in kind.values:
-            if v.symbol == symbol and v.value is not None:
-                return v.value, kind.uncertainty, kind.method
-    return None
+    stated = reference.printed_by_any_method(symbol)
+    value = None if stated is None else stated.value
+    return None if value is None else value * reference.scaling.ratio(symbol, scaling)
 
 
 def _against(
