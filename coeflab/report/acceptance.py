@@ -284,7 +284,7 @@ def _without_verdict(found: Sequence[Validation]) -> str:
         own = [f"{why} in {v.simulation}" for v in mine for why in v.reasons if why not in shared]
         by.setdefault("; ".join((*shared, *own)), []).append(primed(symbol))
     each = [f"{listed(symbols)} ({why})" for why, symbols in by.items()]
-    return in_sentences("Computed and measured, but no verdict: ", each, join=", ".join)
+    return in_sentences("No verdict on ", each, join=", ".join)
 
 
 def _beyond(found: Sequence[Validation]) -> list[str]:
@@ -294,7 +294,7 @@ def _beyond(found: Sequence[Validation]) -> list[str]:
         apart = "" if v.zero or not v.measured else f" ({100.0 * v.error / v.measured:+.0f} %)"
         far.setdefault(v.simulation, []).append(f"{primed(v.symbol)}{apart}")
     each = [f"{listed(symbols)} of {campaign}" for campaign, symbols in far.items()]
-    return [in_sentences("No verdict, but beyond U_V (difference in % of the measured value): ", each)] if each else []
+    return [in_sentences("Of these, beyond U_V (difference in % of the measured value): ", each)] if each else []
 
 
 KINDS = ("coefficients predicted by CFD", "re-analyses of the authors' data", "recomputed stability indices")

@@ -27,7 +27,7 @@ from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.report.bench import bench_of
-from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
+from coeflab.report.document import Document, Section, Topic, digest_of, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
 from coeflab.report.first_page import answer
 from coeflab.report.notation import keeping, users_texts
@@ -213,6 +213,7 @@ def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
         replace(
             s,
             paragraphs=three_lines(s.paragraphs),
+            topics=tuple(replace(t, texts=three_lines(t.texts)) for t in s.topics),
             tables=tuple(replace(t, notes=three_lines(t.notes)) for t in s.tables),
             figures=tuple(replace(f, caption=first_lines(f.caption)) for f in s.figures),
             subsections=_kept(s.subsections),
@@ -250,7 +251,10 @@ def _document(study: Study, full: bool) -> Document:
         *_campaigns(campaigns),
     )
     if not full and (study.shape is None or study.plan.file is not None):
-        sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
+        sections = (
+            replace(sections[0], topics=(*sections[0].topics, Topic("Appendix", (also(study),)))),
+            *sections[1:],
+        )
     bodies = list(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     names = ", ".join(bodies) if len(bodies) <= NAMED_BODIES else f"{len(bodies)} bodies"
     return Document(
@@ -290,7 +294,7 @@ def also(study: Study) -> str:
     ]
     each = [f"{n} {names[0] if n == 1 else (*names, f'{names[0]}s')[1]}" for n, *names in held if n]
     listing = f"{', '.join(each)}, the quality of the data" if each else "the quality of the data"
-    return f"{where}coeflab report {shlex.quote(name)} --full adds the appendix: {listing}."
+    return f"{where}`coeflab report {shlex.quote(name)} --full` adds the appendix: {listing}."
 
 
 def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:

@@ -299,8 +299,25 @@ class Answer:
 
 @brief
 @dataclass(frozen=True, slots=True)
+class Topic:
+    """Sentences on one matter, with its name in the margin.
+
+    Attributes
+    ----------
+    name : str
+        One to three words.
+    texts : tuple of str
+        Paragraphs of plain text.
+    """
+
+    name: str
+    texts: tuple[str, ...]
+
+
+@brief
+@dataclass(frozen=True, slots=True)
 class Section:
-    """Paragraphs, then figures, then tables, then subsections.
+    """Paragraphs, then topics, figures, tables and subsections.
 
     Attributes
     ----------
@@ -314,6 +331,7 @@ class Section:
         Commands to type, one per line.
     appendix : bool
         Only in the whole report.
+    topics : tuple of Topic
     """
 
     anchor: str
@@ -324,6 +342,12 @@ class Section:
     subsections: tuple[Section, ...] = ()
     code: tuple[str, ...] = ()
     appendix: bool = False
+    topics: tuple[Topic, ...] = ()
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """Its paragraphs and those of its topics."""
+        return (*self.paragraphs, *(text for t in self.topics for text in t.texts))
 
 
 @brief

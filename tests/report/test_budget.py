@@ -65,7 +65,7 @@ def test_u95_covers_what_entered_and_names_what_entered_only_some():
     with_inputs = replace(declared, budgets=found)
     assert results.covers(with_inputs) == f"{COVERS}, declared inputs"
     covered = "covers declared inputs, scatter, smooth curvature and onset of stall at an unknown angle;"
-    assert covered in " ".join(coefficients_section(with_inputs).paragraphs)
+    assert covered in " ".join(coefficients_section(with_inputs).texts)
     assert f"covers {results.covers(with_inputs)})." in results.headline(with_inputs)
     grid = tuple(
         replace(b, parts=(*b.parts, replace(b.parts[0], name="grid"))) if b.symbol == "Yv" else b for b in found

@@ -28,7 +28,7 @@ def flat(sections):
 
 def words(study, anchor):
     found = next(s for s in flat(document(study).sections) if s.anchor == anchor)
-    return " ".join(found.paragraphs)
+    return " ".join(found.texts)
 
 
 CORE = ["verdict", "comparison", "coefficients", "checks", "conventions", "provenance", "reproduce"]
@@ -45,10 +45,10 @@ def test_the_core_has_no_appendix_and_says_what_that_holds():
     made = document(study, full=False)
     assert [s.anchor for s in made.sections] == CORE
     assert not any(s.appendix for s in flat(made.sections))
-    last = made.sections[0].paragraphs[-1]
-    assert "--full adds the appendix" in last
+    last = made.sections[0].texts[-1]
+    assert "--full` adds the appendix" in last
     assert "1 fit with every point and curve" in last
-    assert last not in document(study).sections[0].paragraphs
+    assert last not in document(study).sections[0].texts
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW])
@@ -57,7 +57,7 @@ def test_nothing_in_the_core_is_longer_than_three_lines(angles):
     study = replace(small_study(angles, published=True), parameter_files={"boat": vehicle_file()}).with_checks(checks)
     for section in flat(document(study, full=False).sections):
         notes = [n for t in section.tables for n in t.notes]
-        for text in (*section.paragraphs, *notes, *(f.caption for f in section.figures)):
+        for text in (*section.texts, *notes, *(f.caption for f in section.figures)):
             assert len(text) <= 240, text
 
 
@@ -178,8 +178,9 @@ def test_without_published_values_there_is_no_verdict_and_no_comparison():
 
 def test_a_pass_says_what_it_means():
     text = words(small_study(FULL, published=True), "verdict")
-    assert "of their data pass: every difference lies within U95." in text
-    assert "Re-analyses use the authors' own measurements" in text
+    assert "The study passes: no re-analysis failed." in text
+    assert "2 of 2 coefficients agree with the authors' own evaluation of their data, within U95." in text
+    assert "The data are the authors' own" in text
 
 
 @pytest.mark.parametrize(("share", "is_weak"), [(0.26, True), (-0.26, True), (0.24, False)])
@@ -189,30 +190,33 @@ def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
     first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
     text = words(replace(study, comparisons=(first, *others)), "verdict")
     joined = "our U95 and the source's uncertainty together exceed 25 % of the published value"
-    assert (f"One pass is weak, as {joined}: Yv' of tow (26 %)." in text) == is_weak
+    assert (f"Weak, as {joined}: Yv' of tow (26 %)." in text) == is_weak
     failed = replace(study, comparisons=(replace(first, passed=False), *others))
-    assert "weak" not in words(failed, "verdict")
+    assert "weak" not in words(failed, "verdict").lower()
 
 
 def test_a_failure_is_named():
     study = small_study(FULL, published=True)
     first = replace(study.comparisons[0], passed=False)
     text = words(replace(study, comparisons=(first, *study.comparisons[1:])), "verdict")
-    assert "1 of 2 comparisons" in text
-    assert "Yv' of tow" in text
-    assert "fails" in text
+    assert "The study fails: 1 of 2 re-analyses failed." in text
+    assert "1 of 2 coefficients agrees with" in text
+    assert "Beyond U95, a failure: Yv' of tow." in text
 
 
 def test_failed_checks_reach_the_verdict():
     study = small_study(FULL).with_checks((Check("signs", "tow Yv'", Severity.FAIL, "Yv' > 0", "below zero", "axes"),))
-    assert "1 failed" in words(study, "verdict")
-    assert "fails" in words(study, "verdict")
+    assert words(study, "verdict").startswith("The study fails: 1 of 1 check failed.")
+    both = replace(study, comparisons=(replace(small_study(FULL, published=True).comparisons[0], passed=False),))
+    assert words(both, "verdict").startswith("The study fails: 1 of 1 re-analysis and 1 of 1 check failed.")
+    warned = small_study(FULL).with_checks((Check("signs", "tow Yv'", Severity.WARN, "Yv' > 0", "small", "axes"),))
+    assert words(warned, "verdict").startswith("The study passes: no check failed. 1 of 1 check gave a warning.")
 
 
 def test_absent_coefficients_are_named_with_advice():
     text = words(small_study(FULL), "verdict")
     assert "Nr' of tow (no run varies r)." in text
-    assert "Measure next: runs of body of tow that vary r." in text
+    assert "Runs that vary r, of body of tow." in text
 
 
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])

@@ -14,7 +14,7 @@ STATED = "static derivatives 4-5 %"
 
 
 def harvest(study) -> str:
-    return next(p for p in verdict(study).paragraphs if p.startswith("We found "))
+    return next(p for p in verdict(study).texts if p.startswith("We found "))
 
 
 def test_copies_by_symmetry_do_not_count_and_kinds_are_named():

@@ -337,7 +337,7 @@ def test_the_core_of_the_validation_has_twelve_pages(suboff):
     made = opened(whole)
     assert flaws(made) == []
     assert len(made) <= 12
-    texts = [p for s in every(whole.sections) for p in (*s.paragraphs, *(n for t in s.tables for n in t.notes))]
+    texts = [p for s in every(whole.sections) for p in (*s.texts, *(n for t in s.tables for n in t.notes))]
     assert max(map(len, texts)) <= 240
     coefficients = next(s for s in whole.sections if s.anchor == "coefficients")
     zero = [n for t in coefficients.tables for n in t.notes if n.startswith("Zero by symmetry")]

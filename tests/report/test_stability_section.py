@@ -68,7 +68,7 @@ def test_an_index_is_stable_unstable_or_of_open_sign_by_its_interval(values, hal
     assert sentence.startswith(
         f"With controls fixed, straight motion in the horizontal plane is {words}: synthetic (G_h"
     )
-    assert sentence in document(study).sections[0].paragraphs
+    assert sentence in document(study).sections[0].texts
     (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith(f"{said}, G_h = ")
 

@@ -101,7 +101,7 @@ def test_a_measured_number_counts_once(
         assert (
             "2 comparisons judge 1 coefficient from CFD. A coefficient that two campaigns compute counts once" in said
         )
-        assert "Computed and measured, but no verdict: Nv' (no grid study)." in said
+        assert "No verdict on Nv' (no grid study)." in said
         assert f"CFD predicts {good} of 1 judged coefficients" in first_page_notes._independent(study)
 
 

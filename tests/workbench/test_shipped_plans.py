@@ -70,7 +70,7 @@ def test_the_report_shows_the_manoeuvre(carried_out: Callable[[str], Study]) -> 
 
 def test_what_is_said_of_coefficients_is_true_of_the_fit(carried_out: Callable[[str], Study]) -> None:
     """A polar and surfaces were reported as slopes of a weighted mixture of forms."""
-    said = {n: " ".join(coefficients_section(carried_out(n)).paragraphs) for n in ("thauv_synthetic", "huuv_synthetic")}
+    said = {n: " ".join(coefficients_section(carried_out(n)).texts) for n in ("thauv_synthetic", "huuv_synthetic")}
     assert "fit of the form" in said["thauv_synthetic"]
     assert "no coefficient with a SNAME symbol" in said["huuv_synthetic"]
     assert not [n for n, text in said.items() if "weighted" in text]

@@ -272,9 +272,9 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     page = document(steered, full=True)
     sections = {s.anchor: s for s in page.sections}
     assert sections["coefficients"].title == "Estimates"
-    assert "Each slope comes from one model" not in " ".join(sections["coefficients"].paragraphs)
-    assert any("kg of ballast" in p for p in sections["verdict"].paragraphs) or "too heavy" in " ".join(
-        sections["verdict"].paragraphs
+    assert "Each slope comes from one model" not in " ".join(sections["coefficients"].texts)
+    assert any("kg of ballast" in p for p in sections["verdict"].texts) or "too heavy" in " ".join(
+        sections["verdict"].texts
     )
 
 

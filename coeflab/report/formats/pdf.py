@@ -180,6 +180,7 @@ def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[st
         "fresh": level > 1 and later and len(section.subsections) >= CHAPTER,
         "title": _text(shortened(section.title, LONGEST_TITLE)),
         "paragraphs": [_text(p) for p in section.paragraphs],
+        "topics": [{"name": _text(t.name), "texts": [_text(p) for p in t.texts]} for t in section.topics],
         "code": [_folding(glyphs(line)) for line in section.code],
         "figures": [_figure(f) for f in section.figures],
         "tables": [_table(t, level) for t in section.tables],

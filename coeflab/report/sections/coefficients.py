@@ -11,7 +11,7 @@ from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
-from coeflab.report.document import Section
+from coeflab.report.document import Section, Topic
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.results import without
@@ -19,18 +19,23 @@ from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 
-TEXT = (
+SLOPES = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
-    "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used.",
-    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table.{} The parts of U95 are given in % of the value. "
-    "Random: scatter of the points. Form: unknown shape of the curve.",
-    "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law.",
-    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with an entry under slope, "
-    "n counts the points where the motions of the term are not zero, combined runs included; for a constant, all points. A dash: not applicable or not assessed; not in U95.",
+    "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used."
 )
+COVERS = (
+    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table."
+)
+PARTS = "The parts of U95 are in % of the value. Random: scatter of the points. Form: unknown shape of the curve."
+SHAPE = "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law."
 INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: the part that comes from the U95 of the slopes, which the fit of the term holds fixed."
-OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
+DASH = "A dash: not applicable or not assessed; not in U95."
+POINTS = (
+    "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with an entry under slope, n counts "
+    "the points where the motions of the term are not zero, combined runs included; for a constant, all points."
+)
+OPEN = "U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
@@ -60,45 +65,55 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     return in_sentences("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
 
 
-def _covered(study: Study) -> tuple[str, str]:
-    """What U95 of slopes covers, and in sentences what only some of the slopes have in it."""
+def _covered(study: Study) -> tuple[str, ...]:
+    """What U95 of slopes covers, and what only some of the slopes have in it."""
     every, some = tables.covered(study)
-    only = [f" {in_sentences(f'U95 covers the {name} only for ', places)}" for name, places in some.items()]
-    return listed([*every[1:], *every[0].split(", ")]), "".join(only)
+    whole = COVERS.format(listed([*every[1:], *every[0].split(", ")]))
+    return (whole, *(in_sentences(f"It covers the {name} only for ", places) for name, places in some.items()))
+
+
+def _topics(study: Study, found: Sequence[Table]) -> tuple[Topic, ...]:
+    """How slopes and their U95 are found, and what the columns of the tables are."""
+    heads = {name for t in found for name in t.headers}
+    parts = [PARTS, *(s for name, s in (("input", INPUT), ("slope", SLOPE)) if name in heads), DASH]
+    rows = (cell for t in found for row in t.rows for cell in row)
+    made = [
+        Topic("Slopes", (SLOPES,)),
+        Topic("Interval", _covered(study)),
+        Topic("Its parts", (" ".join(parts), SHAPE)),
+        Topic("Points", (POINTS,)),
+    ]
+    return (*made, *((Topic("Sign open", (OPEN,)),) if any(OPEN_SIGN in cell for cell in rows) else ()))
 
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
-    text: tuple[str, ...] = (
-        tuple(t.format(*_covered(study)) if "{}" in t else t for t in TEXT)
-        if any(f.sweeps for f in study.fits)
-        else FIXED
-        if study.coefficients
-        else NONE
-    )
+    is_swept = any(f.sweeps for f in study.fits)
+    text: tuple[str, ...] = () if is_swept else FIXED if study.coefficients else NONE
     made = {
         fit: t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
     }
     apart = {t.campaign for t in study.plan.tows if t.added is not None}
     found = tuple(t for (campaign, _), t in made.items() if campaign not in apart)
-    heads = {name for t in found for name in t.headers}
-    if any(f.sweeps for f in study.fits):
-        parts = [s for name, s in (("input", INPUT), ("slope", SLOPE)) if name in heads]
-        text += (" ".join(parts),) if parts else ()
-    if any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row):
-        text += (OPEN,)
+    topics = list(_topics(study, found)) if is_swept else []
     if any(name in SET for b in study.budgets if b.kind == "cfd" for name in b.unassessed):
-        text += (CONDITIONS,)
+        topics.append(Topic("CFD", (CONDITIONS,)))
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
-        text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
+        topics.append(
+            Topic(
+                "Without U95",
+                ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",),
+            )
+        )
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
-        text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
+        topics.append(Topic("Form rejected", (Status.FORM_REJECTED.advice,)))
     if apart:
-        text += (OF_TOWS,)
-    absent = _without_value(study)
+        topics.append(Topic("Own tows", (OF_TOWS,)))
+    if absent := _without_value(study):
+        topics.append(Topic("No value", absent))
     whole = tables.coefficients(study)
     appendix = (Section("all-coefficients", "All columns", tables=(whole,), appendix=True),) if whole.rows else ()
-    return Section("coefficients", "Coefficients", (*text, *absent), found, subsections=appendix)
+    return Section("coefficients", "Coefficients", text, found, subsections=appendix, topics=tuple(topics))
 
 
 def _table(study: Study, campaign: str, body: str) -> Table:
@@ -197,4 +212,4 @@ def _without_value(study: Study) -> tuple[str, ...]:
         if c.status is Status.NO_TABLE:
             missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
     each = [f"{listed(symbols)} of {place}" for place, symbols in missing.items()]
-    return (in_sentences("No value, as no table varies the motion: ", each),) if each else ()
+    return (in_sentences("No table varies the motion of ", each),) if each else ()

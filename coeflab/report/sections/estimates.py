@@ -15,7 +15,7 @@ from coeflab.law.symbols import CONTROLS, derivative, primed
 from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
-from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
+from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section, Topic
 from coeflab.report.figures.first_page import forest_figure, share_text
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
@@ -333,9 +333,8 @@ def verdict_of_shape(study: Study) -> Section:
     """What comes out of a shape alone, in short paragraphs."""
     shape = _shape(study)
     text = [sentence(study), *(f"{s[:1].upper()}{s[1:]}." for s in shape.said)]
-    if shape.missing:
-        text.append(f"Missing: {'; '.join(shape.missing)}.")
-    return Section("verdict", "Verdict", tuple(text))
+    missing = (Topic("Missing", tuple(f"{m[:1].upper()}{m[1:]}." for m in shape.missing)),) if shape.missing else ()
+    return Section("verdict", "Verdict", tuple(text), topics=missing)
 
 
 def estimates_sections(study: Study) -> tuple[Section, ...]:

@@ -1,4 +1,4 @@
-"""The verdict of a study in short paragraphs: what agrees, what was found, what is missing, what to measure next."""
+"""The verdict of a study, matter by matter: what agrees, what was found, what is missing, what to measure next."""
 
 from __future__ import annotations
 
@@ -8,75 +8,82 @@ from coeflab.core.table import Severity
 from coeflab.core.wording import in_sentences, listed, spelled_out
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors
-from coeflab.report.acceptance import headline_of_study
-from coeflab.report.document import Section
+from coeflab.report.acceptance import on_predictions
+from coeflab.report.document import Section, Topic
 from coeflab.report.figures.first_page import share_text
 from coeflab.report.sections.estimates import verdict_of_shape
 from coeflab.report.sections.parameter_file import in_words
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
-from coeflab.study.validation import WIDE, validations
+from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
 from coeflab.vehicle.reference import Comparison, Relation
 
 SEVERAL = 3  # campaigns that a sentence names; of more it says how many, and the table has them
 
 
-def _counted(n: int, one: str) -> str:
-    return f"{n} {one}" if n == 1 else f"{n} {one}s"
+def _counted(n: int, one: str, several: str = "") -> str:
+    return f"{n} {one if n == 1 else several or f'{one}s'}"
 
 
 def _named(c: Comparison) -> str:
     return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
 
 
-WHAT_COUNTS = (
-    "A prediction compares a coefficient from CFD with the one measured on the same body; its tolerance is the validation uncertainty U_V. "
-    "A re-analysis compares our coefficient from the authors' data with theirs; its tolerance is U95. For a recomputed index, we compute "
-    "G_h or G_v from their printed derivatives; its tolerance is the rounding of their printed index. Only the appendix (--full) lists the recomputed indices.",
-)
-TWO_KINDS = (
-    "Only the predictions are independent evidence. A re-analysis uses the authors' own measurements: a pass says that our evaluation "
-    "reproduces theirs within U95, not that the measurements are right.",
-    "Re-analyses use the authors' own measurements: a pass says that our evaluation reproduces theirs within U95, not that the "
-    "measurements are right.",
+SAME_DATA = "The data are the authors' own: agreement says that our evaluation reproduces theirs, not that their measurements are right."
+RECOMPUTED = "from the printed derivatives, within the rounding of the index. The appendix lists them (--full)."
+NOT_A_FAILURE = (
+    'This does not fail the study: U_V leaves out the error of the turbulence model, and the errors listed under "Not in U95" below the tables of both '
+    "campaigns."
 )
 
 
-def _re_analysis(study: Study) -> list[str]:
+def _agree(good: int, count: int, one: str) -> str:
+    """How many agree, for example ``2 of 3 coefficients agree``."""
+    return f"{good} of {_counted(count, one)} {'agrees' if good == 1 else 'agree'}"
+
+
+def _re_analyses(study: Study) -> list[str]:
+    """Our fits against the authors' evaluation of the same data."""
     ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
     judged = [c for c in ours if c.passed is not None]
     if not judged:
         return ["The plan names no published evaluation of these data, so there is no verdict on them."]
     failed = [c for c in judged if c.passed is False]
-    count = _counted(len(judged), "comparison")
+    good = len(judged) - len(failed)
+    out = [f"{_agree(good, len(judged), 'coefficient')} with the authors' own evaluation of their data, within U95."]
     if failed:
-        start = f"{len(failed)} of {count} with the test authors' evaluation of their data failed, beyond U95: "
-        out = [in_sentences(start, [_named(c) for c in failed], join=listed)]
-    else:
-        every, verb = ("The one", "passes") if len(judged) == 1 else ("All", "pass")
-        out = [
-            f"{every} {count} with the test authors' evaluation of their data {verb}: every difference lies within U95."
-        ]
+        out.append(in_sentences("Beyond U95, a failure: ", [_named(c) for c in failed], join=listed))
     if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
-        one = len(wide) == 1
-        passes = (
-            f"{'One pass is' if one else f'{spelled_out(len(wide)).capitalize()} passes are'} weak, as {tables.WEAK}: "
-        )
-        out.append(in_sentences(passes, wide, join=listed))
+        out.append(in_sentences(f"Weak, as {tables.WEAK}: ", wide, join=listed))
     if len(ours) > len(judged):
         out.append(in_sentences("No verdict without U95: ", [_named(c) for c in ours if c.passed is None], join=listed))
-    predicted = [v for v in validations(study, study.budgets) if v.within is not None]
-    head = headline_of_study(study)
-    out += [*head[:1], *WHAT_COUNTS, *head[1:], TWO_KINDS[not predicted]]
-    missed = [v for v in predicted if v.within is False]
-    if missed:
-        each = [f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed]
+    return [*out, SAME_DATA]
+
+
+def _predictions(study: Study) -> list[str]:
+    """Coefficients from CFD against those that were measured on the same body."""
+    found = validations(study, study.budgets)
+    counted = [all(v.within for v in one) for one in by_measured_number(found)]
+    out = []
+    if counted:
         out.append(
-            f"{in_sentences('Predictions beyond U_V: ', each, join=listed)} This does not fail the study: U_V leaves out the error of the turbulence model, and the "
-            'errors listed under "Not in U95" below the tables of both campaigns.'
+            f"{_agree(sum(counted), len(counted), 'coefficient')} with the test of the same body, within the validation uncertainty U_V. Only predictions "
+            "are independent evidence."
         )
+    out += on_predictions(study)
+    if missed := [f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in found if v.within is False]:
+        out.append(f"{in_sentences('Beyond U_V: ', missed, join=listed)} {NOT_A_FAILURE}")
     return [*out, *_beyond_without_verdict(study, also=bool(missed))]
+
+
+def _recomputed(study: Study) -> list[str]:
+    """Stability indices from printed derivatives."""
+    found = [i.holds for i in printed_indices(study)]
+    if not found:
+        return []
+    indices, follow = ("index", "follows") if len(found) == 1 else ("indices", "follow")
+    return [f"{sum(found)} of {len(found)} printed stability {indices} {follow} {RECOMPUTED}"]
 
 
 def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
@@ -114,26 +121,42 @@ def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
     return " ".join(each)
 
 
+def _outcome(study: Study) -> tuple[str, ...]:
+    """Whether the study fails, and by what; empty where nothing was judged."""
+    failed = [c for c in study.checks if c.severity is Severity.FAIL]
+    beyond = [c for c in study.comparisons if c.passed is False]
+    judged = [c for c in study.comparisons if c.passed is not None]
+    what = [f"{len(beyond)} of {_counted(len(judged), 're-analysis', 're-analyses')}"] if beyond else []
+    what += [f"{len(failed)} of {_counted(len(study.checks), 'check')}"] if failed else []
+    refused = f"{_counted(len(study.refused), 'export')} {'was' if len(study.refused) == 1 else 'were'} refused"
+    if study.failed:
+        each = [f"{listed(what)} failed"] if what else []
+        return (f"The study fails: {'; '.join([*each, *([refused] if study.refused else [])])}.",)
+    warned = sum(c.severity is Severity.WARN for c in study.checks)
+    warnings = f" {warned} of {_counted(len(study.checks), 'check')} gave a warning." if warned else ""
+    if judged and study.checks:
+        return (f"The study passes: no re-analysis and no check failed.{warnings}",)
+    if study.checks or judged:
+        return (f"The study passes: no {'check' if study.checks else 're-analysis'} failed.{warnings}",)
+    return ()
+
+
 def verdict(study: Study) -> Section:
-    """What comes out, in short paragraphs: the verdict, what was found, stability, what is missing, the checks."""
+    """What comes out, matter by matter: what agrees, stability, what was found and what is missing."""
     if study.shape is not None:
         return verdict_of_shape(study)
-    text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
-    if others:
-        text.append(_no_verdict_on(study, others))
-    text += [*in_words(study), *_without_value(study), *_next(study)]
-    failed = [c for c in study.checks if c.severity is Severity.FAIL]
-    warned = sum(c.severity is Severity.WARN for c in study.checks)
-    if study.checks:
-        count = _counted(len(study.checks), "check")
-        text.append(f"Of {count}, {len(failed) or 'none'} failed and {warned or 'none'} gave a warning.")
-    if study.failed:
-        text.append("The study as a whole fails.")
-    elif study.checks or study.comparisons:
-        both = "no re-analysis and no check failed"
-        text.append(f"The study does not fail: {both if study.comparisons else 'no check failed'}.")
-    return Section("verdict", "Verdict", tuple(text))
+    topics = (
+        Topic("Re-analyses", tuple(_re_analyses(study))),
+        Topic("Predictions", tuple(_predictions(study))),
+        Topic("Recomputed", tuple(_recomputed(study))),
+        Topic("Other bodies", (_no_verdict_on(study, others),) if others else ()),
+        Topic("Stability", tuple(in_words(study))),
+        Topic("Coefficients", (_harvest(study), *_wide(study))),
+        Topic("No value", tuple(_without_value(study))),
+        Topic("Measure next", tuple(_next(study))),
+    )
+    return Section("verdict", "Verdict", _outcome(study), topics=tuple(t for t in topics if t.texts))
 
 
 def _harvest(study: Study) -> str:
@@ -192,17 +215,14 @@ def _without_value(study: Study) -> list[str]:
             f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
             for place, symbols in places.items()
         ]
-        reason = (
-            ""
-            if is_untabled
-            else f" ({'reason in its section' if status is Status.NOT_DETERMINED else status.replace('_', ' ')})"
-        )
-        out.append(f"{in_sentences(f'No value{reason}: ', names)} {'' if is_untabled else status.advice}".strip())
+        reason = "reason in its section" if status is Status.NOT_DETERMINED else status.replace("_", " ")
+        start = "" if is_untabled else f"{reason[0].upper()}{reason[1:]}: "
+        out.append(f"{in_sentences(start, names)} {'' if is_untabled else status.advice}".strip())
     return out
 
 
 def _next(study: Study) -> list[str]:
-    """What to measure next: motions that no table of a body varies, and runs for wanted values with a wide interval."""
+    """Motions that no table of a body varies."""
     varied: dict[str, set[str]] = {}
     for t in study.tables:
         varied.setdefault(t.body, set()).update(t.varies)
@@ -212,22 +232,26 @@ def _next(study: Study) -> list[str]:
             lacking.setdefault(c.body, {}).update(
                 dict.fromkeys(f for f in derivative(c.symbol).factors if f not in varied.get(c.body, set()))
             )
-    runs = [f"runs of {body} that vary {' and '.join(motions)}" for body, motions in lacking.items() if motions]
+    runs = [f"runs that vary {' and '.join(motions)}, of {body}" for body, motions in lacking.items() if motions]
+    return [f"{listed(runs)[:1].upper()}{listed(runs)[1:]}."] if runs else []
+
+
+def _wide(study: Study) -> list[str]:
+    """Wanted values with a wide interval, and how to find the runs that narrow it."""
     wide: dict[str, list[str]] = {}
     for c in study.coefficients:
         if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
             wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
-    out = [in_sentences("Measure next: ", runs, join=listed)] if runs else []
-    if wide:
-        every = [primed(s) for s in study.plan.wanted]
-        whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
-        each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
-        among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
-        out.append(
-            f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the three runs "
-            "that narrow U95 most."
-        )
-    return out
+    if not wide:
+        return []
+    every = [primed(s) for s in study.plan.wanted]
+    whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
+    each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
+    among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
+    return [
+        f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the three runs "
+        "that narrow U95 most."
+    ]
 
 
 def _not_varied(symbols: Sequence[str]) -> str:
