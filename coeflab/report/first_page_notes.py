@@ -90,11 +90,12 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
     """What the compared column is, and by which tests of their own its authors have what no table here gives."""
     column = beside.columns[0]
     reports = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and r.body == beside.body]
+    towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
     methods: dict[str, list[str]] = {}
     for row in rows:
         printed = row.published[0] if row.published else None
         stated = column.printed(row.symbol)
-        if row.status != NO_DATA or printed is None or stated is None:
+        if (row.status != NO_DATA and row.source not in towed_rows) or printed is None or stated is None:
             continue
         digit = 10.0 ** -len(stated.printed.partition(".")[2])
         method = next(
@@ -112,7 +113,9 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
     same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
     whose = _several(same, [n.rpartition(" ")[2] for n in names]) if same else listed(names)
     whose = whose or "the authors' values, same points"
-    return f"{column.name}: {whose}{each}."
+    places = [r.place.split(", ") for r in reports]
+    shared = ", ".join(parts[0] for parts in zip(*places) if len(set(parts)) == 1) if places else ""
+    return f"{column.name}: {whose}{f' ({shared})' * bool(shared)}{each}."
 
 
 NOUNS = ("configuration", "condition", "model", "series", "table", "test")

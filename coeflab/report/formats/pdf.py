@@ -161,6 +161,7 @@ def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
         if row.difference is None
         else _text(f"{row.difference:+.1e}" if row.u95 is None else _signed(row)),
         "share": row.share,
+        "ratio": None if row.share is None else _text(f"{row.share:+.2f}"),
         "agrees": row.agrees,
     }
 
