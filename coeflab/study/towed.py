@@ -25,7 +25,7 @@ from coeflab.study.study import PlannedTow, Study
 from coeflab.study.validation import Validation, against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.vehicle.reference import Reference
+from coeflab.vehicle.reference import Reference, Relation
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
@@ -129,7 +129,8 @@ def _towed(study: Study, tow: PlannedTow) -> Towed:
     rows = tuple(_row(study, tow, symbol, fits, columns, tests) for symbol in study.plan.wanted)
     length = fits[0].coefficients.scaling.length if fits else None
     reynolds = None if length is None else reynolds_of(study, tow.campaign, length)
-    return Towed(tow, body, tuple(c.name for c in columns), rows, _turned(_tables(study, tow.campaign)), reynolds)
+    names = tuple(f"{c.name}, as quoted" if c.relation is Relation.QUOTED else c.name for c in columns)
+    return Towed(tow, body, names, rows, _turned(_tables(study, tow.campaign)), reynolds)
 
 
 def _turned(tables: tuple[ForceTable, ...]) -> tuple[str, ...]:

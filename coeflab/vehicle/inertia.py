@@ -233,7 +233,7 @@ def against_computed(parameters: ParameterFile) -> str:
         if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
     ]
     return (
-        f"{how}, diagonal entries that differ by over {100.0 * APART:.0f} % from the file's: {', '.join(apart)}"
+        f"diagonal entries that are {how} and differ by over {100.0 * APART:.0f} % from these: {', '.join(apart)}"
         if apart
         else ""
     )

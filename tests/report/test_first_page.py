@@ -451,7 +451,7 @@ def test_suboff(suboff: Study):
         "Of these, beyond U_V (difference in % of the measured value): Kv', X0' (+3 %), Yr' (-70 %) and Nr' (-46 %) of suboff_cfd_barehull; "
         "Yr' (-62 %) and Nr' (-41 %) of suboff_tow_bare_hull.",
     )
-    assert said["Recomputed"][0].startswith("3 of 3 printed stability indices follow from the printed derivatives")
+    assert said["Recomputed"][0].startswith("3 of 3 stability indices of the test report follow")
     assert (
         made.sentence
         == "DARPA SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95."

@@ -133,7 +133,7 @@ def test_a_verdict_needs_the_same_body_and_the_same_method(study: Study, bodies:
 
 
 def test_published_columns_stand_beside_by_our_length(bodies: tuple[Towed, ...]) -> None:
-    assert bodies[2].columns == ("experiment 1990", "published CFD", "PMM CFD 2012")
+    assert bodies[2].columns == ("experiment 1990, as quoted", "published CFD", "PMM CFD 2012")
     by = {r.symbol: r.published for r in bodies[2].rows}
     assert by["Yr"] == pytest.approx((0.0052, 0.0044, 0.0046), rel=1e-4)
     assert by["Mw"] == pytest.approx((0.0103, 0.0110, 0.0103), rel=1e-4)

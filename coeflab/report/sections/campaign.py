@@ -38,6 +38,7 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
+from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 from coeflab.study.towed import Towed, towed
@@ -325,9 +326,12 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     found = towed(study)
     if not found:
         return ()
+    campaigns = {one.tow.campaign for one in found}
+    unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
+    left = "; ".join(name for name in unassessed if name not in SET and not name.startswith("grid"))
     text: tuple[str, ...] = (
         "Own tows are CFD runs in coeflab's virtual towing tank, not tank tests. Grid: the part of U95 that the grid study gives, "
-        "in % of the value.",
+        f"in % of the value.{f' U95 leaves out: {left}.' * bool(left)}",
         "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
         "needs a steady test of the same body.",
     )

@@ -23,9 +23,7 @@ SLOPES = (
     "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
     "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used."
 )
-COVERS = (
-    "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table."
-)
+COVERS = "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table of this section."
 PARTS = "The parts of U95 are in % of the value. Random: scatter of the points. Form: unknown shape of the curve."
 SHAPE = "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law."
 INPUT = "Input: declared errors of the inputs, and the grid."

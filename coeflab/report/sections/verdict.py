@@ -31,7 +31,7 @@ def _named(c: Comparison) -> str:
 
 
 SAME_DATA = "The data are the authors' own: agreement says that our evaluation reproduces theirs, not that their measurements are right."
-RECOMPUTED = "from the printed derivatives, within the rounding of the index. The appendix lists them (--full)."
+RECOMPUTED = "from its own derivatives, within the rounding of the printed numbers. The appendix lists them (--full)."
 NOT_A_FAILURE = (
     'This does not fail the study: U_V leaves out the error of the turbulence model, and the errors listed under "Not in U95" below the tables of both '
     "campaigns."
@@ -83,7 +83,7 @@ def _recomputed(study: Study) -> list[str]:
     if not found:
         return []
     indices, follow = ("index", "follows") if len(found) == 1 else ("indices", "follow")
-    return [f"{sum(found)} of {len(found)} printed stability {indices} {follow} {RECOMPUTED}"]
+    return [f"{sum(found)} of {len(found)} stability {indices} of the test report {follow} {RECOMPUTED}"]
 
 
 def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:

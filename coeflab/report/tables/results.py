@@ -336,7 +336,7 @@ def campaigns(study: Study) -> Table:
     notes += [f"{'; '.join(angles)}."] if angles else []
     computed = {t.campaign: work(t.source.citation) for t in study.tables if t.source.kind == "cfd"}
     notes += [
-        f"{name}, not run in the virtual tank: {text}"
+        f"{name} was not run in the virtual tank. Source: {text}"
         for name, text in computed.items()
         if towed_ones and name not in towed_ones
     ]

@@ -8,7 +8,6 @@ import numpy as np
 
 from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
 summary = "intercepts of Y, K, N at zero drift and yaw rate against their own error"
@@ -34,7 +33,7 @@ def _intercept(sweep: Sweep) -> Check | None:
         severity, comment = Severity.WARN, "A large bias: look for a misaligned model, tare or angle offset."
     return Check(
         "symmetry",
-        f"{sweep.campaign} {primed(sweep.symbol)}",
+        f"{sweep.campaign} {sweep.component}0'",
         severity,
         f"{sweep.component}' at zero {_motion(sweep)} = {plus_minus(value, error)}, should be zero by symmetry; it is {100 * share:.1f} % of "
         f"the largest {sweep.component}'",

@@ -1,6 +1,6 @@
 """A longer sweep that moves a slope beyond the U95 of a shorter one, and widens it, is said at the coefficient.
 
-``python tests/workbench/test_largest_setting.py COUNT SEED`` prints how many of COUNT simulated campaigns get the warning.
+``python tests/workbench/test_fitted_range.py COUNT SEED`` prints how many of COUNT simulated campaigns get the warning.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from coeflab.core.table import Severity
 from coeflab.fits.results.fit_result import Sensitivity
 from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.study.checks import coverage
-from coeflab.study.checks.largest_setting import check, moved_by_the_rest
+from coeflab.study.checks.fitted_range import check, moved_by_the_rest
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.workbench import run

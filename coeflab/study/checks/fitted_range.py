@@ -59,7 +59,7 @@ def _as_check(campaign: str, sweep: Sweep, shorter: Sensitivity) -> Check:
     name, at = primed(sweep.symbol), _setting(sweep, shorter.cap)
     reach = _setting(sweep, float(np.max(np.abs(sweep.x))))
     return Check(
-        "largest_setting", f"{campaign} {name}", severity,
+        "fitted_range", f"{campaign} {name}", severity,
         f"{name} = {plus_minus(sweep.value, sweep.u95)} fitted up to {reach}, {plus_minus(shorter.value, shorter.u95)} up to {at}",
         f"settings beyond {at} leave {name} within its U95 there, and U95 below {WIDER:g} times that",
         "The curve changes beyond the shorter range. The value in use is fitted to the whole sweep. `coeflab fit --symbol` shows every range.",
