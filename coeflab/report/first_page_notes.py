@@ -107,7 +107,7 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
         )  # fmt: skip
         if method:
             methods.setdefault(method, []).append(primed(row.symbol))
-    each = "".join(f"; {', '.join(s)} by {m}, points not held here" for m, s in methods.items())
+    each = "".join(f"; {', '.join(s)} by {m}" for m, s in methods.items())
     names = [r.name for r in reports]
     heads = {n.rpartition(" ")[0] for n in names}
     same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
