@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, plus_minus, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, with_u95
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
@@ -306,7 +306,7 @@ def _stability(study: Study) -> Chip:
         if said.startswith("unstable")
         else Severity.NOTE
     )
-    value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
+    value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
     plane = "horizontal" if d.name == "G_h" else "vertical"
     file = next(p for p in study.parameter_files.values() if p.name == d.subject)
     stated = from_literature(file, d.name)

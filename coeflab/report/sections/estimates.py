@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, number, percent, plus_minus, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
@@ -316,7 +316,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
 
 def _stability(index: Derived) -> str:
     """The verdict with what it rests on: an interval that holds zero says why nothing is determined."""
-    found = f"{index.value:.2f}" if index.result is None else plus_minus(index.value, index.result.linear)
+    found = f"{index.value:.2f}" if index.result is None else index.in_words
     return f"{sense(index).partition(' at ')[0]}, {index.name} = {found}"
 
 
