@@ -289,7 +289,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
-        Chip("Missing", _many(len(shape.missing), "thing") if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
+        Chip("Missing", _missing(shape.missing), Severity.WARN if shape.missing else Severity.PASS, "estimates"),
         _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
@@ -312,6 +312,13 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     gravity = of.body.reference_point + mass.centre_of_gravity if mass is not None and is_stated else None
     outline = hull_figure(of.body, "answer-body", COLUMN, gravity)
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
+
+
+def _missing(missing: Sequence[str]) -> str:
+    """How many things a vehicle lacks; the name of a single one, such as no thruster."""
+    if len(missing) == 1:
+        return missing[0].partition(": ")[0]
+    return _many(len(missing), "thing") if missing else "nothing"
 
 
 def _stability(index: Derived) -> str:
