@@ -191,6 +191,10 @@ def test_a_report_of_a_shape_has_its_command_the_name_of_what_is_missing_and_no_
     assert "none" not in dict(page.works)
     chips = {c.name: c.text for c in answer(study, drawn=False).chips}
     assert chips["Missing"] == "no thruster"
+    said = "not in the estimates: main: force across of its propeller, without [thruster.propeller]"
+    listed = replace(study, shape=replace(steered.shape, missing=(said,)))
+    chips = {c.name: c.text for c in answer(listed, drawn=False).chips}
+    assert chips["Missing"] == "not in the estimates: main: force across of its propeller"
 
 
 @pytest.mark.parametrize("mass", [DISPLACED / 3.1, 3.1 * DISPLACED, 0.028])

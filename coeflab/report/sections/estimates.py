@@ -37,6 +37,7 @@ FIRST = (
 )  # figures that a manoeuvre is known by, the first that is there
 OFF = "thrust off at time zero"  # what a coast-down says of itself
 ROUNDING, FINEST = 1e-6, 1e-9
+LISTS = ("not in the estimates", "not stated", "drag without lift")  # of what is missing: what follows names it
 LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
 ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
@@ -317,7 +318,9 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
 def _missing(missing: Sequence[str]) -> str:
     """How many things a vehicle lacks; the name of a single one, such as no thruster."""
     if len(missing) == 1:
-        return missing[0].partition(": ")[0]
+        head, _, rest = missing[0].partition(": ")
+        named = rest.partition("; ")[0].partition(", without")[0]
+        return f"{head}: {named}" if head.startswith(LISTS) else head
     return _many(len(missing), "thing") if missing else "nothing"
 
 
