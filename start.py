@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
+ACTIVATE = r".venv\Scripts\activate" if os.name == "nt" else "source .venv/bin/activate"
 GALLERY = ROOT / "reports" / "gallery" / "make.py"
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 OLDEST = (3, 11)
@@ -83,7 +84,12 @@ def main() -> int:
     set_up(())
     if arguments == ["gallery"]:
         return subprocess.run([str(PYTHON), str(GALLERY)], env=os.environ | ONE_THREAD, check=False).returncode
-    return subprocess.run([str(BIN / "coeflab"), *arguments], check=False).returncode
+    code = subprocess.run([str(BIN / "coeflab"), *arguments], check=False).returncode
+    if code == 0:
+        sys.stderr.write(
+            f"Set up in .venv, and the command ended well. Next: {ACTIVATE}, then coeflab without start.py.\n"
+        )
+    return code
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ docs/parameter_file.md explains the parameter file.
 - A bare number is in the unit given here, a bare angle is 0; a text carries its own: `"4.356 m"`, `"20 deg"`, `"6.5 kn"`.
 - Paths count from the folder of the file.
 """
+PAIR = 2
 COLUMNS = "| Key | Takes | Unit | If absent | Meaning |\n| --- | --- | --- | --- | --- |\n"
 
 
@@ -80,6 +81,8 @@ def _takes(field: dict[str, Any]) -> str:
         table = "$ref" in inner or "properties" in inner
         if inner.get("type") == ["number", "string"] and "maxItems" not in field:
             return "list of numbers"
+        if inner.get("type") == "array" and inner.get("minItems") == inner.get("maxItems") == PAIR:
+            return f"list of [{', '.join([inner['items']['type']] * PAIR)}] pairs"
         return "tables" if table else f"list of {field['minItems']}" if "maxItems" in field else "list of texts"
     if field.get("type") == "integer":
         return "whole number"

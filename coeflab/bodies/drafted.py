@@ -83,12 +83,26 @@ citation = "none"
 how_obtained = {quoted(f"{mesh.name}, a mesh")}
 
 {_controls(foils, (low[0] + high[0]) / 2.0, nothing)}
-# A thruster: take the # away and state its curve.
+# A thruster: take the # away and state its curve, as measured at the speed of the vehicle.
 # [[thruster]]
 # name = "main"
 # place = {_point(np.array([low[0], *_axis(foils, low, high)]), nothing)}  # m; here the stern
 # axis = [1, 0, 0]  # of positive thrust
-# curve = [[0, 0], [RPM, NEWTON]]  # rpm, N; straight lines between
+# curve = [[0, 0], [RPM, NEWTON]]  # rpm, N; straight lines between; numbers in the place of RPM and NEWTON
+# Or by another command, here 40 N at full throttle:
+# command = "throttle"
+# unit = "%"
+# curve = [[0, 0], [100, 40]]
+
+# What it weighs: take the # away, one [[mass]] a part. Without any, and without --mass, it is as heavy as the water that it displaces.
+# [[mass]]
+# name = "dry vehicle"
+# mass = "MASS kg"
+# centre = {_point(body.reference_point, nothing)}  # m; here the centre of buoyancy, which rights nothing: z is larger below it
+# [[mass]]
+# name = "water in the hull"  # or lead: what is missing to the displaced water
+# ballast = true
+# centre = {_point(body.reference_point, nothing)}
 """
     return f"{SEAL}{_digest(text)}\n{text}"
 
@@ -107,7 +121,9 @@ def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:
     """The fins that were found, and comments of a control for each way that those of the tail stand."""
     if not foils:
         return "# No fin was found, so nothing can turn.\n"
-    lines = ["# Fins that were found, as parts of a [[control]]: place and chord of the root, exposed span, m."]
+    lines = [
+        "# Fins that were found, as parts of a [[control]]: x of the quarter chord of the root, its chord, exposed span, m."
+    ]
     lines += [
         f"#   {f.name}: x = {f.root[0]:.4g}, chord {f.root_chord:.3g}, span {f.span:.3g}, {_stands(f)}" for f in foils
     ]
@@ -120,14 +136,14 @@ def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:
         )
         lines += [
             "#",
-            f"# {'A rudder' if name == 'dr' else 'Stern planes'}: take the # away and state hinge, limit and rate.",
+            f"# {'A rudder' if name == 'dr' else 'Stern planes'}: take the # away and state hinge and limit; rate may stay a comment.",
             "# [[control]]",
             f'# name = "{name}"',
             f"# parts = [{', '.join(quoted(f.name) for f in mine)}]",
             f"# hinge = {_point(hinge, nothing)}  # m, a point on the hinge; here half of the root chord",
             f"# axis = {axis}  # {sense}",
             '# limit = "LIMIT deg"',
-            '# rate = "RATE deg/s"',
+            '# rate = "RATE deg/s"  # without one the angle is there at once',
         ]
     return "\n".join(lines) + "\n"
 

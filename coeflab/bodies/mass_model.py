@@ -98,13 +98,22 @@ def at_rest(excess: float, bg: Array) -> tuple[float, float] | None:
 
 
 def rest_words(angles: tuple[float, float] | None, bg: Array) -> str:
-    """Of `at_rest`, in words: where the bow points, and whether it stays upright."""
-    if angles is None:
-        return "no trim at rest: weight and buoyancy differ by over 1 %, or G is at B"
+    """Of `at_rest`, in words: where the bow points, and whether it stays upright; of a vehicle that is not neutral with ballast at B."""
+    if angles is not None:
+        return f"at rest: {_angles(angles, bg)}"
+    ballasted = at_rest(0.0, bg)  # a weight at B does not turn the line from B to G
+    if ballasted is None:
+        return "no trim at rest: G is at B"
+    return (
+        f"no trim at rest: weight and buoyancy differ by over 1 %; ballasted to neutral at B: {_angles(ballasted, bg)}"
+    )
+
+
+def _angles(angles: tuple[float, float], bg: Array) -> str:
     pitch, roll = (round(float(a), 2) + 0.0 for a in np.degrees(angles))
     bow = f" (bow {'up' if pitch > 0.0 else 'down'})" if pitch else ""
     upright = "" if bg[2] > 0.0 else "; G lies above B: it turns over"
-    return f"at rest: pitch {f'{pitch:+.2f}' if pitch else '0'} deg{bow}, roll {f'{roll:+.2f}' if roll else '0'} deg{upright}"
+    return f"pitch {f'{pitch:+.2f}' if pitch else '0'} deg{bow}, roll {f'{roll:+.2f}' if roll else '0'} deg{upright}"
 
 
 @brief

@@ -233,6 +233,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables.next_runs import next_points
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
+    found = found or " ".join(tables.resistances(study))
     show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
     for line in tables.lost_by_move(study):
         show.sentence(line)

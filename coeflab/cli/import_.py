@@ -138,12 +138,18 @@ def _written(out: Path, filled: Sequence[Filled], tables: Sequence[ForceTable]) 
     show.text(f"Written: {out / sizes[0]}{''.join(f', {one}' for one in sizes[1:])}, campaign.toml, mapping.toml")
     for file, table in zip(files, tables, strict=True):
         of = f"{file}: " * several
-        show.sentence(f"  {of}varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
+        show.sentence(
+            f"  {of}varies: {', '.join(table.varies) or _speed_alone(table)}; in SI and FRD: {', '.join(table.forces)}"
+        )
     for t in filled:
         for said in without_a_setting(t.raw, t.columns):
             show.sentence(f"{f'{t.file}: ' * several}Rows {said}.")
     show.sentence(unused(tables))
     show.text()
+
+
+def _speed_alone(table: ForceTable) -> str:
+    return "the speed alone" if len(set(table.speed.tolist())) > 1 else "nothing"
 
 
 def _brief(note: str) -> str:
@@ -193,9 +199,10 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        notes += [tables.primed_about(study), *tables.lost_by_move(study)]
+        notes += [*tables.resistances(study), tables.primed_about(study), *tables.lost_by_move(study)]
+        first = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(
-            found, title="First slopes, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
+            found, title=f"{first}, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
             left=frozenset({0}),
         ))  # fmt: skip

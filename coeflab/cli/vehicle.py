@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -95,6 +96,10 @@ def command(
         say("reading the body")
         found = subject(body, unit, axes, repair, fill, sheets)
         plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, to, accept_loss)
+        plan = replace(plan, command=typed(body, {
+            "unit": unit, "axes": axes, "mass": mass, "cg": cg, "inertia": inertia, "speed": speed, "density": density, "length": length,
+            "method": method if method != "all" else "", "wall": wall, "distance": distance,
+        }, {"repair": repair, "fill": fill, "sheets": sheets, "accept-loss": accept_loss}, to))  # fmt: skip
         refuse_unknown(plan.exports)
         study = checked(from_shape(plan, found, stated, say, wall, distances), say)
     folder = out if out is not None else Path("reports") / plan.name
@@ -125,6 +130,24 @@ def command(
         show.error(f"error: {why}")
     if study.failed:
         raise typer.Exit(1)
+
+
+def typed(body: str, options: Mapping[str, str], flags: Mapping[str, bool], to: Sequence[str]) -> str:
+    """The command by which a vehicle was made, its shape by the last part of its path.
+
+    Parameters
+    ----------
+    body : str
+    options : mapping of str to str
+        Empty ones were not given.
+    flags : mapping of str to bool
+    to : sequence of str
+        Targets of exports.
+    """
+    words = ["coeflab vehicle", shlex.quote(Path(body).name or body)]
+    words += [f"--{name}={shlex.quote(text)}" for name, text in options.items() if text]
+    words += [f"--{name}" for name, on in flags.items() if on]
+    return " ".join([*words, *(f"--to {shlex.quote(target)}" for target in to)])
 
 
 def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool, on_draft: str) -> None:

@@ -6,6 +6,9 @@ Xvv' the slope at the origin of (X - X0)/v' over v', every row weighed by v'^2, 
 calibration in ``tests/coverage`` is of slopes only. Of even coefficients 30 campaigns each were tried, for v^2 alone, with
 v^4, an odd part or an onset of stall: both were covered in 83 to 100 %. Not so for v^2 + |v|^3 at a noise of 1 % of the
 largest force, where |v|^3 passes for v^4 and Xvv' is covered in 30 to 50 %.
+
+Of a table in which nothing varies but the speed, X0' is the mean of X' over the runs; U95 holds their scatter, and a trend of X'
+with the speed beyond it.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from numpy.typing import NDArray
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep
+from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
@@ -352,13 +356,22 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         sweeps.append(last[0])
     first = tables[0]
     coefficients = [_coefficient(s, first.source.citation) for s in sweeps]
+    covariance = _covariance(sweeps, coefficients)
+    straight, ahead = resistance(tables, length, first.source.citation)
+    if ahead is not None and all(c.symbol != ahead.symbol for c in coefficients):
+        own = np.nan if ahead.u95 is None else (ahead.u95 / 2.0) ** 2
+        coefficients.append(ahead)
+        covariance = np.pad(covariance, (0, 1))
+        covariance[-1, -1] = own
+        if ahead.u95 is None:
+            covariance[-1, :] = covariance[:, -1] = np.nan
     return FitResult(
         fit="slope_at_origin",
         campaign=first.campaign,
         body=first.body,
         coefficients=CoefficientSet(
             tuple(coefficients),
-            _covariance(sweeps, coefficients),
+            covariance,
             scaling,
             first.reference_point,
             first.datum,
@@ -367,4 +380,5 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         sweeps=tuple(sweeps),
         citations=citations,
         settings=_moved(shift),
+        straight=straight,
     )

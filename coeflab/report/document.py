@@ -399,6 +399,9 @@ SAME = (
 def reproduction(study: Study) -> Section:
     """Of a study: its shipped name, or its own plan."""
     file = study.plan.file
+    if file is None and study.plan.command:
+        where = "Run this where the shape lies: paths are named by their last part. --out names another folder."
+        return _section((where, SAME), (study.plan.command,), study.inputs)
     if file is None:
         return _section(
             ("The plan was made by a program, not read from a file, so no command gives this report.",),

@@ -10,10 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, plus_minus, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, with_u95
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.results.straight_runs import SYMBOL
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
@@ -75,7 +76,10 @@ def _of_study(study: Study) -> Answer:
     compared = beside.columns[0].name if beside.columns else ""
     names = tuple(r.name for r in beside.columns)
     if all(r.value is None for r in rows) and any(f.models for f in study.fits):
-        return _of_models(study)
+        others = tuple(_row(study, beside, symbol) for symbol in _others(study, beside.body))
+        if not others:
+            return _of_models(study)
+        rows = others
     return Answer(
         _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=notes(study, beside, rows)
     )
@@ -103,7 +107,14 @@ def _wanted(study: Study, body: str) -> tuple[str, ...]:
     slopes = [
         s.symbol for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None and f.body == body
     ]
-    return tuple(dict.fromkeys(slopes))[:MOST_ROWS]
+    ahead = [SYMBOL for f in study.fits if f.straight and f.body == body]
+    return tuple(dict.fromkeys([*slopes, *ahead]))[:MOST_ROWS]
+
+
+def _others(study: Study, body: str) -> tuple[str, ...]:
+    """Coefficients that the fits give where they give none of those wanted, such as X0' alone."""
+    found = (c.symbol for c in study.coefficients if c.body == body and c.value is not None and c.origin == "fit")
+    return tuple(dict.fromkeys(found))[:MOST_ROWS]
 
 
 def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
@@ -242,7 +253,8 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
             else f"{spelled_out(len(valued))} of {spelled_out(len(rows))}"
         )
         s = "s" * (len(rows) > 1)
-        first = f"{name}: {of} wanted coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
+        wanted = "wanted " * (not study.plan.wanted or any(r.symbol in study.plan.wanted for r in rows))
+        first = f"{name}: {of} {wanted}coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
         first += _open(valued)
         inside, printed = printed_inside(study.fits)
         said = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
@@ -306,7 +318,7 @@ def _stability(study: Study) -> Chip:
         if said.startswith("unstable")
         else Severity.NOTE
     )
-    value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
+    value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
     plane = "horizontal" if d.name == "G_h" else "vertical"
     file = next(p for p in study.parameter_files.values() if p.name == d.subject)
     stated = from_literature(file, d.name)

@@ -68,6 +68,17 @@ TERMS: tuple[Term, ...] = (
          ("static derivatives",)),
     Term("rotary derivative", "Slope of a force or moment over a rate of turn at zero rate: Yr', Nr', Zq', Mq'. It needs a rotating "
          "arm or an oscillating model.", ("gertler1967",), ("rotary derivatives",), "rotating_arm.md"),
+    Term("Yv'", "Side force by sideslip: slope of Y' over v' = v/U at zero drift. Negative: the hull resists going sideways. Zw' is its like "
+         "in the vertical plane, heave force by w' = w/U.", ("gertler1967",), (), "axes_and_signs.md", False),
+    Term("Nv'", "Yaw moment by sideslip, about the reference point: slope of N' over v' at zero drift. Negative: it turns the bow further "
+         "away from the flow (Munk moment); fins aft make it less so. Mw' is its like in pitch, with the other sign: positive turns "
+         "the bow further up.", ("gertler1967",), (), "axes_and_signs.md", False),
+    Term("Yr'", "Side force by yaw rate: slope of Y' over r' = r L/U. Zq' is its like by pitch rate. With m' it decides whether the straight "
+         "course is stable.", ("gertler1967",), (), "rotating_arm.md", False),
+    Term("Nr'", "Yaw damping: slope of N' over r' = r L/U. Negative: the water resists turning. Mq' is its like in pitch.",
+         ("gertler1967",), (), "rotating_arm.md", False),
+    Term("X0'", "Resistance straight ahead: X / (1/2 rho U^2 L^2) at zero angle and rate. Negative: drag. It changes slowly with the Reynolds "
+         "number.", ("gertler1967",), (), "slope_at_origin.md", False),
     Term("even part", "The part of a curve that keeps its sign when the angle changes sign; the rest is the odd part. Port-starboard "
          "symmetry makes Y, K, N odd and X, Z, M even in v.", (), ("odd part", "even and odd parts")),
     # Tests

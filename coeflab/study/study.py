@@ -109,6 +109,8 @@ class Plan:
         Use cells that their source marks as doubtful.
     file : InputFile or None
     tows : tuple of PlannedTow
+    command : str
+        What was typed, of a plan that no file holds; paths by their last name.
         Their campaigns are among the tables.
     """
 
@@ -131,6 +133,7 @@ class Plan:
     method: str = "all"
     manoeuvres: tuple[PlannedManoeuvre, ...] = ()
     tows: tuple[PlannedTow, ...] = ()
+    command: str = ""
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:

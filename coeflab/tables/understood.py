@@ -12,6 +12,7 @@ from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.core.wording import listed
+from coeflab.law.symbols import LINEAR
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
 from coeflab.tables.mapping import (
@@ -32,6 +33,7 @@ from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, fra
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 MOST_IDLE = 5  # columns that a warning names
+FEWEST_SPEEDS = 3  # of straight runs that give X0'
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +154,7 @@ def understood(
     if "conditions.density" in settings:
         other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
         complaints += (other,) if other else ()
+    complaints += tuple(_two_ways(raw, columns))
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns
@@ -174,10 +177,44 @@ def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
     used = {c.column.name for c in columns}
     idle = [c for c in raw.columns if c.name not in used and np.unique(c.values[np.isfinite(c.values)]).size > 1]
     varied = f"; not used, and it varies: {listed([c.name for c in idle[:MOST_IDLE]])}" if idle else ""
+    if _is_straight(columns):
+        says = "nothing varies but the speed: straight runs give X0', and no slope"
+        yield Evidence(f"{'warning: ' * bool(idle)}{says}{varied}")
+        return
     column = idle[0].name if idle else "COLUMN"
     yield Evidence(
         "warning: nothing varies: no column is an angle, a velocity, a rate, a control or a radius, so no slope follows"
         f"{varied}. Say what was varied, such as --map {shlex.quote(f'{column}=r [rad/s]')}"
+    )
+
+
+def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError]:
+    """The complaint about angles of the flow beside components of the speed: which of both holds cannot be known."""
+    angles = [c for c in columns if c.said.role == "angle"]
+    linear = [c for c in columns if c.said.role == "velocity" and c.said.name in LINEAR]
+    if not angles or not linear:
+        return
+    named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
+    at_rest = not any(np.any(np.nan_to_num(c.values) != 0.0) for c in angles)
+    one = linear[0].column.name
+    ways = [f"--map {shlex.quote(f'{one}=U [m/s]')} where {speeds} is the speed"] * (
+        len(linear) == 1 and linear[0].said.name == "u"
+    )
+    ways += [f"--map {shlex.quote(f'{c.column.name}=ignore')} as it is zero" for c in angles] * (
+        at_rest and len(angles) == 1
+    )
+    yield InputError(
+        f"angles ({named}) and velocities ({speeds})", "one or the other", file=raw.path, column=named,
+        advice=f"Give {' or '.join(ways)}." if ways else "Leave the columns of one kind out: --map COLUMN=ignore.",
+    )  # fmt: skip
+
+
+def _is_straight(columns: Sequence[Assigned]) -> bool:
+    """Whether a surge force stands beside three speeds or more, so that straight runs give X0'."""
+    speeds = [c for c in columns if c.said.role == "speed" or (c.said.role == "velocity" and c.said.name == "u")]
+    found = [np.unique(c.values[np.isfinite(c.values)]).size for c in speeds]
+    return max(found, default=0) >= FEWEST_SPEEDS and any(
+        c.said.role == "force" and c.said.name == "X" for c in columns
     )
 
 

@@ -118,7 +118,12 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
     else:
         _refuse_absurd(body, mass, displaced, density)
-        said.append(_buoyed(mass, displaced, density))
+        said.append(_buoyed(mass, displaced, density) + _to_neutral(body, mass / displaced, stated))
+        if stated.mass is not None and body.mass_model is not None:
+            said.append(
+                f"--mass {stated.mass:.4g} kg stands in the place of the {body.mass_model.mass:.4g} kg of [[mass]] in the body.toml; "
+                "centre of gravity and inertia are those of the file unless stated"
+            )
         said += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
@@ -220,6 +225,16 @@ def _buoyed(mass: float, displaced: float, density: float) -> str:
     if over > 0.0:
         return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
     return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
+
+
+def _to_neutral(body: Body, share: float, stated: Stated) -> str:
+    """What makes a light vehicle neutral; empty of one that is not light, or whose file states its masses."""
+    if share >= 1.0 - TRIMMED or body.mass_model is not None:
+        return ""
+    neutral = ", and without --mass it is neutral" * (
+        stated.mass is not None and all(c.mass is None for c in body.configurations)
+    )
+    return f"; [[mass]] with ballast = true, or flooded = true, in its body.toml makes up for it{neutral}"
 
 
 def _of_other_water(body: Body, density: float) -> list[str]:

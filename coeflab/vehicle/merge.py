@@ -10,6 +10,7 @@ import numpy as np
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
+from coeflab.core.wording import listed
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
@@ -105,8 +106,9 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
         if c.value is not None and c.status is not Status.ESTIMATE
     }
     if not taken:
+        has = "estimates only" if any(c.status is Status.ESTIMATE for c in theirs.coefficients) else _nothing(other)
         raise InputError(
-            f"estimates only in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
+            f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
             advice="Give a campaign, or a parameter file, of measured or computed tables.",
         )  # fmt: skip
     curved = {_place(s) for s in taken} - {None}
@@ -134,6 +136,12 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
     notes = (*made.provenance.notes, *([said] if said else []))
     update = {"law_at_points": points_of(made), "provenance": made.provenance.model_copy(update={"notes": notes})}
     return Merged(made.model_copy(update=update), tuple(replaced), said)
+
+
+def _nothing(other: ParameterFile) -> str:
+    """What a file without estimates and without numbers lacks, in words."""
+    open_ones = [c.symbol for c in other.coefficients if c.value is None]
+    return f"no value of {listed(open_ones)}" if open_ones else "no coefficient"
 
 
 def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.core.table import number
+from coeflab.core.table import number, plus_minus, with_u95
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import listed
 from coeflab.fits.uncertainty.propagation import Propagated, propagate, reaches_zero
@@ -53,6 +53,10 @@ INDICES = {"G_h": ("Yv'", "Nv'", "Yr'", "Nr'", 1.0), "G_v": ("Zw'", "Mw'", "Zq'"
 FAST = "at high speed"
 DRAWS, SEED = 20_000, 1
 LARGE_SPREAD = 0.25  # of a denominator, above which the interval of a ratio is not symmetric
+APART = 0.1  # of the Monte Carlo half-width, by which the linear one may differ and still stand for it
+FRACTION = (
+    0.25  # of the Monte Carlo half-width: a smaller linear one is no half-width, as with a product of two small numbers
+)
 
 
 @brief
@@ -84,20 +88,65 @@ class Derived:
     spread: float = 0.0
 
     @property
+    def by_draws(self) -> bool:
+        """Whether the Monte Carlo limits are the interval: a denominator is uncertain, or the linear half-width differs from theirs."""
+        return self.result is not None and (self.spread > LARGE_SPREAD or _apart(self.result) > APART)
+
+    @property
+    def represented(self) -> bool:
+        """Whether the linear half-width may stand beside the value: it is no small part of that by Monte Carlo."""
+        return self.result is not None and not (
+            self.by_draws and self.result.linear < FRACTION * self.result.monte_carlo
+        )
+
+    @property
+    def half_width(self) -> float | None:
+        """The linear one, where there is one that represents the interval."""
+        return self.result.linear if self.result is not None and self.represented else None
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The 95 % limits that the index is judged by; None without any."""
+        if self.result is None:
+            return None
+        if self.by_draws:
+            return self.result.low, self.result.high
+        return self.value - self.result.linear, self.value + self.result.linear
+
+    @property
     def limits(self) -> str:
-        """That the half-width is of first order, and the 95 % limits by Monte Carlo, where a denominator is uncertain; else empty."""
-        if self.result is None or not self.spread > LARGE_SPREAD:
+        """The 95 % limits by Monte Carlo where they are the interval, and what the linear half-width is then; else empty."""
+        if self.result is None or not self.by_draws:
             return ""
         r = self.result
+        drawn = f"({r.draws} draws, seed {r.seed})"
+        if self.represented:
+            return f"U95 is linearised; 95 % Monte Carlo limits {number(r.low, 3)} .. {number(r.high, 3)} {drawn}"
         return (
-            f"U95 is linearised; 95 % Monte Carlo limits {number(r.low, 3)} .. {number(r.high, 3)} ({r.draws} draws, "
-            f"seed {r.seed})"
+            f"95 % Monte Carlo limits {' .. '.join(self._ends)} {drawn}; the linearised U95, {number(r.linear, 2)}, leaves out "
+            "the product of two small uncertain numbers"
         )
+
+    @property
+    def _ends(self) -> tuple[str, str]:
+        r = self.result
+        return ("", "") if r is None else (with_u95(r.low, r.monte_carlo)[0], with_u95(r.high, r.monte_carlo)[0])
+
+    @property
+    def in_words(self) -> str:
+        """Value and interval: ``0.65 +- 0.32``, or with Monte Carlo limits where the linear half-width does not represent them."""
+        if self.result is None:
+            return f"{self.value:.3g}"
+        if self.represented:
+            return plus_minus(self.value, self.result.linear)
+        value, _ = with_u95(self.value, self.result.monte_carlo)
+        return f"{value}, 95 % limits {' to '.join(self._ends)}"
 
     @property
     def decided(self) -> bool:
         """Whether the sign of a stability index is: damping damps, and the interval, where there is one, leaves zero out."""
-        return not self.driven and (self.result is None or abs(self.value) > self.result.linear)
+        held = self.interval
+        return not self.driven and (held is None or held[0] > 0.0 or held[1] < 0.0)
 
 
 ALONE, SIGN_OPEN, NO_CRITERION = ", no U95", "sign open", "no verdict"
@@ -112,7 +161,8 @@ def sense(index: Derived) -> str:
     """
     if not index.decided:
         return NO_CRITERION if index.driven else SIGN_OPEN
-    by_value = "stable" if index.value > 0.0 else "unstable"
+    held = index.interval
+    by_value = "stable" if (index.value if held is None else held[0]) > 0.0 else "unstable"
     by_value += f" {FAST}" if index.name == "G_v" else ""
     return by_value + ALONE if index.result is None else by_value
 
@@ -197,6 +247,11 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
     return tuple(out)
 
 
+def _apart(result: Propagated) -> float:
+    """How far the linear half-width is from that by Monte Carlo, as a share of the latter."""
+    return abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
+
+
 def _derived(
     name: str,
     subject: str,
@@ -221,8 +276,8 @@ def _derived(
             return Derived(name, subject, value, None, text)
     spread = sum((half / size) ** 2 for _, size, half in denominators) ** 0.5
     result = propagate(function, gradient, cells, draws, seed)
-    apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
+    apart = _apart(result)
     text = f"linear and Monte Carlo half-widths differ by {100.0 * apart:.1f} %"
-    if apart > 0.1:
+    if apart > APART:
         text += ": the interval is skew, use the percentiles"
     return Derived(name, subject, value, result, text, spread=spread)

@@ -34,6 +34,7 @@ def made(folder: Path, kind: str) -> tuple[Body, Path]:
 def completed(text: str) -> str:
     """With its comments of rudder, planes and thruster taken in, and numbers in the place of words."""
     head, block, tail = text.partition("# [[control]]")
+    tail = tail.partition("# Or by another command")[0]
     lines = re.sub(r"(?m)^# (\[\[|name|parts|hinge|axis|limit|rate|place|curve)", r"\1", block + tail)
     return head + lines.replace("LIMIT", "20").replace("RATE", "40").replace("[RPM, NEWTON]", "[1500, 30]")
 
@@ -76,6 +77,35 @@ def test_without_numbers_the_words_are_refused(tmp_path: Path) -> None:
     file.write_text(completed(file.read_text()).replace("20 deg", "LIMIT deg"))
     with pytest.raises(InputError, match="LIMIT deg"):
         read_body(file)
+
+
+def test_a_placeholder_of_a_curve_is_named_with_its_line(tmp_path: Path) -> None:
+    _, file = made(tmp_path, "torpedo")
+    text = completed(file.read_text()).replace("[1500, 30]", "[RPM, NEWTON]")
+    file.write_text(text)
+    with pytest.raises(InputError, match="RPM and NEWTON, placeholders") as why:
+        read_body(file)
+    assert text.splitlines()[why.value.line - 1].startswith("curve")
+    file.write_text(text.replace("[[0, 0], [RPM, NEWTON]]", '"RPM" "NEWTON" # RPM'))
+    with pytest.raises(InputError, match="a TOML error"):
+        read_body(file)
+
+
+def test_the_other_command_and_the_masses_of_its_comments_are_read(tmp_path: Path) -> None:
+    """What stands behind the # of the draft is a body.toml: a throttle in %, and a neutral vehicle by ballast."""
+    _, file = made(tmp_path, "torpedo")
+    head, _, rest = completed(file.read_text()).partition("curve = ")
+    other, _, masses = file.read_text().partition("# Or by another command")[2].partition("\n\n")
+    lines = [line.removeprefix("# ") for line in other.splitlines()[1:]]
+    weights = [line.removeprefix("# ") for line in masses.splitlines()[1:]]
+    file.write_text("\n".join([head, *lines, *weights]).replace("MASS", "5"))
+    found = read_body(file)
+    (thruster,) = found.thrusters
+    assert (thruster.command, thruster.unit) == ("throttle", "%")
+    assert thruster.curve.tolist() == [[0.0, 0.0], [100.0, 40.0]]
+    assert found.mass_model is not None
+    assert found.mass_model.mass == pytest.approx(found.mass_model.density * found.mass_model.volume)
+    assert rest
 
 
 def test_fins_ahead_or_oblique_are_named_and_no_control_is_drafted(tmp_path: Path) -> None:

@@ -326,6 +326,38 @@ def test_a_frame_in_which_the_body_moves_astern_is_refused(tmp_path: Path) -> No
     assert "warning: X is above zero in every row: in FRD that is thrust, not drag" in " ".join(done.output.split())
 
 
+STRAIGHT = "run,u [m/s],X [N]\n1,0.8,-1.75\n2,1.0,-2.72\n3,1.2,-3.86\n"
+
+
+def test_angles_beside_a_velocity_are_refused_before_anything_is_asked(tmp_path: Path) -> None:
+    """A column of zero drift beside u: the sign of beta would be asked for first, and the table refused after the answer."""
+    file = tmp_path / "drag.csv"
+    file.write_text("run,u [m/s],X [N],beta [deg]\n1,0.8,-1.75,0\n2,1.0,-2.72,0\n3,1.2,-3.86,0\n")
+    (said,) = refused(invoke("import", file, "--out", tmp_path / "out"))
+    assert "found angles (beta) and velocities (u); expected one or the other" in said
+    assert "--map 'u=U [m/s]' where u is the speed or --map beta=ignore as it is zero" in said
+    file.write_text("run,u [m/s],X [N],beta [deg]\n1,0.8,-1.75,2\n2,1.0,-2.72,4\n3,1.2,-3.86,6\n")
+    (said,) = refused(invoke("import", file, "--out", tmp_path / "out"))
+    assert "beta=ignore" not in said
+
+
+def test_straight_runs_are_told_from_a_table_whose_setting_is_not_mapped(tmp_path: Path) -> None:
+    file = tmp_path / "drag.csv"
+    file.write_text(STRAIGHT)
+    said = flat(invoke("import", file, "--out", tmp_path / "out").output)
+    assert "nothing varies but the speed: straight runs give X0', and no slope" in said
+    assert "warning" not in said
+    lines = [line + f",{i}" for i, line in enumerate(STRAIGHT.splitlines()[1:])]
+    file.write_text("\n".join(["run,u [m/s],X [N],knob", *lines]))
+    said = flat(invoke("import", file, "--out", tmp_path / "out", "--map", "knob=ignore").output)
+    assert (
+        "warning: nothing varies but the speed: straight runs give X0', and no slope; not used, and it varies: knob"
+        in said
+    )
+    file.write_text("run,u [m/s],X [N]\n1,0.8,-1.75\n2,1.0,-2.72\n")
+    assert "warning: nothing varies" in flat(invoke("import", file, "--out", tmp_path / "out").output)
+
+
 def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> None:
     """Also where the file itself names it, and --yes does not pass over it."""
     file = tmp_path / "arm.csv"

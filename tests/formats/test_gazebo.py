@@ -29,6 +29,7 @@ from tests.formats import files as made
 from tests.formats import of_a_vehicle
 from tests.formats import of_second_order as second
 from tests.formats.massed import torpedo
+from tests.motion.vehicles import made as steered
 from tests.vehicle.test_force_law import HULL, Q, drifting, parameters
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -288,3 +289,19 @@ def test_the_world_holds_the_model_beside_it(target: ModuleType) -> None:
     assert list(target.render(made.named("world"))) == ["world.sdf", "world_of_water.sdf"]
     given = export(second.golden(), target.__name__.split(".")[-2])
     assert not any(c.startswith("files are called") for c in given.loss.changes)
+
+
+def test_the_fins_that_a_lift_drag_would_need_give_the_rudder_force_of_the_file() -> None:
+    """1/2 rho V^2 area cla dr is Y of the file, and at x it turns as N and M do: Y x = N, Z x = -M."""
+    file = steered()
+    said = [s for s in gazebo.changes(file) if "LiftDrag" in s]
+    assert [s.partition(" ")[0] for s in said] == ["dr", "ds"]
+    speed, rho = file.conditions.speed, file.conditions.density
+    for text, force, moment, sense in zip(said, ("Ydr'", "Zds'"), ("Ndr'", "Mds'"), (1.0, -1.0), strict=True):
+        area = float(text.partition("area*cla = ")[2].partition(" ")[0])
+        x = float(text.partition("x = ")[2].partition(" ")[0])
+        unit = 0.5 * rho * speed**2
+        assert unit * area == pytest.approx(abs(file.coefficient(force).value) * unit * file.scaling.length**2)
+        turned = sense * x * file.coefficient(force).value * file.scaling.length**2
+        assert turned == pytest.approx(file.coefficient(moment).value * file.scaling.length**3)
+    assert not any("LiftDrag" in s for s in gazebo.changes(steered({"X0": -4e-3, "Yv": -4e-2})))

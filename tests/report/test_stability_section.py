@@ -103,6 +103,27 @@ def test_an_index_over_an_uncertain_denominator_has_limits_by_drawing():
     assert "Monte Carlo" not in in_words(with_files(with_u95(STABLE, 0.05)))[0]
 
 
+def test_limits_by_drawing_stand_alone_where_the_linear_half_width_is_no_part_of_them():
+    """Nv' and Yr' - m' near zero, each uncertain: chip, sentence, table and check have the drawn limits and judge by them."""
+    file = made({**STABLE, "Nv": 1e-6, "Yr": made().mass.mass_prime + 1e-6})
+    for half, said, value in (
+        (1e-2, "stable", "1.00, 95 % limits 0.86 to 1.14"),
+        (3e-2, "sign open", "1.0, 95 % limits -0.3 to 2.2"),
+    ):
+        variances = (5e-6**2, (half / 2.0) ** 2, (half / 2.0) ** 2, 5e-6**2)
+        update = {"symbols": ("Yv'", "Nv'", "Yr'", "Nr'"), "matrix": tuple(map(tuple, np.diag(variances).tolist()))}
+        study = with_files(file.model_copy(update={"covariance": file.covariance.model_copy(update=update)}))
+        row = next(row for row in stability_sections(study)[0].tables[0].rows if row[1] == "G_h")
+        assert row[3:5] == ("-", said)
+        assert row[-1].startswith("Yv', Nv', Yr', Nr' published; 95 % Monte Carlo limits ")
+        assert f"synthetic (G_h = {value})" in in_words(study)[0]
+        (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
+        assert chip.text == f"{said}, G_h = {value}"
+        (found,) = [c for c in stability_check(study) if c.subject.endswith("G_h")]
+        assert found.statistic == f"G_h = {value}: {said}"
+        assert ("The interval contains zero" in found.comment) is (said == "sign open")
+
+
 def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
     measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)

@@ -18,6 +18,7 @@ from coeflab.bodies.mass_model import MassModel, MassPart
 from coeflab.bodies.pieces import Control
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.thrusters import Thruster
+from coeflab.cli.vehicle import typed
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
 from coeflab.core.table import Severity
@@ -131,6 +132,69 @@ def test_the_mass_is_compared_with_the_displacement(bare: Body, mass: float | No
     assert said in found.said[0]
     assert ("mass" in found.assumed) == (mass is None)
     assert {"centre", "inertia"} <= set(found.assumed)
+
+
+def test_what_makes_a_light_vehicle_neutral_is_said_where_its_file_states_no_masses(bare: Body) -> None:
+    light = weighed(bare, Stated(DISPLACED - 10.0), 998.2).said[0]
+    assert "[[mass]] with ballast = true, or flooded = true" in light
+    assert light.endswith("and without --mass it is neutral")
+    for mass in (DISPLACED, DISPLACED + 20.0):
+        assert "[[mass]]" not in weighed(bare, Stated(mass), 998.2).said[0]
+    part = MassPart("dry", "point", 300.0, np.zeros(3), np.zeros((3, 3)))
+    stated = replace(bare, mass_model=MassModel((part,), 998.2, DISPLACED / 998.2, np.zeros(3)))
+    said = weighed(stated, Stated(DISPLACED - 10.0), 998.2).said
+    assert "[[mass]]" not in said[0]
+    assert said[1].startswith(f"--mass {DISPLACED - 10.0:.4g} kg stands in the place of the 300 kg of [[mass]]")
+
+
+@pytest.mark.parametrize(("share", "ballasted"), [(1.0, False), (0.9, True)])
+def test_a_centre_of_gravity_ahead_hangs_the_bow_down_and_is_warned_of(
+    steered: Study, share: float, ballasted: bool
+) -> None:
+    """tan(pitch) = -x / z of G from B: 4 mm ahead and 10 mm below it are 21.8 deg bow down, with any ballast at B."""
+    assert steered.shape is not None
+    body = steered.shape.weighed.body
+    middle = body.configurations[0].centre_of_buoyancy
+    found = weighed(body, Stated(share * DISPLACED, middle + np.array([0.004, 0.0, 0.010])), 998.2)
+    assert "pitch -21.80 deg (bow down), roll 0 deg" in found.said[1]
+    assert ("ballasted to neutral at B" in found.said[1]) is ballasted
+    (said,) = (
+        c
+        for c in buoyancy.check(replace(steered, shape=replace(steered.shape, weighed=found)))
+        if c.name == "trim_at_rest"
+    )
+    assert said.severity is Severity.WARN
+    assert "pitch -21.8 deg (bow down)" in said.statistic
+    assert said.comment.startswith("As if ballasted") is ballasted
+    level = weighed(body, Stated(share * DISPLACED, middle + np.array([0.0005, 0.0, 0.010])), 998.2)
+    checks = buoyancy.check(replace(steered, shape=replace(steered.shape, weighed=level)))
+    assert all(c.name != "trim_at_rest" for c in checks)
+
+
+def test_a_report_of_a_shape_has_its_command_the_name_of_what_is_missing_and_no_work_called_none(
+    steered: Study,
+) -> None:
+    assert steered.shape is not None
+    assert steered.body is not None
+    typed_so = typed(
+        "work/hull 3.stl", {"unit": "mm", "mass": "34 kg", "cg": ""}, {"repair": True, "fill": False}, ["xdyn"]
+    )
+    assert typed_so == "coeflab vehicle 'hull 3.stl' --unit=mm --mass='34 kg' --repair --to xdyn"
+    unsourced = replace(steered.body, source=replace(steered.body.source, citation="none"))
+    study = replace(
+        steered, plan=replace(steered.plan, command=typed_so), body=unsourced,
+        shape=replace(steered.shape, missing=("no thruster: write [[thruster]]",)),
+    )  # fmt: skip
+    page = document(study, full=False)
+    (reproduce,) = (s for s in page.sections if s.anchor == "reproduce")
+    assert reproduce.code == (typed_so,)
+    assert "none" not in dict(page.works)
+    chips = {c.name: c.text for c in answer(study, drawn=False).chips}
+    assert chips["Missing"] == "no thruster"
+    said = "not in the estimates: main: force across of its propeller, without [thruster.propeller]"
+    listed = replace(study, shape=replace(steered.shape, missing=(said,)))
+    chips = {c.name: c.text for c in answer(listed, drawn=False).chips}
+    assert chips["Missing"] == "not in the estimates: main: force across of its propeller"
 
 
 @pytest.mark.parametrize("mass", [DISPLACED / 3.1, 3.1 * DISPLACED, 0.028])
@@ -256,7 +320,7 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
     one = answer(replace(steered, shape=replace(steered.shape, missing=("no thruster",))))
-    assert ("Missing", "1 thing") in [(c.name, c.text) for c in one.chips]
+    assert ("Missing", "no thruster") in [(c.name, c.text) for c in one.chips]
     assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     said = re.search(r"([\d.]+) m at 12 .*\(95 % ([\d.]+) to ([\d.]+)\)", first.sentence)
     assert said is not None

@@ -20,6 +20,9 @@ from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY,
 
 _NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_NAME}(?:[ \t]*+\.[ \t]*+{_NAME}){{{TOML_NAMES_IN_A_KEY},}}")
+_AT_LINE = re.compile(r"at line (\d+)")
+_QUOTED = re.compile(r""""[^"\n]*"|'[^'\n]*'""")
+_CAPITALS = re.compile(r"\b[A-Z]{3,}\b")
 _LONGEST_STATEMENT = 1 << 14  # the parser goes over it once a line
 _LONG_INTEGER = re.compile(rf"[0-9_]{{{INTEGER_DIGITS + 1},}}+")
 
@@ -145,6 +148,12 @@ def read_toml(path: Path) -> TomlFile:
     try:
         return TomlFile(path, tomllib.loads(text), text)
     except tomllib.TOMLDecodeError as why:
+        if left := _placeholder(text, str(why)):
+            word, row = left
+            raise InputError(
+                f"{word}, {'placeholders' if ' ' in word else 'a placeholder'}", "a number in its place", file=path, line=row,
+                advice="A word stands between quotation marks.",
+            ) from None  # fmt: skip
         raise InputError(f"a TOML error ({why})", "valid TOML", file=path) from None
     except RecursionError:
         raise InputError("too deep nesting", "valid TOML", file=path) from None
@@ -153,6 +162,18 @@ def read_toml(path: Path) -> TomlFile:
         line = text.count("\n", 0, match.start()) + 1 if match else None
         expected = f"at most {INTEGER_DIGITS:,} digits"
         raise InputError("an integer of thousands of digits", expected, file=path, line=line) from None
+
+
+def _placeholder(text: str, why: str) -> tuple[str, int] | None:
+    """A bare word in capitals on the line that the parser names, such as NEWTON in ``curve = [[0, 0], [RPM, NEWTON]]``."""
+    at = _AT_LINE.search(why)
+    line = int(at.group(1)) if at else 0
+    rows = text.splitlines()
+    if not 0 < line <= len(rows):
+        return None
+    bare = _QUOTED.sub('""', rows[line - 1]).partition("#")[0]
+    words = list(dict.fromkeys(_CAPITALS.findall(bare.partition("=")[2])))
+    return (" and ".join(words), line) if words else None
 
 
 def _within_bounds(text: str, path: Path) -> None:

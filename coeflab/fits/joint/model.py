@@ -52,7 +52,8 @@ def unseen(parts: Sequence[Component], constraint: Constraint | None) -> list[li
     out: list[list[OutOfSample]] = [[] for _ in parts]
     for how, fold in ways:
         for found, p, guess in zip(out, parts, predicted(parts, constraint, fold), strict=True):
-            found.append(errors_of(how, p.data.rows.y, guess))
+            constant = not p.own and not any(t.term.factors for t in p.terms)
+            found.append(errors_of(how, p.data.rows.y, guess, constant=constant))
     return out
 
 

@@ -15,6 +15,7 @@ from coeflab.core.table import html_by, plus_minus
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
+from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.origin_slope import estimate, next_points
@@ -359,6 +360,8 @@ class FitResult:
         The fit whose law these coefficients complete.
     oscillations : tuple of Oscillation
         Of oscillating runs, one a force component and motion.
+    straight : tuple of StraightRuns
+        Of tables in which nothing varies but the speed.
     """
 
     fit: str
@@ -373,6 +376,7 @@ class FitResult:
     differences: tuple[str, ...] = ()
     tied: Tied | None = None
     oscillations: tuple[Oscillation, ...] = ()
+    straight: tuple[StraightRuns, ...] = ()
 
     @property
     def law(self) -> str:

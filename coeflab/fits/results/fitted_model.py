@@ -195,6 +195,11 @@ class FittedModel:
         return len(self.y)
 
     @property
+    def is_constant(self) -> bool:
+        """Whether it has constants alone, so that the range of the response is its scatter."""
+        return not any(t.factors for t in self.terms)
+
+    @property
     def covariance(self) -> Array:
         """(p, p), of standard uncertainties, half-width / 2: scatter by its correlation, form and shared errors in full.
 
@@ -468,6 +473,9 @@ def next_terms_in_words(
     return tuple(out)
 
 
+RANGE = "the response's range"
+
+
 @dataclass(frozen=True, slots=True)
 class OutOfSample:
     """Prediction errors of left-out rows.
@@ -480,6 +488,8 @@ class OutOfSample:
         Share of the response's range; NaN if no row could be predicted.
     predicted, rows : int
         Rows that the others determine, and all rows.
+    of : str
+        What the errors are shares of.
     """
 
     how: str
@@ -487,6 +497,7 @@ class OutOfSample:
     largest: float
     predicted: int
     rows: int
+    of: str = RANGE
 
     @property
     def told(self) -> bool:
@@ -507,21 +518,24 @@ class OutOfSample:
         rest = f"; {missing} of {self.rows} rows are not determined by the others" if missing else ""
         return (
             f"{self.how}: the left-out rows are predicted to {100 * self.rms:.2f} % rms, {100 * self.largest:.2f} % at "
-            f"most, of the response's range{rest}."
+            f"most, of {self.of}{rest}."
         )
 
 
-def errors_of(how: str, response: Array, predicted: Array) -> OutOfSample:
-    """Compare predictions, NaN where there is none, with what was measured."""
+def errors_of(how: str, response: Array, predicted: Array, *, constant: bool = False) -> OutOfSample:
+    """Compare predictions, NaN where there is none, with what was measured; of a constant as shares of its mean."""
     known = np.isfinite(predicted)
-    size = float(np.ptp(response)) or float("nan")
+    size = abs(float(np.mean(response))) if constant else float(np.ptp(response))
+    size = size or float("nan")
     error = np.abs(predicted[known] - response[known]) / size
     rms = float(np.sqrt(np.mean(error**2))) if error.size else float("nan")
-    return OutOfSample(how, rms, float(error.max()) if error.size else float("nan"), int(known.sum()), len(response))
+    of = "the mean" if constant else RANGE
+    largest = float(error.max()) if error.size else float("nan")
+    return OutOfSample(how, rms, largest, int(known.sum()), len(response), of)
 
 
 def every_third_point(model: FittedModel) -> OutOfSample:
     """Leave every third point out, each point once: rows sorted by the motion variables, ends included."""
     fold = thirds(list(model.x.values()))
     predicted = predict_left_out(design(model.terms, model.x), model.y, fold)
-    return errors_of("Every third point left out", model.y, predicted)
+    return errors_of("Every third point left out", model.y, predicted, constant=model.is_constant)

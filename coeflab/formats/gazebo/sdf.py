@@ -168,6 +168,29 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
     )
 
 
+FINS = {"dr": ("Y", "N", 1.0), "ds": ("Z", "M", -1.0)}  # force and moment by an angle, and the sense of a lever ahead
+
+
+def fins(parameters: ParameterFile) -> tuple[str, ...]:
+    """What a LiftDrag of each control takes: area times cla, m^2 a radian, and where it acts, m ahead of the reference point; in words.
+
+    Lift is 1/2 rho V^2 area cla alpha, so that area cla = Ydr' L^2 and x = L Ndr'/Ydr'; of stern planes -L Mds'/Zds'.
+    """
+    out, length = [], parameters.scaling.length
+    for control, (force, moment, sense) in FINS.items():
+        found = [parameters.coefficient(f"{c}{control}'") for c in (force, moment)]
+        y, n = (c.value if c is not None else None for c in found)
+        if not y or n is None:
+            continue
+        out.append(
+            f"{control} as a LiftDrag of gz-sim: area*cla = {abs(y) * length**2:.4g} m^2 a radian in all, at x = {sense * n / y * length:+.4g} m "
+            f"from the reference point; its lift in drift at {control} = 0 is in the file's law already and would count twice"
+        )
+    if out or parameters.thrusters:
+        out.append("thrust and fins are yours to add in the world: docs/simulators.md")
+    return tuple(out)
+
+
 def _spaced(vector: Array) -> str:
     return " ".join(f"{v:.6g}" for v in FLU[:3] * vector + 0.0)
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from coeflab.formats.exported_law import common_changes, exported_law
-from coeflab.formats.gazebo.sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_added_mass, sdf_force, tags
+from coeflab.formats.gazebo.sdf import fins, missing_in_sdf, not_in_sdf, placed, sdf, sdf_added_mass, sdf_force, tags
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU
@@ -48,4 +48,4 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         else f"gz-sim adds -C_A(nu) nu of <fluid_added_mass> ({h.statements[0]}): the viscous part of every term, total less what it "
         "adds, is written, so that nothing counts twice"
     )
-    return (added, *common_changes(parameters, h, whole=True), *placed(parameters))
+    return (added, *common_changes(parameters, h, whole=True), *fins(parameters), *placed(parameters))

@@ -90,6 +90,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     if own is not None:  # a tow beside the campaigns of a study has a handful of runs: its own report draws them
         alone = [s for s in alone if s.symbol in study.plan.wanted and own.added is None]
     text += [line for line in (in_one_line(zero), _in_the_table(fit, alone, zero)) if line]
+    text += [r.in_words for r in fit.straight]
     if "swept about" in fit.settings:
         text.append(
             f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
@@ -99,7 +100,11 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         place,
         title,
         tuple(text),
-        filled(*(() if again else (tables.coefficients(study, fit.campaign),)), joint_tables.campaigns((fit,))),
+        filled(
+            *(() if again else (tables.coefficients(study, fit.campaign),)),
+            joint_tables.campaigns((fit,)),
+            *map(tables.straight_runs, fit.straight),
+        ),
         tuple(
             incidence_figure(t, rate, study.body, anchor(f"{place} {t.name} {rate}", taken))
             for t in mine

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, number, percent, plus_minus, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
@@ -37,6 +37,7 @@ FIRST = (
 )  # figures that a manoeuvre is known by, the first that is there
 OFF = "thrust off at time zero"  # what a coast-down says of itself
 ROUNDING, FINEST = 1e-6, 1e-9
+LISTS = ("not in the estimates", "not stated", "drag without lift")  # of what is missing: what follows names it
 LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
 ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
@@ -289,7 +290,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
-        Chip("Missing", _many(len(shape.missing), "thing") if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
+        Chip("Missing", _missing(shape.missing), Severity.WARN if shape.missing else Severity.PASS, "estimates"),
         _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
@@ -314,9 +315,18 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
 
+def _missing(missing: Sequence[str]) -> str:
+    """How many things a vehicle lacks; the name of a single one, such as no thruster."""
+    if len(missing) == 1:
+        head, _, rest = missing[0].partition(": ")
+        named = rest.partition("; ")[0].partition(", without")[0]
+        return f"{head}: {named}" if head.startswith(LISTS) else head
+    return _many(len(missing), "thing") if missing else "nothing"
+
+
 def _stability(index: Derived) -> str:
     """The verdict with what it rests on: an interval that holds zero says why nothing is determined."""
-    found = f"{index.value:.2f}" if index.result is None else plus_minus(index.value, index.result.linear)
+    found = f"{index.value:.2f}" if index.result is None else index.in_words
     return f"{sense(index).partition(' at ')[0]}, {index.name} = {found}"
 
 

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
-from coeflab.core.table import ABSENT, Table, number, plus_minus
+from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.types import Array
 from coeflab.core.wording import grouped, in_sentences, listed
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
@@ -104,7 +104,7 @@ TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
     "m': mass; xG': x of the centre of gravity. Positive: stable. If the interval contains zero, the sign is open.",
     "U95 of an index comes from the U95 of its four derivatives. Errors of mass and centre of gravity are not included. The verdict uses "
-    "this linearised U95. Monte Carlo limits show how asymmetric the interval is.",
+    "this linearised U95, or the Monte Carlo limits where the remark gives them.",
     "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
     "Roots are the eigenvalues of small motions about a straight course at constant speed. They follow from the force law, mass and added mass of the parameter file.",
 )
@@ -188,8 +188,9 @@ def from_literature(parameters: ParameterFile, index: str) -> list[str]:
 def _value(d: Derived) -> str:
     if d.result is None:
         return f"{d.name} = {d.value:.3g}"
-    skewed = f"; Monte Carlo {number(d.result.low, 3)} to {number(d.result.high, 3)}" if d.limits else ""
-    return f"{d.name} = {plus_minus(d.value, d.result.linear)}{skewed}"
+    beside = d.limits and d.represented
+    skewed = f"; Monte Carlo {number(d.result.low, 3)} to {number(d.result.high, 3)}" if beside else ""
+    return f"{d.name} = {d.in_words}{skewed}"
 
 
 def stability_sections(study: Study) -> tuple[Section, ...]:
@@ -248,10 +249,10 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
             out.append((parameters.name, index, ABSENT, ABSENT, "no value", remark))
             continue
         d = given[index]
-        half = None if d.result is None else d.result.linear
+        half = d.half_width
         stated = from_literature(parameters, index)
         remarks = [f"{', '.join(stated)} published"] if stated else []
-        remarks += [d.statement] if half is None else []
+        remarks += [d.statement] if d.result is None else []
         remarks += [d.limits] if d.limits else []
         remarks.append(
             f"uncertainty of m' and xG' not in U95: 1 % of m' changes {index} by {number(by_mass(parameters, d), 2)}"

@@ -36,7 +36,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
             str(m.fit.rank),
             number(m.fit.rms, 3),
             number(m.fit.press_rms, 3),
-            percent(m.fit.press_rms, float(m.y.max() - m.y.min()) or None),
+            percent(m.fit.press_rms, float(abs(m.y.mean()) if m.is_constant else m.y.max() - m.y.min()) or None),
             number(m.fit.r_squared, 5),
             number(m.fit.aicc, 5),
             probability(m.fit.runs_probability),
@@ -53,6 +53,8 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
         "runs of one sign by chance; R2 of a form without intercept is about zero; outside: what a reader beyond the domain is to do.",
     )
+    if any(m.is_constant for m in models):
+        notes = (*notes, "of range: of the mean, for a model that is one constant.")
     angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
     notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
     return Table(

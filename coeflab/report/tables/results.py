@@ -24,6 +24,7 @@ from coeflab.core.table import (
 from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
@@ -38,6 +39,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
 ASSUMED = {"alpha": "Zw", "beta": "Yv"}
+NO_WORK = "none"  # as a citation
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"
 
@@ -162,6 +164,20 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
         by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
     return f"{each} (U95; covers {covers(study, chosen)})."
+
+
+def resistances(study: Study) -> tuple[str, ...]:
+    """X0' of straight runs with U95 and its trend with speed, a sentence a table."""
+    return tuple(r.in_words for f in study.fits for r in f.straight)
+
+
+def straight_runs(found: StraightRuns) -> Table:
+    """Every straight run of a table: speed, Reynolds number, force and its prime."""
+    reynolds = [ABSENT] * len(found.speed) if found.reynolds is None else [number(1e-6 * r, 4) for r in found.reynolds]
+    rows = zip(found.labels, found.speed, reynolds, found.force, found.primes, strict=True)
+    cells = tuple((label, number(u, 4), re, number(x, 4), coefficient(prime)) for label, u, re, x, prime in rows)
+    heads = ("run", "U m/s", "Re in millions", "X N", "X / (1/2 rho U^2 L^2)")
+    return Table(f"Straight runs of {found.table}", heads, cells, (), frozenset({0}))
 
 
 def primed_about(study: Study) -> str:
@@ -484,7 +500,7 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     keys += [k for made in study.exports for k in made.citations]
     keys += [k for made in study.manoeuvres for k in made.citations]
     keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
-    return tuple((k, work(k)) for k in dict.fromkeys(keys))
+    return tuple((k, work(k)) for k in dict.fromkeys(keys) if k != NO_WORK)
 
 
 def _of(components: Sequence[str], table: ForceTable) -> str:

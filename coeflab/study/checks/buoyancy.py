@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from coeflab.bodies.mass_model import at_rest
 from coeflab.core.table import Check, Severity
-from coeflab.study.study import Study
+from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.from_shape import displaced_mass, floods
 
 summary = "mass of a vehicle from its shape against its displacement"
@@ -18,12 +21,36 @@ HEAVY = (
 )
 
 
+STEEP = float(np.radians(5.0))  # of trim or list at rest
+AS_BALLASTED = "As if ballasted to neutral at the centre of buoyancy. "
+LEVEL_IT = "Move the centre of gravity below the centre of buoyancy: masses, or ballast away from it."
+
+
 def check(study: Study) -> Sequence[Check]:
-    """A warning beyond 20 % of the displacement where no flooded room and no ballast is declared."""
-    if study.shape is None:
+    """A warning beyond 20 % of the displacement where no flooded room and no ballast is declared; and beyond 5 deg of trim or list."""
+    return [] if study.shape is None else [*_mass(study.shape), *_trim(study.shape)]
+
+
+def _trim(shape: FromShape) -> list[Check]:
+    """A warning for a stated centre of gravity with which the vehicle does not hang level."""
+    weighed = shape.weighed
+    mass, middle = weighed.configuration.mass, weighed.configuration.centre_of_buoyancy
+    if mass is None or middle is None or "centre" in weighed.assumed:
         return []
-    weighed = study.shape.weighed
-    mass, displaced = weighed.configuration.mass, displaced_mass(weighed.body, study.shape.conditions.density)
+    angles = weighed.at_rest or at_rest(0.0, mass.centre_of_gravity + weighed.body.reference_point - middle)
+    if angles is None or max(map(abs, angles)) <= STEEP:
+        return []
+    pitch, roll = np.degrees(angles)
+    statistic = (
+        f"at rest it hangs with pitch {pitch:+.1f} deg (bow {'up' if pitch > 0.0 else 'down'}), roll {roll:+.1f} deg"
+    )
+    comment = f"{AS_BALLASTED if weighed.at_rest is None else ''}{LEVEL_IT}"
+    return [Check("trim_at_rest", weighed.body.name, Severity.WARN, statistic, "within 5 deg", comment)]
+
+
+def _mass(shape: FromShape) -> list[Check]:
+    weighed = shape.weighed
+    mass, displaced = weighed.configuration.mass, displaced_mass(weighed.body, shape.conditions.density)
     if mass is None or "mass" in weighed.assumed or floods(weighed.body):
         return []
     apart = mass.mass / displaced - 1.0

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import Check, Severity, number
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
 from coeflab.fits.statistics import data_gate, origin_slope
 from coeflab.fits.statistics.data_gate import FEWEST, Parity, Screened
@@ -527,7 +528,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
 
 def _at_rest(tables: Sequence[ForceTable]) -> list[Check]:
     """A campaign without a motion or control in any row, from which no slope follows."""
-    if any(t.varies for t in tables):
+    if any(t.varies for t in tables) or any(straight_runs(t, t.scaling.length) for t in tables):
         return []
     speeds = np.concatenate([t.speed for t in tables])
     resistance = float(np.ptp(speeds)) > AHEAD * float(np.max(np.abs(speeds), initial=0.0))
@@ -536,6 +537,7 @@ def _at_rest(tables: Sequence[ForceTable]) -> list[Check]:
             "data_gate", tables[0].campaign, Severity.WARN if resistance else Severity.FAIL,
             "nothing varies but the speed" if resistance else "nothing varies",
             "an angle, a velocity, a rate, a control or a radius that varies",
-            "No slope follows. Map the column that was varied: coeflab inspect shows all columns of the file.",
+            "No slope follows. Map the column that was varied: coeflab inspect shows all columns of the file. Straight runs at three "
+            "speeds or more, with X, give X0'.",
         )
     ]  # fmt: skip

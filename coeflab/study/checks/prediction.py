@@ -19,6 +19,8 @@ def check(study: Study) -> Sequence[Check]:
     out = []
     for model in (m for f in study.fits for m in f.models):
         spread, error = float(np.std(model.y)), model.fit.press_rms
+        if model.is_constant:  # a constant: without a row its mean always misses by more than the scatter
+            continue
         if not isfinite(error) or not spread > 0.0 or error <= spread:
             continue
         out.append(

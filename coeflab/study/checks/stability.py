@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.table import Check, Severity
 from coeflab.study.study import Study
 from coeflab.study.validation import PrintedIndex, printed_indices
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -27,9 +27,8 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             statistic, comment = "no value", f"Missing: {', '.join(lacking)}."
         else:
             d = given[name]
-            half = None if d.result is None else d.result.linear
             verdict = sense(d)
-            statistic = f"{name} = {d.value:.3f}" if half is None else f"{name} = {plus_minus(d.value, half)}"
+            statistic = f"{name} = {d.value:.3f}" if d.result is None else f"{name} = {d.in_words}"
             statistic += f": {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
             comment = (
@@ -43,7 +42,7 @@ def _indices(parameters: ParameterFile) -> list[Check]:
                 comment += "" if d.decided else " The interval contains zero."
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
-            comment += f" {d.statement}." if half is None else " U95 leaves out the mass."
+            comment += f" {d.statement}." if d.result is None else " U95 leaves out the mass."
         subject = f"{parameters.name} {name}"
         out.append(Check("stability", subject, Severity.NOTE, statistic, "above zero is stable", comment))
     return out
