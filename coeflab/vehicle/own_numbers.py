@@ -25,7 +25,7 @@ from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics
 
-STATED = "stated"
+STATED, BY_HAND = "stated", "--set"
 EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _TYPED = re.compile(
@@ -159,6 +159,13 @@ def stated_file(
         covered=none, hydrostatics=hydrostatics,
         provenance=Provenance(coeflab_version=VERSION, study=name, inputs=(), citations=(), notes=tuple(notes)),
     )  # fmt: skip
+
+
+def stated_beside(base: ParameterFile, numbers: Sequence[OwnNumber]) -> ParameterFile:
+    """The numbers as a file of the base's length, conditions and reference point, to be merged into it."""
+    at = base.reference_point
+    made = stated_file(BY_HAND, base.body, base.scaling, base.conditions, np.array(at.point), at.origin, numbers)
+    return made.model_copy(update={"provenance": made.provenance.model_copy(update={"notes": ()})})
 
 
 def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) -> MassProperties:

@@ -265,7 +265,7 @@ def _carried(
 
 @one_thread()
 def replaced(
-    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None
+    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None, *, alone: bool = False
 ) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
     """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
 
@@ -276,13 +276,15 @@ def replaced(
         Of the merged file; the base's unless given.
     own : Scaling, optional
         What the other's data were primed by.
+    alone : bool
+        As of `coeflab.vehicle.merge.merged`.
 
     Raises
     ------
     InputError, ScalingMismatchError
         As of `coeflab.vehicle.merge.merged`.
     """
-    made = merged(base, other, name, own)
+    made = merged(base, other, name, own, alone=alone)
     moves, _ = first_manoeuvres(made.parameters)
     carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
     return made, moves, carried

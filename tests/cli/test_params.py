@@ -177,3 +177,24 @@ def test_a_wrong_number_writes_nothing(coeflab: Run, tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "Did you mean Yr'?" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_one_number_of_ones_own_goes_into_a_file(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("merge", "remus100", "--set", "Nr|r|'=-0.05 +- 0.005", "--out", "merged")
+    assert done.returncode == 0, done.stderr
+    assert "1 number from --set" in done.stdout
+    content = json.loads((tmp_path / "merged" / "remus100_merged.parameters.json").read_bytes())
+    (changed,) = (c for c in content["coefficients"] if c["origin"] == "stated")
+    assert (changed["symbol"], changed["value"], changed["u95"]) == ("Nr|r|'", -0.05, 0.005)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [((), "nothing to merge"), (("campaign", "--set", "Yv'=1"), "OTHER and --set together"),
+     (("--set", "Yv'=-0.03", "--set", "Yv'=1 N"), "no unit")],
+)  # fmt: skip
+def test_what_cannot_be_merged_writes_nothing(coeflab: Run, tmp_path: Path, words: tuple[str, ...], said: str) -> None:
+    done = coeflab("merge", "remus100", *words, "--out", "merged")
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not (tmp_path / "merged").exists()

@@ -18,7 +18,8 @@ from coeflab.core.units import also_written, same_unit
 from coeflab.law.coefficient import Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
-from coeflab.vehicle.own_numbers import mass_of, own_number, own_numbers, stated_file, typed_file
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.own_numbers import mass_of, own_number, own_numbers, stated_beside, stated_file, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 
@@ -196,3 +197,27 @@ def test_ok_without_an_interval_is_a_warning() -> None:
     assert (Severity.WARN, "Nv': status ok without u95") in said(content)
     entry(content, "Nv'").update(u95=0.001)
     assert not [s for _, s in said(content) if "status ok" in s]
+
+
+def law(*numbers: str) -> ParameterFile:
+    return stated_file("law", "hull", SCALING, AT, np.zeros(3), Datum("cg"), own_numbers(numbers))
+
+
+def test_one_number_is_replaced_in_its_place_and_no_other_with_it() -> None:
+    base = law("Yv'=-0.03 +- 0.003", "Nv'=-0.012 +- 0.002", "Yv|v|'=-0.1", "Yvvv'=-0.2")
+    made = merged(base, stated_beside(base, own_numbers(["Yv|v|=-300 +- 20 N/(m/s)^2"])), alone=True)
+    values = {c.symbol: c.value for c in made.parameters.coefficients}
+    assert values == pytest.approx({"Yv'": -0.03, "Nv'": -0.012, "Yv|v|'": -300.0 / 2000.0, "Yvvv'": -0.2})
+    assert [r.symbol for r in made.replaced] == ["Yv|v|'"]
+    changed = made.parameters.coefficient("Yv|v|")
+    assert changed is not None
+    assert (changed.origin, changed.status, changed.u95) == ("stated", Status.STATED, pytest.approx(0.01))
+    rows = made.parameters.covariance
+    assert rows.matrix[rows.symbols.index("Nv'")][rows.symbols.index("Nv'")] == 0.001**2
+    assert made.parameters.provenance.notes[-1] == "from --set: Yv|v|'"
+
+
+def test_a_new_number_takes_the_place_of_the_terms_in_its_motions() -> None:
+    base = law("Yv'=-0.03", "Yv|v|'=-0.1", "Yvvv'=-0.2", "Xu|u|'=-0.002")
+    made = merged(base, stated_beside(base, own_numbers(["X0'=-0.0025"])), alone=True)
+    assert [c.symbol for c in made.parameters.coefficients] == ["Yv'", "Yv|v|'", "Yvvv'", "X0'"]
