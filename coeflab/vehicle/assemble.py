@@ -22,7 +22,7 @@ from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
-from coeflab.core.wording import finite, listed
+from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
@@ -55,12 +55,11 @@ def _literature(
                 column=f"parameter_file.{group.name}.literature",
             )  # fmt: skip
         reference, point = known[name], among.reference_point
-        lacking = [k for k in ("datum", "reference_point") if getattr(reference, k) is None]
-        if reference.literature and lacking:
+        if reference.literature and reference.reference_point is None:
             raise InputError(
-                f"{shown(name)} without {listed(lacking)}", "the point that its values are about, in published.toml",
+                f"{shown(name)} without reference_point", "the point that its values are about, in published.toml",
                 column=f"parameter_file.{group.name}.literature",
-                advice="Yr' and Nr' differ from point to point: add the ones that the source states.",
+                advice="Yr' and Nr' differ from point to point: add reference_point, and datum, as the source states them.",
             )  # fmt: skip
         if reference.datum is not None and reference.datum != among.datum:
             raise ScalingMismatchError(

@@ -291,7 +291,7 @@ class ReferenceKeys(takes.Declaration):
     values : mapping of str to str
         Derivatives that are compared with ours: symbol without prime, and number as printed, in quotes; a closing ? is an illegible digit.
     literature : mapping
-        Values that enter a parameter file whose plan names this column, by a word of your own, such as rotary: [reference.literature.rotary]. They need datum and reference_point.
+        Values that enter a parameter file whose plan names this column, by a word of your own, such as rotary: [reference.literature.rotary]. They need reference_point.
     uncertainties : mapping of str to float
         Relative, as the source states it, by symbol or default, for the comparison.
     reference_point : (3,) array
@@ -299,7 +299,7 @@ class ReferenceKeys(takes.Declaration):
     indices : mapping of str to str
         G_h and G_v as printed.
     datum : str
-        Id of the point that the reference point counts from, as in campaign.toml.
+        Id of the point that the reference point counts from; unless given that of the tables.
     datum_note : str
         Where that is.
     """
