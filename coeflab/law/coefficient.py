@@ -47,7 +47,7 @@ class Status(StrEnum):
             Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
-            Status.STATED: "Taken from the literature with the uncertainty stated there.",
+            Status.STATED: "Stated as it is, by the literature or by whoever wrote the file, the uncertainty too.",
             Status.ESTIMATE: "From the shape by semi-empirical methods. Replace it with a computation or a measurement.",
             Status.FORM_ASSUMED: "U95 holds the scatter and what the residuals show that the form leaves out. A misfit of "
             "the size of the noise does not show.",
