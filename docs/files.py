@@ -56,6 +56,9 @@ def _tables(place: str, table: dict[str, Any], shared: dict[str, Any]) -> Iterat
         inner = _resolved(field.get("items", {}) if many else field, shared)
         if "properties" in inner:
             yield from _tables(f"{place}.{key}".lstrip(".") + "[]" * many, inner, shared)
+        named = field.get("additionalProperties")
+        if isinstance(named, dict) and "properties" in (named := _resolved(named, shared)):
+            yield from _tables(f"{place}.{key}.NAME".lstrip("."), named, shared)
 
 
 def _resolved(content: dict[str, Any], shared: dict[str, Any]) -> dict[str, Any]:

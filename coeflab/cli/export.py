@@ -44,6 +44,7 @@ def command(
     from coeflab.core.wording import file_stem
     from coeflab.formats import EXPORTERS
     from coeflab.formats.export import Kind
+    from coeflab.formats.unspoken import without_law
     from coeflab.report.tables import formats as loss_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.plausibility import plausibility
@@ -61,6 +62,8 @@ def command(
             else f"{to} does not hold all of {parameters.name}:"
         )
         show.text(whole + ("" if made.lossless else f" {loss_tables.in_short(loss)}."))
+        for said in without_law(parameters):
+            show.sentence(f"The file has {said}.")
         show.text()
         show.table(loss_tables.forces(loss))
         show.table(loss_tables.at_points(loss.at_points, f"Force law of {to}", controls=False))

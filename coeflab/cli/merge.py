@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
+    from coeflab.vehicle.own_numbers import OwnNumber
     from coeflab.vehicle.parameter_file import ParameterFile
 
 EXAMPLE = "coeflab merge reports/hull/hull.parameters.json my_study/campaign --out reports/hull_merged"
@@ -20,22 +21,41 @@ EXAMPLE = "coeflab merge reports/hull/hull.parameters.json my_study/campaign --o
 def command(
     base: Path = typer.Argument(..., metavar="BASE", help="A parameter file, such as that of coeflab vehicle."),
     other: str = typer.Argument(
-        ..., metavar="OTHER", help="A parameter file, or a campaign that is fitted about the base's reference point."
+        "",
+        metavar="OTHER",
+        help="A parameter file, or a campaign that is fitted about the base's reference point; not with --set.",
+        show_default=False,
+    ),
+    numbers: list[str] = typer.Option(
+        [],
+        "--set",
+        metavar="SYMBOL=VALUE",
+        help='One number of your own, "X0\'=-0.00208 +- 0.00005" or "Yv=-35.5 N/(m/s)"; again for each.',
+        show_default=False,
     ),
     name: str = typer.Option("", metavar="NAME", help="Of the merged file; default BASE_merged.", show_default=False),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default that of BASE."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Replace the estimates of a vehicle by fitted numbers.
+    """Replace the estimates of a vehicle by fitted numbers, or by numbers of your own.
 
     What the other file does not give stays. Prints what was replaced, and what the estimates that remain contribute to the
     uncertainty of the turn; writes the merged parameter file and a report.
     """
+    from coeflab.core.errors import InputError
+    from coeflab.vehicle.own_numbers import own_numbers
     from coeflab.vehicle.parameter_file import read_parameter_file
 
+    if bool(other) == bool(numbers):
+        raise InputError(
+            "OTHER and --set together" if other else "nothing to merge", "a parameter file or a campaign, or numbers by --set",
+            column="OTHER", advice="Merge the file first, then set the numbers." if other else "",
+        )  # fmt: skip
+    chosen = own_numbers(numbers)
     with show.progress(json) as say:
-        say("reading both")
-        done = carried_out(read_parameter_file(base), other, name, out if out is not None else base.parent, say)
+        say("reading both" if other else "reading the file")
+        first = read_parameter_file(base)
+        done = carried_out(first, other or chosen, name, out if out is not None else base.parent, say)
     if json:
         show.json_object(done.as_json())
     else:
@@ -86,14 +106,16 @@ class Done:
             show.path(path)
 
 
-def carried_out(first: ParameterFile, other: str, name: str, folder: Path, say: Callable[[str], None]) -> Done:
-    """Merge a file or campaign into a parameter file, and write what comes out.
+def carried_out(
+    first: ParameterFile, other: str | Sequence[OwnNumber], name: str, folder: Path, say: Callable[[str], None]
+) -> Done:
+    """Merge a file, a campaign or numbers into a parameter file, and write what comes out.
 
     Parameters
     ----------
     first : ParameterFile
-    other : str
-        A parameter file, or a campaign.
+    other : str or sequence of OwnNumber
+        A parameter file, a campaign, or numbers one by one.
     name : str
         Of the merged file; empty: that of the first with ``_merged``.
     folder : Path
@@ -106,17 +128,20 @@ def carried_out(first: ParameterFile, other: str, name: str, folder: Path, say: 
         As of `coeflab.workbench.vehicle.replaced`.
     """
     from coeflab.core.files import write_all
+    from coeflab.vehicle.own_numbers import stated_beside
     from coeflab.workbench import run
     from coeflab.workbench.vehicle import given_by, replaced, replaced_files
 
-    second, own = given_by(other, first, run)
+    by_hand = not isinstance(other, str)
+    second, own = (
+        given_by(other, first, run) if isinstance(other, str) else (stated_beside(first, other), first.scaling)
+    )
     say("merging, and moving what came out")
-    made, moves, carried = replaced(first, second, name or f"{first.name}_merged", own)
+    made, moves, carried = replaced(first, second, name or f"{first.name}_merged", own, alone=by_hand)
     files = replaced_files(made, moves, carried)
     write_all(folder, files)
-    source = (
-        second.name if second.name != first.name else other
-    )  # a tow bears the name of its body, as the estimates do
+    # a tow bears the name of its body, as the estimates do
+    source = second.name if by_hand or second.name != first.name else str(other)
     return Done(made, carried, source, tuple(folder / n for n in sorted(files)))
 
 

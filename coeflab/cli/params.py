@@ -8,7 +8,7 @@ import typer
 
 from coeflab.cli import complete, show
 
-app = typer.Typer(help="Check a parameter file; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
+app = typer.Typer(help="Check a parameter file, write one of your own numbers; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
 
 @app.callback()
@@ -55,6 +55,84 @@ def check(
         show.findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)
+
+
+NEW = """Example: coeflab params new my_auv --about cg --length "2.5 m" --speed "1.5 m/s" --density 1025 --mass "46 kg"
+--set "Yv'=-0.03 +- 0.003" --set "Nv'=-0.012" --set "Yr'=0.005" --set "Nr'=-0.006\""""
+
+
+@app.command(epilog=NEW)
+def new(
+    name: str = typer.Argument(..., metavar="NAME", help="Of the set of numbers; the file is NAME.parameters.json."),
+    numbers: list[str] = typer.Option(
+        [],
+        "--set",
+        metavar="SYMBOL=VALUE",
+        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s)"; again for each.',
+        show_default=False,
+    ),
+    length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
+    length_name: str = typer.Option("LOA", metavar="NAME", help="Which length that is."),
+    speed: str = typer.Option(
+        "", metavar="SPEED", help="Of the SI values, and of reference. Required.", show_default=False
+    ),
+    density: str = typer.Option("", metavar="DENSITY", help="Of the water, kg/m^3. Required.", show_default=False),
+    about: str = typer.Option(
+        "",
+        metavar="POINT",
+        help="What moments and rates are about: cg, nose, midship ... Required.",
+        show_default=False,
+    ),
+    mass: str = typer.Option("", metavar="MASS", help='46, "46 kg"; without it the file has none.', show_default=False),
+    cg: str = typer.Option(
+        "",
+        metavar="X,Y,Z",
+        help="Centre of gravity from that point, m, FRD; needed unless --about cg.",
+        show_default=False,
+    ),
+    inertia: str = typer.Option(
+        "",
+        metavar="IX,IY,IZ",
+        help="About the centre of gravity, kg m^2; or the transverse one alone.",
+        show_default=False,
+    ),
+    volume: str = typer.Option("", metavar="VOLUME", help="Displaced, m^3; with --cb.", show_default=False),
+    cb: str = typer.Option("", metavar="X,Y,Z", help="Centre of buoyancy from that point, m, FRD.", show_default=False),
+    body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
+    out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Write a parameter file of your own numbers.
+
+    Works out the SI values, m' and the covariance. Nothing is assumed: what is not stated is not in the file. An added mass is
+    an acceleration derivative, "Yvdot'=-0.029". A file that exists is not written over.
+    """
+    import shlex
+
+    from coeflab.core.errors import InputError, OutputError
+    from coeflab.core.files import typed, write_all
+    from coeflab.core.wording import file_stem
+    from coeflab.report.tables.formats import contents
+    from coeflab.vehicle.own_numbers import typed_file
+
+    made = typed_file(
+        name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
+        inertia=inertia, volume=volume, cb=cb, body=body,
+    )  # fmt: skip
+    if file_stem(name) != name:
+        raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
+    path = typed(out) / f"{name}.parameters.json"
+    if path.exists():
+        raise OutputError(f"{path} exists. Name another, or change it: coeflab merge {path} --set SYMBOL=VALUE.")
+    write_all(path.parent, {path.name: made.to_json()})
+    if json:
+        show.json_object(
+            {"name": made.name, "coefficients": [c.symbol for c in made.coefficients], "files": [str(path)]}
+        )
+    else:
+        show.table(contents(made, "coeflab"))
+        show.path(path)
+        show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
 
 
 @app.command(epilog="Example: coeflab params schema > parameter_file.md")

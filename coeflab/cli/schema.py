@@ -20,6 +20,7 @@ KINDS = {
     "glider": "motion.glider.glider.GliderFile",
     "tuning": "motion.tune.plan.TuningFile",
     "tank": "tank.tank_keys.TankFile",
+    "published": "vehicle.reference.ReferenceFile",
     "parameters": "",
 }
 

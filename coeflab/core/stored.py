@@ -23,6 +23,32 @@ FIRST_VERSION = "1.0"
 Noun = TypeVar("Noun")
 
 
+class RefusedError(ValueError):
+    """Why no file may hold a noun: what stands there, and what should.
+
+    Parameters
+    ----------
+    found, expected : str
+    advice : str
+        What to do about it.
+    where : tuple
+        Keys from the noun to the value at fault; empty for the noun itself.
+    others : tuple of RefusedError
+        What else is wrong with the same noun.
+    """
+
+    def __init__(
+        self,
+        found: str,
+        expected: str,
+        advice: str = "",
+        where: tuple[str | int, ...] = (),
+        others: tuple[RefusedError, ...] = (),
+    ) -> None:
+        self.found, self.expected, self.advice, self.where, self.others = found, expected, advice, where, others
+        super().__init__(f"{found}; expected {expected}{f'. {advice}' if advice else ''}")
+
+
 @dataclass(frozen=True, slots=True)
 class Means:
     """What a field means, to stand in its ``Annotated``; the schema and its page show it.

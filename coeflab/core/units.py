@@ -81,10 +81,27 @@ def _registry() -> Any:
 _DERIVED = re.compile(r"[A-Za-z*/()\u00b7 .]*(?:\^-?[1-9][A-Za-z*/()\u00b7 .]*)*")
 
 
+_MOMENT = re.compile(r"\bNm\b")
+
+
+def also_written(unit: str) -> str:
+    """Another spelling of the unit of a derivative that `same_unit` takes: ``Nm/(m/s)`` of ``N*m/(m/s)``."""
+    top, slash, bottom = unit.partition("/")
+    if top != "N":
+        return f"Nm{slash}{bottom}"
+    return {"(m/s)": "N s/m", "(rad/s)": "N s/rad", "(m/s)^2": "N s^2/m^2"}.get(
+        bottom, f"N {slash} {bottom}".rstrip(" /")
+    )
+
+
 def same_unit(one: str, other: str) -> bool:
-    """Whether two units are one, factor and all: ``N s/m`` and ``N/(m/s)`` are, ``N/(deg)`` and ``N/(rad)`` are not."""
+    """Whether two units are one, factor and all: ``N s/m`` and ``N/(m/s)`` are, ``N/(deg)`` and ``N/(rad)`` are not.
+
+    A moment may be ``N*m``, ``N m`` or ``Nm``.
+    """
     if one.split() == other.split():
         return True
+    one, other = (_MOMENT.sub(r"(N*m)", text) for text in (one, other))
     if any(len(text) > _LONGEST or not _DERIVED.fullmatch(text) for text in (one, other)):
         return False
     import pint
@@ -231,3 +248,64 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
     if out := bounded_number(number):
         raise InputError(shown(value), out, file=file, column=key)
     return number
+
+
+def typed(text: str, dimension: str, option: str) -> float:
+    """A number that a person typed behind an option: SI, or with its unit; an angle needs its unit.
+
+    Parameters
+    ----------
+    text : str
+    dimension : str
+        Key of `SI`.
+    option : str
+        For the error.
+
+    Raises
+    ------
+    InputError
+        Not a number, or a unit that does not fit; names the option.
+    """
+    try:
+        bare: float | str = float(text)
+    except ValueError:
+        bare = text
+    try:
+        return with_unit(bare, dimension)
+    except InputError as why:
+        raise type(why)(why.found, why.expected, column=option, advice=why.advice) from None
+
+
+def positive_typed(text: str, dimension: str, option: str) -> float:
+    """The same, of a number that must be above zero.
+
+    Parameters
+    ----------
+    text : str
+    dimension : str
+        Key of `SI`.
+    option : str
+        For the error.
+    """
+    found = typed(text, dimension, option)
+    if not found > 0.0:
+        raise InputError(shown(text), f"a {dimension} above zero", column=option)
+    return found
+
+
+def three_typed(text: str, dimension: str, option: str) -> tuple[float, float, float]:
+    """The same, of three numbers with commas between.
+
+    Parameters
+    ----------
+    text : str
+    dimension : str
+        Key of `SI`.
+    option : str
+        For the error.
+    """
+    words = [w.strip() for w in text.split(",")]
+    if len(words) != 3:
+        raise InputError(shown(text), "three numbers with commas between", column=option)
+    x, y, z = (typed(w, dimension, option) for w in words)
+    return x, y, z

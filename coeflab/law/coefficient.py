@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, stored
+from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, RefusedError, stored
 from coeflab.core.table import html_by, percent, plus_minus
 from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.scaling import Conditions, Scaling
@@ -47,7 +47,7 @@ class Status(StrEnum):
             Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
-            Status.STATED: "Taken from the literature with the uncertainty stated there.",
+            Status.STATED: "Stated as it is, by the literature or by whoever wrote the file, the uncertainty too.",
             Status.ESTIMATE: "From the shape by semi-empirical methods. Replace it with a computation or a measurement.",
             Status.FORM_ASSUMED: "U95 holds the scatter and what the residuals show that the form leaves out. A misfit of "
             "the size of the noise does not show.",
@@ -109,7 +109,7 @@ class Coefficient:
     parts : Parts
     status : Status
     origin : str
-        ``fit``, ``literature``, ``estimate`` or ``none``.
+        ``fit``, ``literature``, ``estimate``, ``stated`` or ``none``.
     unit : str
         ``1`` when primed, else SI.
     table, campaign, body : str or None
@@ -141,14 +141,16 @@ class Coefficient:
         Means(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
             "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.4): the residuals show "
-            "that the form is wrong, no U95; stated: from the literature; estimate (since 1.5): from the shape by semi-empirical methods; no_table, too_few_points, not_determined: no value"
+            "that the form is wrong, no U95; stated: given as it is, by the literature or by whoever wrote the file; estimate (since 1.5): from the shape by semi-empirical methods; no_table, too_few_points, not_determined: no value"
         ),
     ]
     body: str = ""
     parts: Annotated[Parts, Means("what makes up U95")] = Parts()
-    origin: Annotated[str, Choice(("fit", "literature", "estimate", "none")), Means("where the value comes from")] = (
-        "none"
-    )
+    origin: Annotated[
+        str,
+        Choice(("fit", "literature", "estimate", "stated", "none")),
+        Means("where the value comes from; stated (since 1.5): a number of whoever wrote the file"),
+    ] = "none"
     unit: Annotated[str, Choice(("1",)), Means("1: nondimensional by the prime system of `scaling`")] = "1"
     table: Annotated[str | None, Means("file of the table that it was fitted to")] = None
     campaign: Annotated[str | None, Means("campaign of that table")] = None
@@ -195,17 +197,26 @@ class Coefficient:
         return html_by("one_coefficient", self)
 
     def refuse(self) -> None:
-        """Raise ValueError for a coefficient that no parameter file may hold."""
-        if not self.symbol.endswith("'"):
-            raise ValueError(f"{self.symbol}: a symbol without prime; write {self.symbol}'")
+        """Raise RefusedError for a coefficient that no parameter file may hold."""
         try:
             derivative(self.symbol)
         except InputError as why:
-            raise ValueError(str(why)) from None
+            raise RefusedError(why.found, why.expected, why.advice, ("symbol",)) from None
+        if not self.symbol.endswith("'"):
+            raise RefusedError(
+                f"{shown(self.symbol)}, a symbol without prime",
+                f"{self.symbol}', as the file holds primes",
+                where=("symbol",),
+            )
         if (self.value is None) != (self.status in WITHOUT_VALUE):
-            raise ValueError(f"{self.symbol}: value {self.value} does not go with status {self.status}")
+            raise RefusedError(
+                f"{self.symbol}: value {'null' if self.value is None else f'{self.value:g}'} does not go with status {self.status}",
+                f"null with {', '.join(WITHOUT_VALUE)}, a value with any other",
+            )
         if self.u95 is not None and self.value is None:
-            raise ValueError(f"{self.symbol}: an interval without a value")
+            raise RefusedError(
+                f"{self.symbol}: an interval without a value", "u95 null where value is null", where=("u95",)
+            )
 
     def scaled(self, factor: float, unit: str) -> Coefficient:
         """Value and uncertainties times a factor."""

@@ -103,6 +103,10 @@ def derivative(symbol: str) -> Derivative:
     component, rest = text[:1], text[1:]
     read = read_factors(rest) if component in COMPONENTS else None
     if read is None or len(read) > LONGEST:
+        if same := respelled(symbol):
+            raise InputError(
+                shown(symbol), "a SNAME derivative such as Yv', Nr', Xvv', X0' or Ydr'", advice=f"Did you mean {same}'?"
+            )
         known = [c + f for c in COMPONENTS for f in ("v", "w", "r", "q", "p", "vv", "ww", "rr", "dr", "ds", "0")]
         near = difflib.get_close_matches(text[:12], known, n=3, cutoff=0.4)
         raise InputError(
@@ -111,6 +115,22 @@ def derivative(symbol: str) -> Derivative:
             advice=f"Did you mean {', '.join(n + chr(39) for n in near)}?" if near else "",
         )
     return Derivative(component, tuple(name for name, _ in read), text)
+
+
+_MARKS = re.compile(r"[_{}\s\\^]|['\u2018\u2019\u201b\u2032\u00b4`]+$")
+
+
+def respelled(symbol: str) -> str:
+    """The derivative that is written otherwise, without prime, such as ``Yv`` of ``Y_v``; empty where it is none.
+
+    Indices behind an underscore or in braces, curly and typeset primes, and ``delta_r`` are read.
+    """
+    text = symbol.strip()
+    for name, control in CONTROL_COLUMNS.items():
+        text = text.replace(name, control)
+    text = _MARKS.sub("", text)
+    read = read_factors(text[1:]) if text[:1] in COMPONENTS else None
+    return text if read is not None and len(read) <= LONGEST else ""
 
 
 def primed(symbol: str) -> str:

@@ -55,6 +55,12 @@ def _literature(
                 column=f"parameter_file.{group.name}.literature",
             )  # fmt: skip
         reference, point = known[name], among.reference_point
+        if reference.literature and reference.reference_point is None:
+            raise InputError(
+                f"{shown(name)} without reference_point", "the point that its values are about, in published.toml",
+                column=f"parameter_file.{group.name}.literature",
+                advice="Yr' and Nr' differ from point to point: add reference_point, and datum, as the source states them.",
+            )  # fmt: skip
         if reference.datum is not None and reference.datum != among.datum:
             raise ScalingMismatchError(
                 f"{name} measures points from {shown(reference.datum.id)}, the parameter file from {shown(among.datum.id)}: "

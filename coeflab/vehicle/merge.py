@@ -71,7 +71,9 @@ def estimates_of(parameters: ParameterFile) -> tuple[Coefficient, ...]:
     return tuple(c for c in parameters.coefficients if c.status is Status.ESTIMATE)
 
 
-def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None) -> Merged:
+def merged(
+    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None, *, alone: bool = False
+) -> Merged:
     """The base with every number that the other has: converted to the base's length, moved to its reference point.
 
     A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
@@ -85,6 +87,9 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
         Of the file; the base's unless given.
     own : Scaling, optional
         What the other's data were primed by, where its file has them by another length already.
+    alone : bool
+        The other has single numbers and no law: one that the base has is replaced in its place, and no other goes with it. One
+        that is new takes the place of the base's terms in its motions all the same.
 
     Raises
     ------
@@ -111,7 +116,7 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
             f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
             advice="Give a campaign, or a parameter file, of measured or computed tables.",
         )  # fmt: skip
-    curved = {_place(s) for s in taken} - {None}
+    curved = {_place(s) for s in taken if not (alone and s in ours)} - {None}
     entries: list[Entry] = []
     replaced = []
     for i, c in enumerate(ours.coefficients):
@@ -128,7 +133,7 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "", own: Scali
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(symbol), None, theirs.coefficients[j]))
     made = _joined(base, other, (ours, theirs), entries, replaced, name)
-    for symbol in _against_points(made):
+    for symbol in () if alone else _against_points(made):
         entries = [e for e in entries if e[0].symbol != symbol]
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
         made = _joined(base, other, (ours, theirs), entries, replaced, name)

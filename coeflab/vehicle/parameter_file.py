@@ -25,13 +25,13 @@ from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import named, shipped
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
-from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
+from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, RefusedError, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
 from coeflab.core.types import in_angles
-from coeflab.core.units import same_unit
+from coeflab.core.units import also_written, same_unit
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.coefficient import Coefficient
@@ -47,6 +47,7 @@ from coeflab.vehicle.parameter_parts import (
     ParameterThruster,
     Strict,
 )
+from coeflab.vehicle.parameter_refusals import complaints, first_complaint
 
 VERSIONS = {
     "1.0": "Coefficients with uncertainty and covariance, scaling, conditions, mass, covered ranges, provenance.",
@@ -56,8 +57,9 @@ VERSIONS = {
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
     "form_rejected.",
-    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; added mass near walls.",
+    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; the origin stated: numbers of whoever wrote the file; added mass near walls.",
 }
+SAME = 1e-6  # relative: numbers of a file that follow from each other
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 SCHEMA_VERSION = next(reversed(VERSIONS))
@@ -234,50 +236,86 @@ class ParameterFile(Strict):
         if self.added_mass is not None:
             point, origin = np.array(self.reference_point.point), self.reference_point.origin
             self.__dict__["added_mass"] = replace(self.added_mass, reference_point=point, datum=origin)
-        symbols = [c.symbol for c in self.coefficients]
-        twice = repeated(symbols)
-        if twice:
-            raise ValueError(f"{', '.join(twice)} occurs more than once")
-        at = self.conditions
-        for c in self.coefficients:
-            if c.unit_si and not same_unit(c.unit_si, derivative(c.symbol).unit):
-                raise ValueError(
-                    f"{c.symbol}: unit_si {shown(c.unit_si)} is not {derivative(c.symbol).unit}, that of its symbol"
-                )
-            if c.value is None or c.value_si is None:
-                continue
-            si = c.value * self.scaling.unit(c.symbol, at.density, at.speed)
-            if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
-                raise ValueError(
-                    f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}; change one of them, or write null for value_si"
-                )
-        unknown = sorted(set(self.covariance.symbols) - set(symbols))
-        if unknown:
-            raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
-        named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
-        again = repeated(named)
-        if again:
-            raise ValueError(f"{', '.join(again)} occurs more than once")
-        tables = [(m.response, m.names) for m in self.models]
-        for response, names in repeated(tables):
-            raise ValueError(f"{response} over {', '.join(names)} occurs more than once")
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)
-        self._potential_parts()
+        wrong = [*self._told_twice(), *self._disagreements()]
+        if wrong:
+            first, *others = wrong
+            raise RefusedError(first.found, first.expected, first.advice, first.where, tuple(others))
         return self
 
-    def _potential_parts(self) -> None:
-        """Raise where a potential part is not what the added mass gives."""
-        booked = [c for c in self.coefficients if c.potential is not None]
-        if booked and self.added_mass is None:
-            raise ValueError(f"{booked[0].symbol}: a potential part without an added mass")
-        if self.added_mass is None:
-            return
-        for c in booked:
+    def _told_twice(self) -> Iterator[RefusedError]:
+        """What stands twice, and a covariance of what does not stand at all."""
+        symbols = [c.symbol for c in self.coefficients]
+        named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
+        for where, twice in (("coefficients", repeated(symbols)), ("thrusters", repeated(named))):
+            if twice:
+                yield RefusedError(f"{', '.join(twice)} occurs more than once", "each once", where=(where,))
+        unknown = sorted(set(self.covariance.symbols) - set(symbols))
+        if unknown:
+            yield RefusedError(
+                f"the covariance names {', '.join(unknown)}, which are no coefficients", "symbols of coefficients",
+                where=("covariance", "symbols"),
+            )  # fmt: skip
+        for response, names in repeated([(m.response, m.names) for m in self.models]):
+            yield RefusedError(
+                f"{response} over {', '.join(names)} occurs more than once", "each once", where=("models",)
+            )
+
+    def _disagreements(self) -> Iterator[RefusedError]:
+        """Numbers that do not follow from those that they follow from."""
+        at = self.conditions
+        for k, c in enumerate(self.coefficients):
+            where = ("coefficients", k)
+            unit = derivative(c.symbol).unit
+            if not same_unit(c.unit_si, unit):
+                yield RefusedError(
+                    f"{c.symbol}: unit_si {shown(c.unit_si)}", f"{unit}, the unit of its symbol, also written {also_written(unit)}",
+                    where=(*where, "unit_si"),
+                )  # fmt: skip
+            if c.value is not None and c.value_si is not None:
+                si = c.value * self.scaling.unit(c.symbol, at.density, at.speed)
+                if not math.isclose(c.value_si, si, rel_tol=SAME, abs_tol=1e-12 * abs(si)):
+                    yield RefusedError(
+                        f"{c.symbol}: value_si {c.value_si:g}", f"its value {c.value:g} at these conditions, {si:g}",
+                        "Change one of them, or write null for value_si.", (*where, "value_si"),
+                    )  # fmt: skip
+        if self.mass is not None:
+            yield from self._primes_of_the_mass(self.mass)
+        yield from self._potential_parts()
+
+    def _primes_of_the_mass(self, mass: MassProperties) -> Iterator[RefusedError]:
+        """Where m' or x_G' m' is not that of the mass."""
+        due = mass.primed(self.scaling, self.conditions.density)
+        by = f"density {self.conditions.density:g} kg/m^3 and length {self.scaling.length:g} m"
+        for name, unit in (("mass", "kg"), ("mass_moment", "kg m")):
+            given, right = getattr(mass, f"{name}_prime"), getattr(due, f"{name}_prime")
+            if not math.isclose(given, right, rel_tol=SAME, abs_tol=SAME * 1e-3 * due.mass_prime):
+                yield RefusedError(
+                    f"{name}_prime {given:g}", f"{right:g}, of {name} {getattr(mass, name):g} {unit}, {by}",
+                    f"Change {name}_prime or {name}.", ("mass", f"{name}_prime"),
+                )  # fmt: skip
+
+    def _potential_parts(self) -> Iterator[RefusedError]:
+        """Where a potential part is not what the added mass gives."""
+        for k, c in enumerate(self.coefficients):
+            if c.potential is None:
+                continue
+            where = ("coefficients", k, "potential")
+            if self.added_mass is None:
+                yield RefusedError(
+                    f"{c.symbol}: a potential part without an added mass", "potential null, or added_mass", where=where
+                )
+                return
             due = potential_part(c.symbol, self.added_mass, self.scaling, self.added_mass.density) or 0.0
-            if not math.isclose(c.potential or 0.0, due, rel_tol=1e-6, abs_tol=1e-9):
-                raise ValueError(f"{c.symbol}: potential {c.potential:g} is not that of the added mass, {due:g}")
+            if not math.isclose(c.potential, due, rel_tol=SAME, abs_tol=1e-9):
+                yield RefusedError(
+                    f"{c.symbol}: potential {c.potential:g}",
+                    f"that of the added mass, {due:g}",
+                    "null says nothing.",
+                    where,
+                )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ParameterFile) and self.model_dump() == other.model_dump()
@@ -317,17 +355,6 @@ def schema() -> bytes:
     return (json.dumps(content, indent=2) + "\n").encode()
 
 
-def _in_words(kind: str, message: str, value: object) -> tuple[str, str]:
-    """What pydantic found and expected."""
-    if kind == "missing":
-        return "nothing", "a value"
-    if kind == "extra_forbidden":
-        return "an unknown key", "only the keys of the schema"
-    if kind == "value_error":
-        return message.removeprefix("Value error, "), "a parameter file that agrees with itself"
-    return shown(value), message.removeprefix("Input should be ").removeprefix("String should ").removeprefix("have ")
-
-
 @contextmanager
 def refusals_told(place: str) -> Iterator[None]:
     """What the models refuse while a file is put together, as one error.
@@ -345,9 +372,7 @@ def refusals_told(place: str) -> Iterator[None]:
     try:
         yield
     except ValidationError as why:
-        first = why.errors()[0]
-        found, expected = _in_words(first["type"], first["msg"], first["input"])
-        raise InputError(found, expected, column=".".join(map(str, (place, *first["loc"])))) from None
+        raise first_complaint(why, place) from None
 
 
 def file_typed(path: Path) -> Path:
@@ -413,7 +438,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
     Raises
     ------
     InputError
-        Not JSON (with line and column), or the first thing that breaks the schema.
+        Not JSON (with line and column), or all that breaks the schema, with lines.
     """
     path = file_typed(path)
     refuse_shape(path)
@@ -431,36 +456,16 @@ def read_parameter_file(path: Path) -> ParameterFile:
     try:
         return _validated(text, version)
     except ValidationError as why:
-        first = _telling(why)
-        place = _place(first["loc"], text) or "file"
-        more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
-        found, expected = _in_words(first["type"], first["msg"], first["input"])
-        if is_later(version, SCHEMA_VERSION):
-            found += f" in a file of schema_version {version}"
-            expected, more = (
-                f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
-                "",
-            )
-        raise InputError(found, expected + more, file=path, column=place, advice=advice(version)) from None
+        told = complaints(why, text, path, SCHEMA_FILE.read_bytes(), advice(version))
+        if not is_later(version, SCHEMA_VERSION):
+            raise told from None
+        raise InputError(
+            f"{told.found} in a file of schema_version {version}",
+            f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
+            file=path, line=told.line, key=told.column, advice=advice(version),
+        ) from None  # fmt: skip
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None
-
-
-def _telling(why: ValidationError) -> Any:
-    """The first error; where a key is missing beside one that nobody knows, the unknown key, which may be the same misspelt."""
-    every = why.errors()
-    beside = (e for e in every if e["type"] == "extra_forbidden" and e["loc"][:-1] == every[0]["loc"][:-1])
-    return next(beside, every[0]) if every[0]["type"] == "missing" else every[0]
-
-
-def _place(where: tuple[str | int, ...], text: str) -> str:
-    """Keys to a value; of a coefficient its symbol stands for its number."""
-    match where:
-        case ("coefficients", int(k), *rest):
-            symbol = json.loads(text)["coefficients"][k]
-            named = symbol.get("symbol") if isinstance(symbol, dict) else None
-            return ".".join(map(str, ("coefficients", named if isinstance(named, str) else k, *rest)))
-    return ".".join(map(str, where))
 
 
 def _validated(text: str, version: str) -> ParameterFile:

@@ -24,6 +24,7 @@ from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
+from coeflab.vehicle.stated_twice import twice_findings
 
 X_APART = "The law of X ends before these points. X does not limit exports and motions; the other components do."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
@@ -332,7 +333,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -348,6 +349,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *damping_findings(parameters, signs),
         *sign_findings(parameters),
         *law_findings(parameters),
+        *twice_findings(parameters),
     )
 
 

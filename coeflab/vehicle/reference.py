@@ -244,11 +244,11 @@ class LiteratureKeys(takes.Declaration):
     Attributes
     ----------
     method : str
-        How they were found.
+        How they were found, such as PMM or rotating arm.
     uncertainty : float
-        Stated, relative.
+        Relative U95 that the source states, 0.1 for 10 %.
     values : mapping of str to str
-        By symbol, as printed; a closing ? is an illegible digit.
+        Symbol without prime, and number as printed, in quotes; a closing ? is an illegible digit and gives no value.
     """
 
     method: takes.Text
@@ -266,26 +266,42 @@ class ReferenceKeys(takes.Declaration):
 
     Attributes
     ----------
-    name, citation, place, body, note : str
-        Of the column; where it is printed; which body it is about.
+    name : str
+        Of the column; a plan's [[parameter_file]] names it so under literature.
+    citation : str
+        Key of the work, or words of your own.
+    place : str
+        Where in the work it is printed.
+    body : str
+        Which body it is about; one of a campaign is compared with it where it bears the same name.
     relation : {"re-analysis", "cross-body", "quoted"}
-        What it is to ours.
+        What it is to ours: the authors' own evaluation of the tables in campaigns, with a verdict; another body or another method; quoted from another column. The latter two have no verdict.
     campaigns : tuple of str
-        Whose re-analysis it is.
-    length, length_name : float, str
+        Whose tables a re-analysis evaluates.
+    length : float
         Of its primes.
-    other_length, other_length_name : float, str
-        Another length that the source may have used.
-    values, indices : mapping of str to str
-        Derivatives, and G_h and G_v, as printed; a closing ? is an illegible digit.
+    length_name : str
+        Which length that is.
+    other_length : float
+        Another length that the source may have used; both readings are shown.
+    other_length_name : str
+        Which length that is.
+    note : str
+        What a reader has to know.
+    values : mapping of str to str
+        Derivatives that are compared with ours: symbol without prime, and number as printed, in quotes; a closing ? is an illegible digit.
     literature : mapping
-        Values that may enter a parameter file, by kind.
+        Values that enter a parameter file whose plan names this column, by a word of your own, such as rotary: [reference.literature.rotary]. They need reference_point.
     uncertainties : mapping of str to float
-        Relative, as stated, by symbol or ``default``.
+        Relative, as the source states it, by symbol or default, for the comparison.
     reference_point : (3,) array
-        [x, y, z], m, FRD, from the datum.
-    datum, datum_note : str
-        Id of the point that the reference point counts from, and where it is.
+        [x, y, z], m, FRD, from the datum, that moments and rates are about.
+    indices : mapping of str to str
+        G_h and G_v as printed.
+    datum : str
+        Id of the point that the reference point counts from; unless given that of the tables.
+    datum_note : str
+        Where that is.
     """
 
     name: takes.Text
@@ -299,7 +315,7 @@ class ReferenceKeys(takes.Declaration):
     other_length: Annotated[takes.Length, takes.ABOVE_ZERO] | None = None
     other_length_name: takes.Text | None = None
     note: takes.Words = ""
-    values: Printed
+    values: Printed = field(default_factory=dict)
     literature: dict[str, LiteratureKeys] = field(default_factory=dict)
     uncertainties: dict[str, Annotated[takes.Pure, takes.ABOVE_ZERO]] = field(default_factory=dict)
     reference_point: takes.Point | None = None
@@ -344,7 +360,7 @@ class ReferenceKeys(takes.Declaration):
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFile(takes.Declaration):
-    """A published.toml.
+    """Values that others printed, beside ours or in their place; a plan's [[references]] gives the path, as published.toml.
 
     Attributes
     ----------

@@ -9,6 +9,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import EXPORTERS, InertialExporter, PartialExporter, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
+from coeflab.formats.unspoken import without_law
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
@@ -53,6 +54,7 @@ def export(
     lost = (*left, *missing, *lost_by_all(parameters, plugin.holds, water))
     changes = (
         *dict.fromkeys((*plugin.changes(given), *water.warnings)),
+        *without_law(parameters),
         *converted(parameters),
         *_renamed(files, parameters),
     )

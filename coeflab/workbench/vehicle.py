@@ -18,11 +18,11 @@ from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import BODY, mesh_body
 from coeflab.bodies.triangulation import Triangulation
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
-from coeflab.core.units import with_unit
+from coeflab.core.units import positive_typed, three_typed
 from coeflab.formats.export import PlannedExport
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
@@ -265,7 +265,7 @@ def _carried(
 
 @one_thread()
 def replaced(
-    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None
+    base: ParameterFile, other: ParameterFile, name: str = "", own: Scaling | None = None, *, alone: bool = False
 ) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
     """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
 
@@ -276,13 +276,15 @@ def replaced(
         Of the merged file; the base's unless given.
     own : Scaling, optional
         What the other's data were primed by.
+    alone : bool
+        As of `coeflab.vehicle.merge.merged`.
 
     Raises
     ------
     InputError, ScalingMismatchError
         As of `coeflab.vehicle.merge.merged`.
     """
-    made = merged(base, other, name, own)
+    made = merged(base, other, name, own, alone=alone)
     moves, _ = first_manoeuvres(made.parameters)
     carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
     return made, moves, carried
@@ -366,46 +368,21 @@ def asked(
     InputError
         Not a number, not above zero, a unit of another kind; names the option.
     """
-    weight = _positive(mass, "mass", "--mass") if mass else None
-    centre = _three(cg, "length", "--cg") if cg else None
-    turning = None if not inertia else np.diag(_three(inertia, "inertia", "--inertia"))
+    weight = positive_typed(mass, "mass", "--mass") if mass else None
+    centre = np.array(three_typed(cg, "length", "--cg")) if cg else None
+    turning = None if not inertia else np.diag(three_typed(inertia, "inertia", "--inertia"))
     conditions = None
     if speed or density:
         conditions = Conditions(
-            _positive(density, "density", "--density") if density else FRESH_WATER.density,
-            _positive(speed, "speed", "--speed") if speed else FRESH_WATER.speed,
+            positive_typed(density, "density", "--density") if density else FRESH_WATER.density,
+            positive_typed(speed, "speed", "--speed") if speed else FRESH_WATER.speed,
             FRESH_WATER.viscosity,
         )
-    scaling = Scaling(_positive(length, "length", "--length"), "length") if length else None
+    scaling = Scaling(positive_typed(length, "length", "--length"), "length") if length else None
     exports = tuple(PlannedExport(target, accept_loss) for target in dict.fromkeys(to))
     title = body.title if body.title and not body.datum.id.endswith(body.title) else body.name
     plan = Plan(stem(body.name), title, (), conditions=conditions, scaling=scaling, exports=exports, method=method)
     return plan, Stated(weight, centre, turning)
-
-
-def _positive(text: str, dimension: str, option: str) -> float:
-    found = _number(text, dimension, option)
-    if not found > 0.0:
-        raise InputError(shown(text), f"a {dimension} above zero", column=option)
-    return found
-
-
-def _number(text: str, dimension: str, option: str) -> float:
-    try:
-        bare: float | str = float(text)
-    except ValueError:
-        bare = text
-    try:
-        return with_unit(bare, dimension)
-    except InputError as why:
-        raise type(why)(why.found, why.expected, column=option, advice=why.advice) from None
-
-
-def _three(text: str, dimension: str, option: str) -> Array:
-    words = [w.strip() for w in text.split(",")]
-    if len(words) != 3:
-        raise InputError(shown(text), "three numbers with commas between", column=option)
-    return np.array([_number(w, dimension, option) for w in words])
 
 
 def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:

@@ -135,3 +135,66 @@ def test_a_vehicle_with_an_arm_has_no_parameter_file(coeflab: Run, command: tupl
     assert done.returncode == 2
     assert "a vehicle with an arm, which has no parameter file" in flat(done.stderr)
     assert "coeflab derive urv_puma --to c" in flat(done.stderr)
+
+
+NEW = (
+    "params",
+    "new",
+    "own",
+    "--about",
+    "cg",
+    "--length",
+    "2 m",
+    "--speed",
+    "1",
+    "--density",
+    "1000",
+    "--mass",
+    "40 kg",
+)
+
+
+def test_a_file_of_ones_own_numbers(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab(*NEW, "--set", "Yv'=-0.03 +- 0.003", "--set", "Nv=-48 Nm/(m/s)", "--out", "files")
+    assert done.returncode == 0, done.stderr
+    assert "-60.00" in done.stdout
+    path = tmp_path / "files" / "own.parameters.json"
+    content = json.loads(path.read_bytes())
+    assert [(c["value"], c["status"], c["origin"]) for c in content["coefficients"]] == [
+        (-0.03, "stated", "stated"), (-0.012, "stated", "stated"),
+    ]  # fmt: skip
+    assert content["mass"]["mass_prime"] == 0.01
+    assert coeflab("params", "check", path).returncode == 0
+    before = path.read_bytes()
+    again = coeflab(*NEW, "--set", "Yv'=-0.04", "--out", "files")
+    assert again.returncode == 2
+    assert "exists" in again.stderr
+    assert path.read_bytes() == before
+
+
+def test_a_wrong_number_writes_nothing(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab(*NEW, "--set", "Yv'=-0.03", "--set", "Y_r=1")
+    assert done.returncode == 2
+    assert "Did you mean Yr'?" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_one_number_of_ones_own_goes_into_a_file(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("merge", "remus100", "--set", "Nr|r|'=-0.05 +- 0.005", "--out", "merged")
+    assert done.returncode == 0, done.stderr
+    assert "1 number from --set" in done.stdout
+    content = json.loads((tmp_path / "merged" / "remus100_merged.parameters.json").read_bytes())
+    (changed,) = (c for c in content["coefficients"] if c["origin"] == "stated")
+    assert (changed["symbol"], changed["value"], changed["u95"]) == ("Nr|r|'", -0.05, 0.005)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [((), "nothing to merge"), (("campaign", "--set", "Yv'=1"), "OTHER and --set together"),
+     (("--set", "Yv'=-0.03", "--set", "Yv'=1 N"), "no unit")],
+)  # fmt: skip
+def test_what_cannot_be_merged_writes_nothing(coeflab: Run, tmp_path: Path, words: tuple[str, ...], said: str) -> None:
+    done = coeflab("merge", "remus100", *words, "--out", "merged")
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not (tmp_path / "merged").exists()

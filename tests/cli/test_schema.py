@@ -25,6 +25,7 @@ SHIPPED = {
     "body": sorted(GEOMETRY.glob("*/body.toml")),
     "glider": [*sorted(DATA.glob("thauv/*.toml")), *sorted(DATA.glob("slocum/*.toml"))],
     "tuning": sorted(DATA.glob("*/tune.toml")),
+    "published": sorted(DATA.glob("*/published.toml")),
 }
 SCHEMAS: dict[str, Any] = {kind: json.loads(schema(kind)) for kind in KINDS}
 
@@ -54,6 +55,8 @@ def test_shipped_files_keep_their_schema(kind: str) -> None:
         ("glider", "contains_munk = false", 'contains_munk = "no"'),
         ("glider", 'surge = "70 kg"', "surge = -70"),
         ("tuning", 'name = "huuv_pool"', ""),
+        ("published", 'relation = "quoted"', 'relation = "quote"'),
+        ("published", "reference_point = ", "referencepoint = "),
     ],
 )
 def test_a_schema_refuses_what_reading_refuses(kind: str, old: str, new: str) -> None:

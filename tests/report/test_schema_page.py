@@ -32,7 +32,7 @@ def test_the_shipped_page_is_that_of_the_code() -> None:
 
 def test_every_field_stands_on_it_once() -> None:
     page = schema_page().decode()
-    sections = page.split("\n## ")[2:]
+    sections = page.split("\n## ")[3:]  # behind one's own numbers and the versions
     rows = [line.split(" | ")[0].strip("| `") for s in sections for line in s.splitlines() if line.startswith("| `")]
     assert sorted(rows) == sorted(key for _, key, _ in fields())
     assert len(sections) == 1 + len(json.loads(schema())["$defs"])

@@ -39,7 +39,7 @@ def reference(values: dict[str, float | None], scaling: Scaling = SCALING) -> Re
     printed = tuple(PublishedValue(s, str(v) if v is not None else "0.1?", v) for s, v in values.items())
     return Reference(
         "lit", "synthetic", "p. 1", "b", Relation.QUOTED, (), scaling, None, "", (),
-        (Literature("rotary", "PMM", 0.1, printed),), {}, None,
+        (Literature("rotary", "PMM", 0.1, printed),), {}, np.zeros(3),
     )  # fmt: skip
 
 
@@ -112,3 +112,5 @@ def test_what_does_not_mix() -> None:
     elsewhere = replace(reference({"Yr": 0.1}), reference_point=np.ones(3))
     with pytest.raises(ScalingMismatchError, match="only about their own point"):
         made([one], elsewhere, ("a",))
+    with pytest.raises(InputError, match='"lit" without reference_point'):
+        made([one], replace(elsewhere, reference_point=None), ("a",))

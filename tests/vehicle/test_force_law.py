@@ -110,7 +110,7 @@ def test_the_file_comes_back() -> None:
 def test_a_potential_part_that_the_added_mass_does_not_give_is_refused() -> None:
     content = parameters({"Nv": -0.014}, HULL).model_dump()
     content["coefficients"][0]["potential"] = 0.0
-    with pytest.raises(ValueError, match="is not that of the added mass"):
+    with pytest.raises(ValueError, match="potential 0; expected that of the added mass"):
         ParameterFile.model_validate(content)
     content["added_mass"] = None
     with pytest.raises(ValueError, match="without an added mass"):

@@ -20,7 +20,7 @@ from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
 from tests.vehicle.test_assemble import fitted
 
-GOOD = {"mass": MASS, "mass_moment": MASS * CENTRE[0], "mass_prime": 0.1, "mass_moment_prime": 0.0,
+GOOD = {"mass": MASS, "mass_moment": MASS * CENTRE[0], "mass_prime": torpedo().mass.mass_prime, "mass_moment_prime": torpedo().mass.mass_moment_prime,
         "centre": CENTRE.tolist(), "inertia_matrix": INERTIA.tolist()}  # fmt: skip
 
 

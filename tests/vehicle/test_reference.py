@@ -110,3 +110,11 @@ def test_files_that_cannot_be(tmp_path: Path, old: str, new: str, said: list[str
         read_references(path)
     for text in ("published.toml", *said):
         assert text in str(caught.value)
+
+
+def test_a_column_may_have_values_for_the_parameter_file_alone(tmp_path: Path) -> None:
+    path = tmp_path / "published.toml"
+    path.write_text(SYNTHETIC.replace('values = { Yv = "-0.03" }\n', ""))
+    (column,) = read_references(path)
+    assert column.values == ()
+    assert [v.symbol for kind in column.literature for v in kind.values] == ["Yr"]

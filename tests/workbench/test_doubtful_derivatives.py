@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.table import Check, Severity
 from coeflab.study.checks.signs import check as signs
@@ -261,3 +262,21 @@ def test_without_a_mass_only_what_leaves_the_body_is_doubted(suboff: Study) -> N
     (found,) = one(study, changed(file, Yr=-0.05))
     assert found.subject == "suboff_bare_hull Yr'"
     assert "does the force contain the model's inertia?" in found.comment
+
+
+def test_rates_without_their_point_enter_no_file(tmp_path: Path) -> None:
+    """They differ from point to point, and so would G_h."""
+    line = 'reference_point = ["-6.6042 ft", 0.0, 0.0]\n'
+    text = (shipped("cfd_data") / "suboff" / "published.toml").read_text()
+    head, mark, tail = text.partition('name = "Roddy configuration 3"')
+    assert line in tail
+    (tmp_path / "published.toml").write_text(head + mark + tail.replace(line, ""))
+    (tmp_path / "plan.toml").write_text(
+        f'[study]\nname = "s"\nwanted = ["Yv"]\n[[table]]\ncampaign = "{shipped("cfd_data") / "suboff_roddy_3"}"\n'
+        'fits = ["slope_at_origin"]\n[[references]]\npath = "published.toml"\n[[parameter_file]]\nname = "p"\n'
+        'body = "suboff_bare_hull"\ncampaigns = ["suboff_roddy_3"]\nliterature = ["Roddy configuration 3"]\n'
+    )
+    with pytest.raises(InputError) as caught:
+        run(read_plan(tmp_path / "plan.toml"))
+    assert caught.value.column == "parameter_file.p.literature"
+    assert caught.value.found == '"Roddy configuration 3" without reference_point'

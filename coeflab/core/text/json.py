@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from coeflab.core.limits import INTEGER_DIGITS, JSON_DEEPEST, JSON_KEYS, JSON_OB
 
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*+"?', re.DOTALL)
 _ENDS = re.compile(r"[\[\]{}]")
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"|[\[\]{},:]|[^\s\[\]{},:"]+', re.DOTALL)
+Place = tuple[str | int, ...]
 
 
 def parse_json(text: str, file: Path | str | None = None, expected: str = "JSON") -> Any:
@@ -75,3 +78,45 @@ def _within_bounds(text: str, file: Path | str | None, expected: str) -> None:
         depth += 1 if mark[0] in "[{" else -1
         if depth > JSON_DEEPEST:
             raise InputError("too deep nesting", f"{expected}, at most {JSON_DEEPEST} levels deep", file=file)
+
+
+def lines_of(text: str, places: Iterable[Place]) -> dict[Place, int]:
+    """The line, from 1, on which the value at each place of a document begins; of a key that is missing, what it is missing in.
+
+    Parameters
+    ----------
+    text : str
+        JSON that `parse_json` takes.
+    places : iterable of tuple
+        Keys and numbers of items from the outermost to the value.
+    """
+    asked = tuple(places)
+    sought = {place[:n] for place in asked for n in range(len(place) + 1)}
+    found: dict[Place, int] = {}
+    path: list[str | int] = []
+    inside: list[str] = []
+    is_key, line, at = False, 1, 0
+    for token in _TOKEN.finditer(text):
+        line += text.count("\n", at, token.start())
+        at = token.start()
+        mark = token[0]
+        if mark in ("]", "}"):
+            path.pop()
+            inside.pop()
+        elif mark == ",":
+            is_key = inside[-1] == "{"
+            if not is_key:
+                path[-1] = int(path[-1]) + 1
+        elif is_key and mark != ":":
+            path[-1], is_key = json.loads(mark), False
+        elif mark != ":":
+            here = tuple(path)
+            if here in sought:
+                found.setdefault(here, line)
+            if mark in ("[", "{"):
+                inside.append(mark)
+                path.append(0 if mark == "[" else "")
+                is_key = mark == "{"
+    return {
+        place: next((found[place[:n]] for n in range(len(place), -1, -1) if place[:n] in found), 1) for place in asked
+    }

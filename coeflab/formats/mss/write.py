@@ -27,6 +27,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.mss.m_file import assignments
+from coeflab.formats.unspoken import unstated, without_law
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -46,6 +47,19 @@ _HEADINGS = {
     "rest": "Damping about a state of rest, SI, not scaled with U",
     "potential": "Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above covers",
 }
+
+
+_NAMES = {
+    "mass": "h.m",
+    "mass.centre": "h.xG h.yG h.zG",
+    "mass.inertia_matrix": "h.I11 ... h.I33",
+    "hydrostatics": "h.volume h.g h.xB h.yB h.zB",
+}
+
+
+def _unspoken(parameters: ParameterFile) -> tuple[str, ...]:
+    """Components without a law, and members of h that a loop about the function needs and the file does not give."""
+    return *without_law(parameters), *unstated(parameters, _NAMES)
 
 
 def _quoted(text: str) -> str:
@@ -76,6 +90,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
         "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
         f"% {propulsion(parameters)}.",
+        *(f"% {said}." for said in _unspoken(parameters)),
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
         "% h.Yvav that of v|v|.",
@@ -212,5 +227,6 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         *written_changes(parameters, "the function", "h.ideal", "MA"),
         f"tau contains no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
         propulsion(parameters),
+        *unstated(parameters, _NAMES),
         "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
     )

@@ -20,6 +20,7 @@ from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.report.tables.own_numbers_page import OWN_NUMBERS
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, stated_accelerations
 from coeflab.vehicle.law_at_points import LawAtPoints
@@ -311,7 +312,7 @@ JSON Schema. A program that reads these files should refuse a first digit of `sc
 - A later minor version adds keys and changes the meaning of none; its writers set what says nothing to null or leave it empty.
   So a file of a later version is read where every key that is not named here is null or empty: those are passed over.
   Otherwise it is refused, because a key that is not understood may change what the rest means, as `law` did in 1.2.
-
+{OWN_NUMBERS}
 ## Versions
 
 | Version | What came with it |

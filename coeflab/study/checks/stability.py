@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.table import Check, Severity
+from coeflab.law.coefficient import Coefficient
 from coeflab.study.study import Study
 from coeflab.study.validation import PrintedIndex, printed_indices
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -41,11 +42,17 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             else:
                 comment += "" if d.decided else " The interval contains zero."
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
-            comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
+            comment += f" {', '.join(literature)} from literature ({', '.join(_methods(found))})." if literature else ""
             comment += f" {d.statement}." if d.result is None else " U95 leaves out the mass."
         subject = f"{parameters.name} {name}"
         out.append(Check("stability", subject, Severity.NOTE, statistic, "above zero is stable", comment))
     return out
+
+
+def _methods(found: Sequence[Coefficient | None]) -> list[str]:
+    """How the published ones of these were found; their ``estimator`` begins with method and kind."""
+    printed = (c for c in found if c is not None and c.origin == "literature")
+    return list(dict.fromkeys(c.estimator.partition(",")[0].rpartition(" ")[0] or "no method stated" for c in printed))
 
 
 def check(study: Study) -> Sequence[Check]:

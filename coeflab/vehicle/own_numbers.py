@@ -1,0 +1,271 @@
+"""Numbers that a person states one by one: read as they are typed, and made a parameter file of.
+
+Yv' = -0.0278 +- 0.0014          a prime
+Yv = -35.5 +- 2 N/(m/s)          SI, at the density and speed of the file
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array, brief
+from coeflab.core.units import also_written, positive_typed, same_unit, three_typed
+from coeflab.core.version import VERSION
+from coeflab.core.wording import repeated
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.rigid_body import MassProperties, parallel_axis
+from coeflab.law.scaling import Conditions, Scaling, doubtful_size
+from coeflab.law.symbols import derivative, primed
+from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
+from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics
+
+STATED, BY_HAND = "stated", "--set"
+EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_TYPED = re.compile(
+    rf"\s*(?P<value>{_NUMBER})\s*(?:(?:\+-|\+/-|\u00b1)\s*(?P<u95>{_NUMBER}))?\s*(?P<unit>(?:[^\s,.\d].*?)?)\s*"
+)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class OwnNumber:
+    """One number as it was typed.
+
+    Attributes
+    ----------
+    symbol : str
+        With prime.
+    value : float
+    u95 : float or None
+    si : bool
+        Whether both are SI, in the unit of the symbol, and no primes.
+    """
+
+    symbol: str
+    value: float
+    u95: float | None
+    si: bool
+
+    def coefficient(self, scaling: Scaling, at: Conditions, body: str) -> Coefficient:
+        """The coefficient by this length, at these conditions."""
+        unit = scaling.unit(self.symbol, at.density, at.speed)
+        to_prime = 1.0 / unit if self.si else 1.0
+        value = self.value * to_prime
+        return Coefficient(
+            self.symbol, value, None if self.u95 is None else self.u95 * to_prime, Status.STATED, body, origin=STATED,
+            estimator="stated one by one", value_si=self.value if self.si else value * unit, unit_si=derivative(self.symbol).unit,
+        )  # fmt: skip
+
+
+def own_number(typed: str) -> OwnNumber:
+    """Read ``Yv'=-0.0278 +- 0.0014`` or ``Yv=-35.5 +- 2 N/(m/s)``.
+
+    Raises
+    ------
+    InputError
+        No symbol, no number, a negative U95, a unit behind a prime, or none or another behind an SI value.
+    """
+    named, equals, rest = typed.partition("=")
+    symbol = named.strip()
+    if not equals:
+        raise InputError(shown(typed), f"SYMBOL=VALUE, such as {EXAMPLE}", column="--set")
+    try:
+        d = derivative(symbol)
+    except InputError as why:
+        raise InputError(why.found, why.expected, column="--set", advice=why.advice) from None
+    match = _TYPED.fullmatch(rest)
+    if match is None:
+        raise InputError(f"{shown(rest.strip())} for {symbol}", f"a number, such as {EXAMPLE}", column="--set",
+                         advice="Write a decimal point." if "," in rest else "")  # fmt: skip
+    value, u95, unit = float(match["value"]), None if match["u95"] is None else float(match["u95"]), match["unit"]
+    if not np.isfinite(value) or (u95 is not None and not (np.isfinite(u95) and u95 >= 0.0)):
+        raise InputError(f"{shown(rest.strip())} for {symbol}", "finite numbers, U95 of zero or more", column="--set")
+    is_prime = symbol.endswith("'")
+    if is_prime and unit:
+        raise InputError(
+            f"the unit {shown(unit)} behind the prime {symbol}", "no unit", column="--set",
+            advice=f"For an SI value write {d.text}= without the prime.",
+        )  # fmt: skip
+    if not is_prime and not same_unit(unit, d.unit):
+        raise InputError(
+            f"{d.text} with {f'the unit {shown(unit)}' if unit else 'no unit'}", f"{d.unit}, also written {also_written(d.unit)}",
+            column="--set", advice=f"For a prime write {d.text}'=.",
+        )  # fmt: skip
+    return OwnNumber(primed(d.text), value, u95, not is_prime)
+
+
+def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
+    """All that is typed, none twice.
+
+    Raises
+    ------
+    InputError
+        As of `own_number`, or a symbol that stands twice.
+    """
+    out = tuple(map(own_number, typed))
+    if twice := repeated(n.symbol for n in out):
+        raise InputError(f"{', '.join(twice)} twice", "each symbol once", column="--set")
+    return out
+
+
+def stated_file(
+    name: str, body: str, scaling: Scaling, conditions: Conditions, point: Array, datum: Datum, numbers: Sequence[OwnNumber],
+    mass: MassProperties | None = None, hydrostatics: ParameterHydrostatics | None = None,
+) -> ParameterFile:  # fmt: skip
+    """A parameter file of numbers that somebody states.
+
+    Parameters
+    ----------
+    name, body : str
+    scaling : Scaling
+    conditions : Conditions
+    point : (3,) array
+        m, FRD, from the datum: what moments and rates are about.
+    datum : Datum
+    numbers : sequence of OwnNumber
+    mass : MassProperties, optional
+        Without primes.
+    hydrostatics : ParameterHydrostatics, optional
+
+    Notes
+    -----
+    Numbers with U95 count as independent of each other: nothing says otherwise.
+    """
+    coefficients = tuple(n.coefficient(scaling, conditions, body) for n in numbers)
+    variances = [None if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients]
+    covariance = tuple(
+        tuple(None if a is None or b is None else a if i == j else 0.0 for j, b in enumerate(variances))
+        for i, a in enumerate(variances)
+    )
+    notes = ["numbers stated one by one, none fitted by coeflab"]
+    if sum(v is not None for v in variances) > 1:
+        notes.append("numbers with U95 count as independent of each other")
+    x, y, z = map(float, point)
+    none: tuple[CoveredRange, ...] = ()
+    return ParameterFile(
+        name=name, body=body, scaling=scaling,
+        reference_point=ParameterPoint(point=(x, y, z), datum=datum.id),
+        conditions=conditions,
+        mass=None if mass is None else mass.primed(scaling, conditions.density),
+        coefficients=coefficients,
+        covariance=ParameterCovariance(symbols=tuple(c.symbol for c in coefficients), matrix=covariance),
+        covered=none, hydrostatics=hydrostatics,
+        provenance=Provenance(coeflab_version=VERSION, study=name, inputs=(), citations=(), notes=tuple(notes)),
+    )  # fmt: skip
+
+
+def stated_beside(base: ParameterFile, numbers: Sequence[OwnNumber]) -> ParameterFile:
+    """The numbers as a file of the base's length, conditions and reference point, to be merged into it."""
+    at = base.reference_point
+    made = stated_file(BY_HAND, base.body, base.scaling, base.conditions, np.array(at.point), at.origin, numbers)
+    return made.model_copy(update={"provenance": made.provenance.model_copy(update={"notes": ()})})
+
+
+def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) -> MassProperties:
+    """Mass properties as a person states them.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    centre : (3,) array or None
+        Centre of gravity from the reference point, m, FRD; None: in it.
+    inertia : sequence of float
+        About the centre of gravity, kg m^2: the transverse moment alone, Iy = Iz; or Ix, Iy, Iz, products zero.
+
+    Raises
+    ------
+    InputError
+        Two moments of inertia, or some that no body has.
+    """
+    if len(inertia) not in (0, 1, 3):
+        raise InputError(
+            f"{len(inertia)} moments of inertia", "IX,IY,IZ, or the transverse one alone", column="--inertia"
+        )
+    place = np.zeros(3) if centre is None else np.asarray(centre)
+    x = float(place[0])
+    about = np.diag(inertia) + parallel_axis(mass, place) if len(inertia) == 3 else None
+    made = MassProperties(
+        mass, mass * x, inertia[0] + mass * x * x if len(inertia) == 1 else None,
+        place if centre is not None or about is not None else None, about,
+    )  # fmt: skip
+    try:
+        made.refuse()
+    except ValueError as why:
+        raise InputError(str(why), "moments of inertia of a body", column="--inertia") from None
+    return made
+
+
+def typed_file(
+    name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
+    cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "",
+) -> ParameterFile:  # fmt: skip
+    """A parameter file of what a person typed behind the options of ``coeflab params new``; empty: not stated.
+
+    Parameters
+    ----------
+    name, body : str
+    numbers : sequence of str
+        As `own_number` reads them.
+    length, speed, density, mass, volume : str
+        In SI or with a unit.
+    length_name : str
+    about : str
+        Id of the reference point.
+    cg, cb : str
+        Three numbers from it, m, FRD.
+    inertia : str
+        About the centre of gravity, one or three numbers, kg m^2.
+
+    Raises
+    ------
+    InputError
+        What is missing, or no number, by option.
+    """
+    for option, given in (("--length", length), ("--speed", speed), ("--density", density), ("--about", about)):
+        if not given.strip():
+            raise InputError("nothing", "cg, nose, midship ..." if option == "--about" else "a number", column=option,
+                             advice=f"Add {option}: nothing is assumed.")  # fmt: skip
+    if not numbers:
+        raise InputError("no number", f"SYMBOL=VALUE, such as {EXAMPLE}", column="--set")
+    known = own_numbers(numbers)
+    scaling = Scaling(positive_typed(length, "length", "--length"), length_name)
+    conditions = Conditions(
+        positive_typed(density, "density", "--density"), positive_typed(speed, "speed", "--speed"), None
+    )
+    for key, number, option in (
+        ("scaling.length", scaling.length, "--length"), ("conditions.density", conditions.density, "--density"),
+        ("conditions.speed", conditions.speed, "--speed"),
+    ):  # fmt: skip
+        if doubt := doubtful_size(key, number):
+            raise InputError(f"{number:g}", "a usual size of what swims", column=option, advice=f"{doubt}.")
+    weighed = None
+    if mass:
+        if not cg and about.strip() != "cg":
+            raise InputError(f"a mass without its centre, about {about}", "X,Y,Z, m, FRD", column="--cg",
+                             advice="Add --cg, or state the numbers about cg.")  # fmt: skip
+        one = [positive_typed(inertia, "inertia", "--inertia")] if inertia and "," not in inertia else []
+        weighed = mass_of(
+            positive_typed(mass, "mass", "--mass"), np.array(three_typed(cg, "length", "--cg")) if cg else None,
+            one or (three_typed(inertia, "inertia", "--inertia") if inertia else ()),
+        )  # fmt: skip
+    elif cg or inertia:
+        raise InputError("nothing", "a mass, for --cg and --inertia to be of", column="--mass")
+    afloat = None
+    if volume or cb:
+        if not (volume and cb):
+            raise InputError(
+                "nothing", "volume and centre of buoyancy together", column="--cb" if volume else "--volume"
+            )
+        afloat = ParameterHydrostatics(
+            volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
+        )
+    datum = Datum.named(about.strip())
+    return stated_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)

@@ -1,0 +1,60 @@
+"""What a parameter file states twice with different numbers, and a status that promises more than its entry holds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.law.coefficient import Status
+from coeflab.law.symbols import primed
+from coeflab.vehicle.inertia import stated_accelerations
+from coeflab.vehicle.parameter_file import ParameterFile
+
+NAME = "plausibility"
+ALIKE = 1e-3  # relative: what four printed digits leave
+
+
+def twice_findings(p: ParameterFile) -> tuple[Check, ...]:
+    """Notes about numbers that stand in two places and differ, with the one that is used."""
+    return (*_added_mass(p), *_inertia(p), *_intervals(p))
+
+
+def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
+    hull = p.added_mass
+    if hull is None:
+        return ()
+    computed = np.array(hull.matrix) * (p.conditions.density / hull.density)
+    differing = [
+        f"{primed(name)} gives {entry:.4g}, added_mass {computed[at]:.4g}"
+        for at, (name, entry) in stated_accelerations(p).items()
+        if abs(computed[at] - entry) > ALIKE * max(abs(computed[at]), abs(entry))
+    ]
+    if not differing:
+        return ()
+    return (Check(
+        NAME, "added mass stated twice", Severity.NOTE, f"{'; '.join(differing)} (SI)", "one place, or equal",
+        "The coefficient is used, the matrix for all other entries; --accelerations computed uses the matrix alone.",
+    ),)  # fmt: skip
+
+
+def _inertia(p: ParameterFile) -> tuple[Check, ...]:
+    mass = p.mass
+    if mass is None or mass.inertia is None or mass.inertia_matrix is None:
+        return ()
+    across = np.diag(mass.inertia_matrix)[1:]
+    if np.all(np.abs(across - mass.inertia) <= ALIKE * mass.inertia):
+        return ()
+    return (Check(
+        NAME, "mass.inertia and mass.inertia_matrix", Severity.NOTE,
+        f"{mass.inertia:.4g}, and Iy {across[0]:.4g}, Iz {across[1]:.4g} kg m^2", "one of them, or equal", "The matrix is used.",
+    ),)  # fmt: skip
+
+
+def _intervals(p: ParameterFile) -> tuple[Check, ...]:
+    bare = [c.symbol for c in p.coefficients if c.status is Status.OK and c.u95 is None]
+    if not bare:
+        return ()
+    return (Check(
+        NAME, ", ".join(bare), Severity.WARN, "status ok without u95", "a U95",
+        "ok says that an interval exists. Write u95, or the status stated for a number without one.",
+    ),)  # fmt: skip
