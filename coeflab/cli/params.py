@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import Command, complete, show
 
 app = typer.Typer(help="Check a parameter file; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
@@ -16,7 +16,7 @@ def _root() -> None:
     pass
 
 
-@app.command(epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
+@app.command(cls=Command, epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
 def check(
     file: Path = typer.Argument(
         ...,
@@ -57,7 +57,7 @@ def check(
         raise typer.Exit(1)
 
 
-@app.command(epilog="Example: coeflab params schema > parameter_file.md")
+@app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means."""
     from coeflab.report.tables.formats import schema_page

@@ -338,6 +338,8 @@ def slopes(function: Callable[[Array], Array], point: Array, scale: Array, low: 
     columns = []
     for i, h in enumerate(STEP * scale):
         ahead, behind = point[i] + h <= high[i], point[i] - h >= low[i]
+        if not ahead and not behind:  # one value alone, as of a tilt that does not move
+            ahead = behind = True
 
         def moved(step: float, i: int = i) -> Array:
             shifted = point.copy()
