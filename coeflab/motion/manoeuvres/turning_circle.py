@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.options import bounded, measured, one_of, orders, parse_options
 from coeflab.motion.approach import (
     along,
     judged,
@@ -54,7 +54,7 @@ class Options:
     rudder: float = measured(float(np.radians(15.0)), 1e-4, 1.2, "angle")
     side: str = one_of("starboard", "starboard", "port")
     speed: float = measured(0.0, 0.0, 100.0, "speed")
-    commands: tuple[str, ...] = words()
+    commands: tuple[str, ...] = orders()
     turns: float = bounded(2.0, 0.25, 50.0)
     longest: float = bounded(600.0, 1.0, 1e6)
 
