@@ -69,7 +69,8 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     o = parse_options(Options, options, NAME)
     wanted = dict(zip(MOTION, (o.speed, o.sway, o.heave, o.yaw_rate, o.roll, o.pitch), strict=True))
     near = thruster_orders(vehicle, o.near)
-    found, said = trim(vehicle, wanted, near=near, starts=o.starts), ("commands of the trim",)
+    found = trim(vehicle, wanted, near=near, starts=o.starts)
+    said: tuple[str, ...] = ("commands of the trim",)
     named = {k: v for option, (k, v) in zip(NAMED, wanted.items(), strict=True) if option in options}
     if not found.point.outcome.solved and 0 < len(named) < len(wanted):
         found = trim(vehicle, named, near=near, starts=o.starts)

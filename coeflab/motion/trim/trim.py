@@ -30,6 +30,7 @@ FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch
 # Bounds of the search: three times the speed, a turn on a sixth of a length, and short of 90 deg, where heading has no sense.
 FASTEST, TURNS, STEEP = 3.0, 6.0, np.radians(85.0)
 TILTED = 0.1  # rad, what counts as one unit of lean among the scaled unknowns
+LEAST_THRUST = 1e-3  # of what turns the vehicle's own speed about within one length
 UNSTATED_LIMIT = float(np.radians(30.0))  # taken where the file states none, and said; few control surfaces go further
 NAMES = {
     "X": "surge force X", "Y": "sway force Y", "Z": "heave force Z", "K": "roll moment K", "M": "pitch moment M",
@@ -227,7 +228,9 @@ def command_unknowns(vehicle: Vehicle, speed: float) -> tuple[Unknown, ...]:
         if t.tilt_axis is not None:
             out.append(Unknown(f"{t.name}.tilt", "rad", t.tilt_low, t.tilt_high, 1.0, weight=0.0))
     if not vehicle.thrusters:
-        out.append(Unknown(THRUST, "N", -np.inf, np.inf, max(abs(vehicle.resistance(speed)), 1e-6)))
+        # A file without resistance takes no thrust: a scale of nothing would leave it out of the equations.
+        least = LEAST_THRUST * float(vehicle.effective_mass[0, 0]) * speed**2 / vehicle.length
+        out.append(Unknown(THRUST, "N", -np.inf, np.inf, max(abs(vehicle.resistance(speed)), least)))
     felt = {*WIND, *(COMPONENTS[i] for i in vehicle.free_columns)}
     limits: dict[str, float] = {s.control: s.limit for s in vehicle.surfaces}
     for c in CONTROLS:
@@ -383,7 +386,11 @@ def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tu
 
 def _unstated(vehicle: Vehicle, unknowns: tuple[Unknown, ...]) -> list[str]:
     stated = {s.control for s in vehicle.surfaces}
-    return [
+    still = "u" in vehicle.free and vehicle.resistance(vehicle.speed) == 0.0
+    surge = (
+        ["surge has no law in the file: no term of X resists a straight run, which takes no thrust."] if still else []
+    )
+    return surge + [
         f"{u.name}: no limit in the file, {u.shown(u.high)} either way taken."
         for u in unknowns
         if u.name in CONTROLS and u.name not in stated and u.low < u.high
