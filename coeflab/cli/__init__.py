@@ -57,7 +57,36 @@ _SUMMARY = re.compile(
 )
 
 
-class WithPlugin(TyperCommand):
+class Command(TyperCommand):
+    """A command that refuses an option given twice where only the last value would count."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the command line, first for what stands twice.
+
+        Raises
+        ------
+        InputError
+            A single-valued option, or both sides of a switch, more than once.
+        """
+        if not ctx.resilient_parsing:
+            *_, order = self.make_parser(ctx).parse_args(args=list(args))
+            for option in self.params:
+                if order.count(option) > 1 and _last_counts(option):
+                    from coeflab.core.errors import InputError
+
+                    name = option.opts[-1]
+                    raise InputError(f"{name} given twice", "it once, for only the last would count", column=name)
+        return list(super().parse_args(ctx, args))
+
+
+def _last_counts(option: Any) -> bool:
+    """Whether a second use of an option undoes the first: one value, or a switch with two sides."""
+    if option.param_type_name != "option" or option.multiple or option.count:
+        return False
+    return not option.is_flag or bool(option.secondary_opts)
+
+
+class WithPlugin(Command):
     """A command that hands further options to a plugin: a shell is offered those of the plugin that is named."""
 
     registry, parameter = "", ""

@@ -1,12 +1,20 @@
-"""``coeflab export``: a parameter file for a simulator."""
+"""``coeflab export``: a parameter file for simulators."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.core.errors import InputError
+    from coeflab.formats.export import Export
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 WITH_MASS = "Mass and added mass: coeflab vehicle BODY --campaign CAMPAIGN, or coeflab merge VEHICLE.json CAMPAIGN."
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
@@ -16,86 +24,166 @@ def command(
     file: Path = typer.Argument(
         ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
     ),
-    to: str = typer.Option(
-        "",
+    to: list[str] = typer.Option(
+        [],
         "--to",
         metavar="TARGET",
         autocompletion=complete.exporters,
-        help="Target, such as gazebo, xdyn or mss; coeflab formats exporters lists them. Required.",
+        help="Target, such as gazebo, xdyn or mss; coeflab formats exporters lists them. Several with commas, or repeatable. Required.",
         show_default=False,
     ),
     out: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Folder for the files; default NAME.TARGET beside the parameter file."
+        None,
+        metavar="FOLDER",
+        help="Folder for the files, with a folder for each of several targets whose files have the same names; default NAME.TARGET "
+        "beside the parameter file.",
     ),
-    accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although the target cannot hold everything."),
+    accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although a target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Write what a simulator loads, and say what is lost.
+    """Write what simulators load, and say what is lost.
 
-    The loss is measured by the simulator's own force law. Says what `coeflab params check` finds wrong in the file. Exit code 1
-    where a finding of it fails, such as a wrong sign; the files are written.
+    The loss is measured by each simulator's own force law. Says what `coeflab params check` finds wrong in the file. Exit code 1
+    where a finding of it fails, such as a wrong sign; the files are written. Of several targets the others are written where one is
+    refused, and the exit code is 1.
     """
-    from coeflab.core.errors import InputError, shown
+    from coeflab.cli.as_json import export as export_json
+    from coeflab.cli.as_json import findings as findings_json
+    from coeflab.core.errors import InputError, together
     from coeflab.core.files import write_all
-    from coeflab.core.wording import file_stem
     from coeflab.formats import EXPORTERS
-    from coeflab.formats.export import Kind
-    from coeflab.formats.unspoken import without_law
-    from coeflab.report.tables import formats as loss_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.plausibility import plausibility
-    from coeflab.workbench.exports import export
 
-    if not to:
+    targets = named(to)
+    if not targets:
         raise InputError("no target", f"one of {', '.join(EXPORTERS.names())}", column="--to")
+    for target in targets:
+        EXPORTERS.load(target)
     parameters = read_parameter_file(file)
-    made = export(parameters, to, accelerations, accept_loss=accept_loss and not strict)
-    loss = made.loss
-    if loss is not None and not json:
-        whole = (
-            f"{to} holds all of {parameters.name}."
-            if made.lossless
-            else f"{to} does not hold all of {parameters.name}:"
-        )
-        show.text(whole + ("" if made.lossless else f" {loss_tables.in_short(loss)}."))
-        for said in without_law(parameters):
-            show.sentence(f"The file has {said}.")
-        show.text()
-        show.table(loss_tables.forces(loss))
-        show.table(loss_tables.at_points(loss.at_points, f"Force law of {to}", controls=False))
-        if not parameters.measured:
-            show.text("The parameter file has no measured points to compare the law with.")
-        show.table(loss_tables.parts(parameters, loss.water))
+    made, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = plausibility(parameters)
     if not json:
         show.file_findings(parameters.name, found)
-    refused = loss is not None and not made.lossless and (strict or not accept_loss)
-    if refused and json:
-        from coeflab.cli.as_json import export as export_json
-        from coeflab.cli.as_json import findings as findings_json
-
-        show.json_object({"files": [], **export_json(made), "findings": findings_json(found)})
-    if loss is not None and refused:
-        raise InputError(
-            f"a target that loses part of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
-            "a target that holds everything" if strict else "--accept-loss, to write the rest",
-            file=file,
-            advice=WITH_MASS if any(x.kind is Kind.MISSING and "added mass" in x.what for x in loss.lost) else "",
-        )
-    folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")
-    paths = [folder / name for name in sorted(made.files)]
-    write_all(folder, made.files)
-    if json:
-        from coeflab.cli.as_json import export as export_json
-        from coeflab.cli.as_json import findings as findings_json
-
-        show.json_object({"files": [str(p) for p in paths], **export_json(made), "findings": findings_json(found)})
+    gone = {target for target, _ in refused}
+    kept = [one for one in made if one.target not in gone]
+    files = _placed(kept, file, out, len(targets) > 1)
+    if len(targets) == 1 or not kept:
+        if refused and json and made:
+            show.json_object({"files": [], **export_json(made[0]), "findings": findings_json(found)})
+        if refused:
+            raise together([why for _, why in refused])
+    write_all(Path(), {str(path): content for path, content in files.items()})
+    paths = [str(path) for path in files]
+    if json and len(targets) == 1:
+        show.json_object({"files": paths, **export_json(made[0]), "findings": findings_json(found)})
+    elif json:
+        exports = [{**export_json(one), "refused": one.target in gone} for one in made]
+        show.json_object({"files": paths, "exports": exports, "findings": findings_json(found)})
     else:
-        for path in paths:
+        for path in files:
             show.path(path)
-    if show.failed(found):
+    for _, why in refused:
+        show.error(f"error: {why}")
+    if refused or show.failed(found):
         raise typer.Exit(1)
+
+
+def named(to: Sequence[str]) -> list[str]:
+    """Targets of ``--to``, once each, apart at commas and blanks."""
+    return list(dict.fromkeys(word for text in to for word in text.replace(",", " ").split()))
+
+
+def _made(
+    parameters: ParameterFile, targets: Sequence[str], file: Path, accelerations: str, accept_loss: bool, strict: bool,
+    json: bool,
+) -> tuple[list[Export], list[tuple[str, InputError]]]:  # fmt: skip
+    """Every export that can be made, its loss printed, and what is refused of them with why.
+
+    Raises
+    ------
+    InputError
+        The only target cannot hold the file at all.
+    """
+    from coeflab.core.errors import InputError
+    from coeflab.workbench.exports import export
+
+    made: list[Export] = []
+    refused: list[tuple[str, InputError]] = []
+    for target in targets:
+        try:
+            one = export(parameters, target, accelerations, accept_loss=accept_loss and not strict)
+        except InputError as why:
+            if len(targets) == 1:
+                raise
+            refused.append(
+                (
+                    target,
+                    InputError(
+                        f"{target}: {why.found}", why.expected, file=why.file, column=why.column, advice=why.advice
+                    ),
+                )
+            )
+            continue
+        if not json:
+            _print_loss(one, parameters)
+        made.append(one)
+        if one.loss is not None and not one.lossless and (strict or not accept_loss):
+            refused.append((target, _refusal(one, parameters, file, strict, f"{target}, " if len(targets) > 1 else "")))
+    return made, refused
+
+
+def _print_loss(made: Export, parameters: ParameterFile) -> None:
+    from coeflab.formats.unspoken import without_law
+    from coeflab.report.tables import formats as loss_tables
+
+    loss = made.loss
+    if loss is None:
+        return
+    whole = (
+        f"{made.target} holds all of {parameters.name}."
+        if made.lossless
+        else f"{made.target} does not hold all of {parameters.name}:"
+    )
+    show.text(whole + ("" if made.lossless else f" {loss_tables.in_short(loss)}."))
+    for said in without_law(parameters):
+        show.sentence(f"The file has {said}.")
+    show.text()
+    show.table(loss_tables.forces(loss))
+    show.table(loss_tables.at_points(loss.at_points, f"Force law of {made.target}", controls=False))
+    if not parameters.measured:
+        show.text("The parameter file has no measured points to compare the law with.")
+    show.table(loss_tables.parts(parameters, loss.water))
+
+
+def _refusal(made: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:
+    from coeflab.core.errors import InputError, shown
+    from coeflab.formats.export import Kind
+    from coeflab.report.tables.formats import in_short
+
+    loss = made.loss
+    lost = () if loss is None else loss.lost
+    return InputError(
+        f"{target}a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}",
+        "a target that holds everything" if strict else "--accept-loss, to write the rest",
+        file=file,
+        advice=WITH_MASS if any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost) else "",
+    )
+
+
+def _placed(made: Sequence[Export], file: Path, out: Path | None, several: bool) -> dict[Path, bytes]:
+    """Files of every export by path; several in one folder have folders of their own where two want the same name."""
+    from coeflab.core.wording import file_stem
+
+    crowded = max(Counter(name for one in made for name in one.files).values(), default=0) > 1
+    files: dict[Path, bytes] = {}
+    for one in made:
+        folder = file.parent / (one.folder or f"{file_stem(one.parameters)}.{one.target}") if out is None else out
+        if several and crowded and out is not None:
+            folder /= one.target
+        files |= {folder / name: one.files[name] for name in sorted(one.files)}
+    return files

@@ -152,7 +152,13 @@ def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, 
 
 
 def further(arguments: list[str]) -> dict[str, int | float | str]:
-    """Options for a plugin from ``--name value`` or ``--name=value``; numbers where they read as such."""
+    """Options for a plugin from ``--name value`` or ``--name=value``; numbers where they read as such.
+
+    Raises
+    ------
+    InputError
+        No name, no value, or an option twice.
+    """
     out: dict[str, int | float | str] = {}
     rest = list(arguments)
     while rest:
@@ -160,15 +166,17 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
         name, equals, value = word.partition("=")
         if not name.startswith("--") or (not equals and not rest):
             raise InputError(shown(word), "--option VALUE")
-        text = value if equals else rest.pop(0)
+        text, key = value if equals else rest.pop(0), name[2:].replace("-", "_")
+        if key in out:
+            raise InputError(f"{name} given twice", "it once, for only the last would count", column=name)
         for kind in (int, float):
             try:
-                out[name[2:].replace("-", "_")] = kind(text)
+                out[key] = kind(text)
                 break
             except ValueError:
                 continue
         else:
-            out[name[2:].replace("-", "_")] = text
+            out[key] = text
     return out
 
 

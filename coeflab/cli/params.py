@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import Command, complete, show
 
 app = typer.Typer(help="Check a parameter file, write one of your own numbers; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
@@ -16,7 +16,7 @@ def _root() -> None:
     pass
 
 
-@app.command(epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
+@app.command(cls=Command, epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
 def check(
     file: Path = typer.Argument(
         ...,
@@ -61,7 +61,7 @@ NEW = """Example: coeflab params new my_auv --about cg --length "2.5 m" --speed 
 --set "Yv'=-0.03 +- 0.003" --set "Nv'=-0.012" --set "Yr'=0.005" --set "Nr'=-0.006\""""
 
 
-@app.command(epilog=NEW)
+@app.command(cls=Command, epilog=NEW)
 def new(
     name: str = typer.Argument(..., metavar="NAME", help="Of the set of numbers; the file is NAME.parameters.json."),
     numbers: list[str] = typer.Option(
@@ -135,7 +135,7 @@ def new(
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
 
 
-@app.command(epilog="Example: coeflab params schema > parameter_file.md")
+@app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means."""
     from coeflab.report.tables.formats import schema_page

@@ -65,7 +65,7 @@ def command(
 ) -> None:
     """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
-    Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
+    Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees, a rate in deg/s.
     See --help-options. A vehicle with an arm makes the phases of its body.toml, or --manoeuvre free_motion, station_keeping or
     end_effector_track. Exit code 1 where the motion could not be computed to its end, as where a joint of an arm meets its stop: what
     was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written. Exit code 1
@@ -255,12 +255,47 @@ def _arm_pictures(body: Path, chain: Chain, name: str, moved: Trajectory) -> dic
 
 
 def of_manoeuvre(name: str, words: list[str]) -> dict[str, Any]:
-    """Options of a manoeuvre as they are typed: bare angles are in degrees."""
+    """Options of a manoeuvre as they are typed: bare angles are in degrees, bare rates of turn in deg/s.
+
+    Raises
+    ------
+    InputError
+        A bare one that may have been meant in rad.
+    """
     from coeflab.cli.fit import further
     from coeflab.core.options import in_degrees
     from coeflab.motion.manoeuvres import MANOEUVRES
 
-    return in_degrees(MANOEUVRES.load(name).Options, further(words), name)
+    kind = MANOEUVRES.load(name).Options
+    given = in_degrees(kind, further(words), name)
+    for f in fields(kind):
+        if f.metadata.get("orders") and isinstance(given.get(f.name), str):
+            typed = given[f.name].replace(",", " ").split()
+            given[f.name] = " ".join(_in_radians(word, f"{name}.{f.name}") for word in typed)
+    return given
+
+
+def _in_radians(word: str, column: str) -> str:
+    """``rotor1.tilt=90``, ``dr=10deg`` in rad; an order that is no angle as it is."""
+    from math import radians
+
+    from coeflab.core.options import RAD_AT_MOST
+    from coeflab.law.symbols import CONTROLS
+
+    name, equals, text = word.partition("=")
+    if not equals or not (name in CONTROLS or name.endswith(".tilt")):
+        return word
+    unit = next((u for u in ("deg", "rad") if text.endswith(u)), "")
+    try:
+        value = float(text.removesuffix(unit))
+    except ValueError:
+        return word  # the manoeuvre says what is wrong with it
+    if not unit and 0.0 < abs(value) < RAD_AT_MOST:
+        raise InputError(
+            f"{word}, an angle without a unit", f"degrees, at least {RAD_AT_MOST:g}, or a unit: {word}deg", column=column,
+            advice=f"Radians are written {word}rad.",
+        )  # fmt: skip
+    return f"{name}={value if unit == 'rad' else radians(value)!r}"
 
 
 def listed(text: str) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from coeflab.motion.trim.linear_model import LinearModel
     from coeflab.motion.trim.trim import Trim
 
 
@@ -52,16 +53,25 @@ def command(
     ),
     starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
     seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
+    linear: bool = typer.Option(
+        False, "--linear", help="The linear model about it: A, B, and the eigenvalues with their motions."
+    ),
+    out: Path | None = typer.Option(
+        None, metavar="FOLDER", help="Folder for the linear model: A.csv, B.csv, and linear.m for MATLAB and Octave."
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Find the commands of a steady motion, or the reverse.
 
-    Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
+    With --linear or --out also the state-space model of small motions about it, x_dot = A x + B d. Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
+    from coeflab.core.files import write_all
+    from coeflab.motion.trim.linear_model import linear_model
     from coeflab.motion.trim.trim import trim
     from coeflab.motion.vehicle import vehicle
+    from coeflab.report.tables.linear_model import files, matrix_tables, mode_table
     from coeflab.vehicle.parameter_file import read_parameter_file
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
@@ -71,14 +81,24 @@ def command(
     chosen = plane or ("vertical" if upright else "horizontal")
     craft = vehicle(read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
     found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
+    solved = found.point.outcome.solved
+    model = linear_model(found) if solved and (linear or out is not None) else None
+    folder = out or Path()
+    names = {} if model is None or out is None else write_all(folder, files(model))
     if json:
-        show.json_object(as_json(found))
+        more = {} if model is None else {"linear": linear_as_json(model), "files": [str(folder / n) for n in names]}
+        show.json_object({**as_json(found), **more})
     else:
         show.table(found.point.table())
-        if found.point.outcome.solved:
+        if solved:
             show.table(found.figure_table())
             show.table(found.other_table())
-    if not found.point.outcome.solved:
+        if model is not None:
+            for one in (*matrix_tables(model), mode_table(model)):
+                show.table(one)
+        for name in names:
+            show.path(folder / name)
+    if not solved:
         raise typer.Exit(1)
 
 
@@ -165,4 +185,27 @@ def as_json(found: Trim) -> dict[str, Any]:
         "eigenvalues": [[v.real, v.imag] for v in point.modes],
         "small_motions": point.growth,
         "statements": list(point.words()),
+    }  # fmt: skip
+
+
+def linear_as_json(model: LinearModel) -> dict[str, Any]:
+    """The linear model as one JSON object, SI and rad; rows are rates of the states, in their order."""
+    return {
+        "states": [
+            {"name": s.name, "unit": s.unit, "rate_unit": unit, "value": s.value}
+            for s, unit in zip(model.states, model.rate_units, strict=True)
+        ],
+        "commands": [{"name": c.name, "unit": c.unit, "value": c.value} for c in model.commands],
+        "a": model.a.matrix.tolist(),
+        "b": model.b.matrix.tolist(),
+        "a_error": model.a.error.tolist(),
+        "b_error": model.b.error.tolist(),
+        "modes": [
+            {
+                "eigenvalue": [m.eigenvalue.real, m.eigenvalue.imag], "unit": "1/s", "participation": dict(m.shares),
+                "time_to_double": m.doubles, "time_to_halve": m.halves, "period": m.period,
+            }
+            for m in model.modes
+        ],
+        "statements": list(model.statements),
     }  # fmt: skip

@@ -65,7 +65,11 @@ def command(
     ),
     distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
     to: list[str] = typer.Option(
-        [], "--to", metavar="TARGET", autocompletion=complete.exporters, help="Export to it; may be given again."
+        [],
+        "--to",
+        metavar="TARGET",
+        autocompletion=complete.exporters,
+        help="Export to it; several with commas, or repeatable.",
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Export although a target cannot hold everything."),
     campaign: str = typer.Option(
@@ -83,6 +87,7 @@ def command(
     gives [[control]] or [[thruster]], else a coast-down and what is missing. Exit code 1 when an export is refused.
     """
     from coeflab.cli.added_mass import distances_of
+    from coeflab.cli.export import named
     from coeflab.cli.merge import carried_out
     from coeflab.core.files import located, write_all
     from coeflab.workbench import checked, rendered
@@ -95,11 +100,11 @@ def command(
     with show.progress(json) as say:
         say("reading the body")
         found = subject(body, unit, axes, repair, fill, sheets)
-        plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, to, accept_loss)
+        plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, named(to), accept_loss)
         plan = replace(plan, command=typed(body, {
             "unit": unit, "axes": axes, "mass": mass, "cg": cg, "inertia": inertia, "speed": speed, "density": density, "length": length,
             "method": method if method != "all" else "", "wall": wall, "distance": distance,
-        }, {"repair": repair, "fill": fill, "sheets": sheets, "accept-loss": accept_loss}, to))  # fmt: skip
+        }, {"repair": repair, "fill": fill, "sheets": sheets, "accept-loss": accept_loss}, named(to)))  # fmt: skip
         refuse_unknown(plan.exports)
         study = checked(from_shape(plan, found, stated, say, wall, distances), say)
     folder = out if out is not None else Path("reports") / plan.name

@@ -17,6 +17,7 @@ from coeflab.core.text.toml import value as toml_value
 from coeflab.core.units import SI, quantity, with_unit
 
 Options = TypeVar("Options")
+TURNING = {"angle": "deg", "rate": "deg/s"}  # unit of a bare number on the command line
 
 
 def bounded(default: float, low: float, high: float) -> Any:
@@ -39,7 +40,7 @@ def bounded(default: float, low: float, high: float) -> Any:
     return _option(default, f"{kind}, {low:.10g} to {high:.10g}", read)
 
 
-def measured(default: float, low: float, high: float, dimension: str) -> Any:
+def measured(default: float, low: float, high: float, dimension: str, frequency: bool = False) -> Any:
     """A dataclass field that takes an SI number, or a text with its unit (``"0.05 m^2"``); bounds in SI.
 
     Parameters
@@ -48,6 +49,8 @@ def measured(default: float, low: float, high: float, dimension: str) -> Any:
         SI; the bounds are allowed values.
     dimension : str
         Key of `coeflab.core.units.SI`.
+    frequency : bool
+        Whether a rate is a circular frequency, which is bare in rad/s everywhere, and no rate of turn.
     """
 
     def read(value: Any, _file: Path) -> float:
@@ -56,12 +59,13 @@ def measured(default: float, low: float, high: float, dimension: str) -> Any:
             raise InputError(shown(value), f"{low:g} to {high:g} {SI[dimension]}".rstrip())
         return number
 
+    turns = dimension in TURNING and not frequency
     bare = (
-        "with its unit, bare in deg on the command line"
-        if dimension == "angle"
+        f"with its unit, bare in {TURNING[dimension]} on the command line"
+        if turns
         else f"bare in {SI[dimension]} or with its unit"
     )
-    return _option(default, f"{dimension}, {bare}", read, SI[dimension])
+    return _option(default, f"{dimension}, {bare}", read, SI[dimension], TURNING[dimension] if turns else "")
 
 
 def share(default: float, low: float, high: float) -> Any:
@@ -100,6 +104,12 @@ def one_of(default: str, *choices: str) -> Any:
     return _option(default, ", ".join(dict.fromkeys(c or '""' for c in choices)), read)
 
 
+def orders() -> Any:
+    """A dataclass field that takes orders such as left=60 rotor1.tilt=1.5, a list of words, angles in rad; on the command line in deg."""
+    made = words()
+    return dataclasses.field(default=made.default, metadata={**made.metadata, "orders": True})
+
+
 def words(*default: str) -> Any:
     """A dataclass field that takes a list of words; a text is split at commas and blanks."""
 
@@ -124,8 +134,8 @@ def text(default: str) -> Any:
     return _option(default, "text", read)
 
 
-def _option(default: Any, takes: str, read: Callable[[Any, Path], Any], unit: str = "") -> Any:
-    return dataclasses.field(default=default, metadata={"takes": Takes(takes, read, {}), "unit": unit})
+def _option(default: Any, takes: str, read: Callable[[Any, Path], Any], unit: str = "", bare: str = "") -> Any:
+    return dataclasses.field(default=default, metadata={"takes": Takes(takes, read, {}), "unit": unit, "bare": bare})
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -180,8 +190,8 @@ def _default(field: dataclasses.Field[Any]) -> str:
     if isinstance(value, tuple):
         return " ".join(value) or "none"
     unit = field.metadata["unit"]
-    if unit == SI["angle"]:
-        return f"{math.degrees(cast(float, value)):.10g} deg"
+    if bare := field.metadata.get("bare", ""):
+        return f"{math.degrees(cast(float, value)):.10g} {bare}"
     text = value if isinstance(value, str) else f"{value:.10g} {unit}".rstrip()
     return text or '""'
 
@@ -228,7 +238,7 @@ RAD_AT_MOST = 1.6  # a bare angle below was typed in rad, as it was read until 1
 
 
 def in_degrees(kind: type, given: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Options as a command line has them: an angle without a unit is in degrees.
+    """Options as a command line has them: an angle without a unit is in degrees, a rate of turn in deg/s.
 
     Parameters
     ----------
@@ -241,21 +251,25 @@ def in_degrees(kind: type, given: Mapping[str, Any], where: str) -> dict[str, An
     Raises
     ------
     InputError
-        An angle between 0 and 1.6 without a unit, which may have been meant in rad.
+        An angle or a rate between 0 and 1.6 without a unit, which may have been meant in rad.
     """
     out = dict(given)
-    for name in _bare_angles(kind, given):
-        if 0.0 < abs(given[name]) < RAD_AT_MOST:
+    for name, unit in _bare_turns(kind, given).items():
+        what = "an angle" if unit == TURNING["angle"] else "a rate"
+        value = given[name]
+        if 0.0 < abs(value) < RAD_AT_MOST:
+            radians = unit.replace("deg", "rad")
+            degrees = "degrees" if unit == TURNING["angle"] else unit
             raise InputError(
-                f"{given[name]}, an angle without a unit", f'degrees, at least {RAD_AT_MOST:g}, or a unit: "{given[name]} deg"',
-                column=f"{where}.{name}", advice=f'Radians are written "{given[name]} rad".',
+                f"{value}, {what} without a unit", f'{degrees}, at least {RAD_AT_MOST:g}, or a unit: "{value} {unit}"',
+                column=f"{where}.{name}", advice=f'{"Radians are" if unit == TURNING["angle"] else "In radians it is"} written "{value} {radians}".',
             )  # fmt: skip
-        out[name] = f"{given[name]!r} deg"
+        out[name] = f"{value!r} {unit}"
     return out
 
 
 def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, Any]:
-    """Options as a file has them, whose angles have a unit.
+    """Options as a file has them, whose angles and rates of turn have a unit.
 
     Parameters
     ----------
@@ -268,9 +282,15 @@ def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, 
     Raises
     ------
     InputError
-        An angle without a unit that is not 0.
+        An angle or a rate without a unit that is not 0.
     """
-    for name in _bare_angles(kind, given):
+    for name, unit in _bare_turns(kind, given).items():
+        if unit != TURNING["angle"] and given[name]:
+            raise InputError(
+                f"{given[name]}, a rate without a unit",
+                f'a text with its unit, such as "3 {unit}"',
+                column=f"{where}.{name}",
+            )
         try:
             with_unit(given[name], "angle")
         except InputError as why:
@@ -278,9 +298,12 @@ def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, 
     return given
 
 
-def _bare_angles(kind: type, given: Mapping[str, Any]) -> list[str]:
-    angles = {f.name for f in dataclasses.fields(cast(Any, kind)) if f.metadata.get("unit") == SI["angle"]}
-    return [n for n, v in given.items() if n in angles and isinstance(v, (int, float)) and not isinstance(v, bool)]
+def _bare_turns(kind: type, given: Mapping[str, Any]) -> dict[str, str]:
+    """Options that are angles or rates of turn and stand without a unit, with the unit that a command line means."""
+    bare = {f.name: f.metadata.get("bare", "") for f in dataclasses.fields(cast(Any, kind))}
+    return {
+        n: bare[n] for n, v in given.items() if bare.get(n) and isinstance(v, (int, float)) and not isinstance(v, bool)
+    }
 
 
 def named_numbers(texts: Iterable[str], column: str) -> dict[str, float]:

@@ -396,10 +396,11 @@ def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: 
         What the added mass is called.
     """
     water = water_inertia(parameters)
+    products = any(t.kind == "potential" for t in written_terms(parameters))
+    said = f"; products of the ideal fluid without a measured coefficient are written as {ideal}" if products else ""
     return (
         "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
-        f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid without a measured coefficient are written as "
-        f"{ideal}",
+        f"totals are written, for {target} adds no C_A(nu) nu{said}",
         f"{matrix}: {water.source}",
         *water.warnings,
     )

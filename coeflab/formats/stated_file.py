@@ -230,7 +230,7 @@ def stated_coefficients(
     added : (6, 6, 6) array
         Quadratics that its simulator adds itself, symmetric in the last two axes.
     matrix : (6, 6) array
-        Its added mass. Where that is no kinetic energy its entries become acceleration derivatives.
+        Its added mass. Where that is asymmetric or not positive its entries become acceleration derivatives.
     scaling : Scaling
     conditions : Conditions
         What the values are primed by.

@@ -177,8 +177,8 @@ class AddedMass:
         found = self.definiteness
         if not found.holds:
             raise ValueError(
-                f"the added mass by {self.method} is no kinetic energy: asymmetric by {found.asymmetry:.1e}, smallest "
-                f"scaled eigenvalue {found.smallest:.1e}"
+                f"the added mass ({self.method}) gives the water a negative kinetic energy, or is not symmetric: asymmetric by "
+                f"{found.asymmetry:.1e}, smallest scaled eigenvalue {found.smallest:.1e}"
             )
 
     @property

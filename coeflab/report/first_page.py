@@ -177,7 +177,9 @@ def _towed_row(
 def _tows(study: Study, beside: Beside) -> tuple[Towed, ...]:
     """Own tows of the body, or those that the plan sets beside the first column."""
     names = {r.name for r in beside.columns[:1]}
-    return tuple(t for t in towed(study) if t.body == beside.body or names & set(t.tow.columns)) if study.plan.tows else ()
+    return (
+        tuple(t for t in towed(study) if t.body == beside.body or names & set(t.tow.columns)) if study.plan.tows else ()
+    )
 
 
 def _published(

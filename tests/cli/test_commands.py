@@ -221,3 +221,29 @@ def test_inspect_of_a_body_and_options_for_a_table(coeflab: Run) -> None:
 
 def test_completion_is_offered(coeflab: Run) -> None:
     assert "--install-completion" in coeflab("--help").stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (("export", "remus100", "--to", "mss", "--out", "a", "--out", "b"), "--out"),
+        (("trim", "remus100", "--speed", "1", "--speed=2"), "--speed"),
+        (("simulate", "remus100", "--rudder", "10", "--rudder", "20"), "--rudder"),
+        (("simulate", "remus100", "--manoeuvre", "zigzag", "--manoeuvre", "spiral"), "--manoeuvre"),
+        (("params", "check", "remus100", "--density", "1000", "--density", "1025"), "--density"),
+        (("derive", "urv_puma", "--symbols", "--to", "c", "--numbers"), "--symbols"),
+    ],
+)
+def test_an_option_given_twice_is_refused_where_only_the_last_would_count(
+    coeflab: Run, tmp_path: Path, words: tuple[str, ...], option: str
+) -> None:
+    done = coeflab(*words, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("error: ") == 1
+    assert f"{option} given twice" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_options_that_repeat_and_switches_do(coeflab: Run) -> None:
+    once = coeflab("trim", "remus100", "--speed", "1", "--commands", "dr=0", "--commands", "ds=0", "--json", "--json")
+    assert once.returncode == 0, once.stderr

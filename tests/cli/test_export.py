@@ -165,3 +165,50 @@ def test_a_wrong_sign_in_the_file_is_said_by_what_uses_it(coeflab: Run, tmp_path
     right = coeflab("simulate", "remus100", "--manoeuvre", "zigzag")
     assert "params check" not in right.stdout
     assert right.returncode == 0
+
+
+def by_name(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def test_every_target_of_several_is_written(coeflab: Run, tmp_path: Path) -> None:
+    """`--to xdyn --to mss` wrote the last alone; the files are those of one target at a time."""
+    alone: dict[str, bytes] = {}
+    for target in ("xdyn", "mss"):
+        assert coeflab("export", "remus100", "--to", target, "--out", tmp_path / target).returncode == 0
+        alone |= by_name(tmp_path / target)
+    for words in (("--to", "xdyn", "--to", "mss"), ("--to", "xdyn,mss")):
+        out = tmp_path / str(len(words))
+        done = coeflab("export", "remus100", *words, "--out", out)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert by_name(out) == alone
+        assert "xdyn holds all of remus100." in done.stdout
+        assert "mss holds all of remus100." in done.stdout
+    said = json.loads(coeflab("export", "remus100", "--to", "xdyn,mss", "--out", tmp_path / "j", "--json").stdout)
+    assert [one["target"] for one in said["exports"]] == ["xdyn", "mss"]
+    assert len(said["files"]) == len(alone)
+
+
+def test_targets_with_the_same_names_have_folders(coeflab: Run, tmp_path: Path) -> None:
+    both = ("export", "remus100", "--to", "gazebo,gazebo_plugin", "--out", tmp_path / "b", "--accept-loss")
+    assert coeflab(*both).returncode == 0
+    assert {name.partition("/")[0] for name in by_name(tmp_path / "b")} == {"gazebo", "gazebo_plugin"}
+    one = ("export", "remus100", "--to", "gazebo", "--out", tmp_path / "g", "--accept-loss")
+    assert coeflab(*one).returncode == 0
+    assert by_name(tmp_path / "b" / "gazebo") == by_name(tmp_path / "g")
+
+
+def test_one_refused_target_does_not_keep_the_others(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("export", "remus100", "--to", "gazebo,xdyn", "--out", tmp_path / "x")
+    assert done.returncode == 1
+    assert done.stderr.count("error: ") == 1
+    assert "gazebo, a target that loses part of" in done.stderr
+    assert {p.suffix for p in (tmp_path / "x").iterdir()} == {".yml", ".txt"}
+    neither = coeflab("export", "remus100", "--to", "gazebo,mujoco", "--out", tmp_path / "n")
+    assert neither.returncode == 2
+    assert "gazebo, a target" in neither.stderr
+    assert "mujoco, a target" in neither.stderr
+    assert not (tmp_path / "n").exists()
+    unknown = coeflab("export", "remus100", "--to", "xdyn,gazeboo", "--out", tmp_path / "u")
+    assert unknown.returncode == 2
+    assert not (tmp_path / "u").exists()

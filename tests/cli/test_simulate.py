@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from coeflab.cli.simulate import of_manoeuvre
+from coeflab.core.errors import InputError
+from coeflab.motion.manoeuvres import MANOEUVRES
 from tests.cli.conftest import Run, flat
 from tests.motion.uncertain import with_uncertainty
 from tests.motion.vehicles import STABLE, made, rudder_covered
@@ -55,7 +60,7 @@ def test_a_bare_angle_is_in_degrees_and_refused_where_it_may_be_in_radians(coefl
         (("--current", "1,2"), "three numbers in m/s"),
         (("--manoeuvre", "loop"), "Known: depth_change"),
         (("--manoeuvre", "free_decay"), "p held"),
-        (("--commands", "left.tilt=1"), "one of thrust"),
+        (("--commands", "left.tilt=10"), "one of thrust"),
     ],
 )
 def test_what_cannot_be_is_one_message(coeflab: Run, torpedo: Path, words: tuple[str, ...], says: str) -> None:
@@ -121,3 +126,52 @@ def test_what_sinks_and_what_nothing_rights_is_said(coeflab: Run, tmp_path: Path
     done = coeflab("simulate", place, *run)
     assert "more than buoyancy (2 %): it sinks" in flat(done.stdout)
     assert "nothing rights it in roll and pitch" in flat(done.stdout)
+
+
+STEADY = ("simulate", "remus100", "--manoeuvre", "steady_motion", *FREE, "--speed", "1.2", "--starts", "0", "--json")
+
+
+def test_a_bare_rate_is_in_degrees_a_second(coeflab: Run) -> None:
+    """3 is 3 deg/s as in `trim`, not 3 rad/s; what may be rad/s is refused."""
+    bare = coeflab(*STEADY, "--yaw-rate", "3")
+    assert bare.returncode == 0, bare.stderr
+    assert bare.stdout == coeflab(*STEADY, "--yaw-rate", "3 deg/s").stdout
+    radius = next(f for f in json.loads(bare.stdout)["figures"] if f["name"] == "radius")["value"]
+    assert radius == pytest.approx(1.2 / np.radians(3.0), rel=1e-3)
+    refused = coeflab(*STEADY, "--yaw-rate", "0.05")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert '"steady_motion.yaw_rate": found 0.05, a rate without a unit; expected deg/s' in refused.stderr
+    assert '"0.05 rad/s"' in refused.stderr
+
+
+def test_no_manoeuvre_takes_a_rate_of_turn_bare_in_radians() -> None:
+    for name in MANOEUVRES.usable():
+        for option in fields(MANOEUVRES.load(name).Options):
+            assert option.metadata["unit"] not in ("rad", "rad/s") or option.metadata["bare"].startswith("deg"), option
+
+
+def test_orders_of_angles_are_in_degrees() -> None:
+    turned = of_manoeuvre("turning_circle", ["--commands", "left=60 dr=10"])["commands"]
+    assert turned == f"left=60 dr={math.radians(10.0)!r}"
+    assert of_manoeuvre("turning_circle", ["--commands", "a.tilt=0.5rad,b.tilt=1deg"])["commands"].startswith(
+        "a.tilt=0.5 "
+    )
+    with pytest.raises(InputError, match=r"dr=0\.2deg"):
+        of_manoeuvre("turning_circle", ["--commands", "dr=0.2"])
+
+
+def test_a_steady_motion_finds_what_is_not_named_as_trim_does(coeflab: Run) -> None:
+    """In a turn of REMUS 100 sway cannot be zero: held there, no rudder kept the motion."""
+    words = ("--speed", "1.2", "--yaw-rate", "3")
+    steady = coeflab("simulate", "remus100", "--manoeuvre", "steady_motion", *words, "--duration", "2", "--json")
+    assert steady.returncode == 0, steady.stderr
+    said = json.loads(steady.stdout)
+    found = {
+        u["name"]: u["value"] for u in json.loads(coeflab("trim", "remus100", *words, "--json").stdout)["unknowns"]
+    }
+    figures = {f["name"]: f["value"] for f in said["figures"]}
+    assert abs(found["v"]) > 0.01
+    assert figures["radius"] == pytest.approx(np.hypot(1.2, found["v"]) / np.radians(3.0), rel=1e-3)
+    assert figures["departure of the velocity"] < 1e-3
+    told = "sway, heave, roll, pitch found by the trim: at zero, where they stand unless named, no commands keep this motion"
+    assert told in said["statements"]

@@ -97,3 +97,37 @@ def test_a_file_of_three_motions_needs_no_plane(coeflab: Run) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert "w, p, q fixed at the initial values; the file has too few coefficients for p" in flat(done.stdout)
     assert "radius 1.14374 m" in " ".join(done.stdout.split())
+
+
+LINEAR = ("trim", "remus100", "--speed", "1.5", "--yaw-rate", "0", *FREE)
+
+
+def test_a_linear_model_as_tables_files_and_json(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab(*LINEAR, "--linear", "--out", tmp_path / "l")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert max(len(line) for line in done.stdout.splitlines() if str(tmp_path) not in line) <= 80
+    assert "v_dot m/s^2 0 -0.7819 -0.5888" in flat(done.stdout)
+    assert "r_dot rad/s^2 0 -1.596" in flat(done.stdout)
+    assert "0.9953 - 0.6964 - r 54 %, v 46 %" in flat(done.stdout)
+    assert sorted(p.name for p in (tmp_path / "l").iterdir()) == ["A.csv", "B.csv", "linear.m"]
+    found = json.loads(coeflab(*LINEAR, "--linear", "--json").stdout)
+    model = found["linear"]
+    assert [s["name"] for s in model["states"]] == ["u", "v", "r"]
+    assert [s["rate_unit"] for s in model["states"]] == ["m/s^2", "m/s^2", "rad/s^2"]
+    assert [c["unit"] for c in model["commands"]] == ["N", "rad"]
+    assert model["a"][2][1] == pytest.approx(-4.5029, abs=5e-5)
+    assert [m["eigenvalue"] for m in model["modes"]] == found["eigenvalues"]
+    assert "linear" not in json.loads(coeflab(*LINEAR, "--json").stdout)
+
+
+def test_without_a_trim_no_linear_model_is_written(coeflab: Run, twin: Path, tmp_path: Path) -> None:
+    done = coeflab("trim", twin, "--speed", "4", "--yaw-rate", "0", *FREE, "--out", tmp_path / "l")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert not (tmp_path / "l").exists()
+
+
+def test_six_motions_fit_80_columns(coeflab: Run) -> None:
+    done = coeflab("trim", "remus100", "--speed", "1.5", "--yaw-rate", "0", "--pitch", "0", "--linear")
+    assert done.returncode == 0
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    assert "pitch 50 %" in flat(done.stdout)

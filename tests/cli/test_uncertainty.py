@@ -123,8 +123,9 @@ def test_json_tells_the_same(coeflab: Run, torpedo: Path, tmp_path: Path) -> Non
     ],
 )
 def test_wrong_input_is_one_clear_error(coeflab: Run, torpedo: Path, words: tuple[str, ...], said: str) -> None:
-    given = ("--members", "40", "--manoeuvre", "zigzag", "--executes", "2", "--longest", "20", "--hold", "u,w,p,q")
-    done = coeflab("uncertainty", torpedo, *given, *words)
+    given = {"--members": "40", "--manoeuvre": "zigzag", "--executes": "2", "--longest": "20", "--hold": "u,w,p,q"}
+    given |= dict(zip(words[::2], words[1::2], strict=True))
+    done = coeflab("uncertainty", torpedo, *(word for pair in given.items() for word in pair))
     assert (done.returncode, done.stdout) == (2, "")
     assert said in done.stderr
     assert done.stderr.count("\n") == 1

@@ -249,3 +249,16 @@ def test_the_unit_says_what_its_inputs_do() -> None:
         assert (
             'description="rad; dr &gt; 0: turns to port (Ndr &lt; 0)"' in archive.read("modelDescription.xml").decode()
         )
+
+
+def test_products_of_the_ideal_fluid_are_named_only_where_they_are_written() -> None:
+    """REMUS 100 for MSS: no h.ideal stands in the file, and the report named it."""
+    seen = set()
+    for file in (read_parameter_file(Path("remus100")), made.full(3)):
+        for target, written in (("mss", "h.ideal."), ("xdyn", "_ideal")):
+            out = export(file, target, accept_loss=True)
+            program = b"".join(c for n, c in out.files.items() if not n.endswith(".loss.txt")).decode()
+            named = any("products of the ideal fluid" in c for c in out.loss.changes)
+            assert named == (written in program), (file.name, target)
+            seen.add(named)
+    assert seen == {True, False}

@@ -377,3 +377,16 @@ def test_a_roll_that_oscillates_is_said() -> None:
 def test_the_roll_of_remus_in_its_zigzag_is_said() -> None:
     said = simulate(read_parameter_file(Path("remus100")), "zigzag", {"executes": 3}).statements
     assert any(line.startswith("roll rate oscillates") for line in said)
+
+
+def test_a_turn_whose_pitch_swings_says_so_and_what_to_do() -> None:
+    """REMUS 100 in six motions: pitch has poles of +0.42 +- 0.21i, and the turn settles in the horizontal plane alone."""
+    file = read_parameter_file(Path("remus100"))
+    asked = {"rudder": np.radians(5.0)}
+    (steady,) = (f for f in simulate(file, "turning_circle", asked).figures if f.name == "steady turning diameter")
+    assert steady.value is None
+    assert "in the last tenth; pitch swings by +-" in steady.why
+    assert steady.why.endswith("In the horizontal plane alone: --free u,v,r")
+    flat = simulate(file, "turning_circle", asked, free=HORIZONTAL)
+    (settled,) = (f for f in flat.figures if f.name == "steady turning diameter")
+    assert settled.value is not None

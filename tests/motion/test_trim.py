@@ -162,3 +162,17 @@ def test_requests_that_make_no_sense(
 ) -> None:
     with pytest.raises(InputError, match=said):
         trim(twin(), motion, commands, near)
+
+
+def test_a_file_without_resistance_takes_no_thrust() -> None:
+    """Yaw and sway alone have laws: the thrust of a straight run is zero, and no search for it fails."""
+    si = {"Yv": -80.0, "Nr": -6.0, "Nv": -5.0, "Yr": 3.0, "Ndr": -30.0, "Ydr": 50.0}
+    found = trim(vehicle(parameter_file(si, MASS, TURNING), ("u", "v", "r")), {"u": 2.0, "yaw_rate": 0.0}, starts=2)
+    assert found.point.outcome.solved
+    assert found.point.values["thrust"] == pytest.approx(0.0, abs=1e-6)
+    assert next(row[1] for row in found.point.table().rows if row[0] == "thrust") == "0"
+    assert any("surge has no law in the file" in line for line in found.point.words())
+    drag = vehicle(parameter_file({**PLANE, "Ndr": -3.0}, MASS, TURNING), ("u", "v", "r"))
+    assert not any(
+        "surge has no law" in line for line in trim(drag, {"u": 2.0, "yaw_rate": 0.0}, starts=2).point.words()
+    )

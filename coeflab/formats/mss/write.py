@@ -222,7 +222,7 @@ def _evaluated(
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
-    buoyant = "h.volume, h.g and h.xB h.yB h.zB are the numbers of the g above, as for MSS gvect"
+    buoyant = "h.volume, h.g and h.xB h.yB h.zB give the restoring forces g in (MRB + MA)*nu_dot + CRB*nu + g = tau, as arguments of MSS gvect"
     return (
         *written_changes(parameters, "the function", "h.ideal", "MA"),
         f"tau contains no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",

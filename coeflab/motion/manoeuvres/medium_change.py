@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, measured, one_of, parse_options, text, words
+from coeflab.core.options import bounded, measured, one_of, orders, parse_options, text
 from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme
@@ -39,7 +39,7 @@ class Options:
     depth
         Distance of the start from the surface.
     commands, then
-        Thruster commands in the first medium and in the other, such as rotor1=5000 rotor1.tilt=3.14159, tilts in rad; what is not
+        Thruster commands in the first medium and in the other, such as rotor1=5000 rotor1.tilt=3.14159, angles in rad, on the command line in deg; what is not
         named is zero.
     speed, heave, pitch
         u, w and pitch at the start.
@@ -52,8 +52,8 @@ class Options:
     into: str = text("")
     start: str = one_of("below", "below", "above")
     depth: float = measured(1.0, 1e-3, 1e4, "length")
-    commands: tuple[str, ...] = words()
-    then: tuple[str, ...] = words()
+    commands: tuple[str, ...] = orders()
+    then: tuple[str, ...] = orders()
     speed: float = measured(0.0, -100.0, 100.0, "speed")
     heave: float = measured(0.0, -100.0, 100.0, "speed")
     pitch: float = measured(0.0, -1.4, 1.4, "angle")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, measured, parse_options, words
+from coeflab.core.options import bounded, measured, orders, parse_options
 from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
@@ -22,6 +22,7 @@ citations = ("fossen2011",)
 plane = "vertical"
 NAME = "steady_motion"
 NO_TURN = 1e-9
+NAMED = ("speed", "sway", "heave", "yaw_rate", "roll", "pitch")  # as `MOTION` has them
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +32,14 @@ class Options:
     Attributes
     ----------
     speed, sway, heave
-        u, v and w through the water.
+        u, v and w through the water. What is not named of these, yaw_rate, roll and pitch is zero where commands can keep that, and
+        found as `coeflab trim` finds it elsewhere.
     yaw_rate
         Rate of heading.
     roll, pitch
         Constant attitude.
     near
-        Among several trims the nearest to these commands, such as rotor1=2000 rotor1.tilt=1.39, tilts in rad; none: the
+        Among several trims the nearest to these commands, such as rotor1=2000 rotor1.tilt=1.39, angles in rad, on the command line in deg; none: the
         least effort.
     starts
         Cold starts of the trim.
@@ -51,7 +53,7 @@ class Options:
     yaw_rate: float = measured(0.0, -10.0, 10.0, "rate")
     roll: float = measured(0.0, -1.5, 1.5, "angle")
     pitch: float = measured(0.0, -1.4, 1.4, "angle")
-    near: tuple[str, ...] = words()
+    near: tuple[str, ...] = orders()
     starts: int = bounded(4, 0, 1000)
     duration: float = bounded(60.0, 0.1, 1e6)
 
@@ -68,15 +70,25 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     wanted = dict(zip(MOTION, (o.speed, o.sway, o.heave, o.yaw_rate, o.roll, o.pitch), strict=True))
     near = thruster_orders(vehicle, o.near)
     found = trim(vehicle, wanted, near=near, starts=o.starts)
+    said: tuple[str, ...] = ("commands of the trim",)
+    named = {k: v for option, (k, v) in zip(NAMED, wanted.items(), strict=True) if option in options}
+    if not found.point.outcome.solved and 0 < len(named) < len(wanted):
+        found = trim(vehicle, named, near=near, starts=o.starts)
+        open_ = [n for n, u in zip(NAMED, found.motion.unknowns, strict=False) if n not in options and u.low < u.high]
+        said = (
+            *said,
+            f"{', '.join(open_)} found by the trim: at zero, where they stand unless named, no commands keep this motion",
+        )
     if not found.point.outcome.solved:
         raise InputError(
             f"no such steady motion: {found.point.words()[0]}", "a motion that the commands can keep", column=NAME,
             advice="`coeflab trim` shows the bounds of every command.",
         )  # fmt: skip
-    orders = {name: value for name, value in found.point.values.items() if name not in MOTION}
-    attitude = from_euler(o.roll, o.pitch, 0.0)
+    values = found.point.values
+    orders = {name: value for name, value in values.items() if name not in MOTION}
+    attitude = from_euler(values["roll"], values["pitch"], 0.0)
     return Manoeuvre(
-        NAME, (Phase("steady", {}, o.duration),), found.velocity, attitude, orders, ("commands of the trim", *found.point.words()),
+        NAME, (Phase("steady", {}, o.duration),), found.velocity, attitude, orders, (*said, *found.point.words()),
     )  # fmt: skip
 
 
@@ -107,10 +119,11 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
     end = float(trajectory.time[-1])
     start, nu = np.asarray(trajectory.attitude[0]), np.asarray(trajectory.velocity)
     level = float(trajectory.horizontal_speed[0])
-    due = helix(nu[0, :3], start, o.yaw_rate, np.asarray(trajectory.time))
+    turn = o.yaw_rate if "yaw_rate" in options else float(trajectory.heading_rate[0])
+    due = helix(nu[0, :3], start, turn, np.asarray(trajectory.time))
     sinking = float((rotations(start[None, :])[0] @ nu[0, :3])[2])
-    turns = abs(o.yaw_rate) * vehicle.length > NO_TURN * max(level, NO_TURN)
-    rate = abs(o.yaw_rate) if turns else 1.0
+    turns = abs(turn) * vehicle.length > NO_TURN * max(level, NO_TURN)
+    rate = abs(turn) if turns else 1.0
     period = 2.0 * np.pi / rate
     straight = "" if turns else "a straight course"
     found = (

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from coeflab.core.options import bounded, measured, parse_options, words
+from coeflab.core.options import bounded, measured, orders, parse_options
 from coeflab.motion.approach import along, judged, propulsion, thruster_orders
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
 from coeflab.motion.trajectory import Trajectory
@@ -33,7 +33,7 @@ class Options:
     """
 
     speed: float = measured(0.0, 0.0, 100.0, "speed")
-    commands: tuple[str, ...] = words()
+    commands: tuple[str, ...] = orders()
     duration: float = bounded(60.0, 0.1, 1e6)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.options import bounded, measured, one_of, orders, parse_options
 from coeflab.motion.approach import (
     along,
     judged,
@@ -28,6 +28,7 @@ citations = ("imo_msc137", "ittc_free_running")
 plane = "horizontal"
 NAME = "turning_circle"
 SETTLED = 2e-3
+SWINGS = float(np.radians(0.5))  # half of the range of an angle: less is not named
 STRAIGHT = 1e-6  # r L/V below which a turn is rounding
 
 
@@ -54,7 +55,7 @@ class Options:
     rudder: float = measured(float(np.radians(15.0)), 1e-4, 1.2, "angle")
     side: str = one_of("starboard", "starboard", "port")
     speed: float = measured(0.0, 0.0, 100.0, "speed")
-    commands: tuple[str, ...] = words()
+    commands: tuple[str, ...] = orders()
     turns: float = bounded(2.0, 0.25, 50.0)
     longest: float = bounded(600.0, 1.0, 1e6)
 
@@ -98,10 +99,24 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         status = "ok" if value is not None else "not reached"
         why = "" if value is not None else f"heading changed by {np.degrees(heading[-1]):.3g} deg in {t[-1]:g} s"
         out.append(judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking))
-    return (*out, *(undetermined(f, lacking) for f in _steady(trajectory, vehicle.length)))
+    return (*out, *(undetermined(f, lacking) for f in _steady(trajectory, vehicle)))
 
 
-def _steady(trajectory: Trajectory, length: float) -> list[Figure]:
+def swinging(trajectory: Trajectory, vehicle: Vehicle) -> str:
+    """Which of pitch and roll swings most over the second half, and how to turn without it, in words; empty below `SWINGS`."""
+    half = trajectory.time >= 0.5 * (trajectory.time[0] + trajectory.time[-1])
+    swings = {
+        name: float(np.ptp(trajectory.angles[half, i])) / 2.0
+        for i, (name, rate) in enumerate((("roll", "p"), ("pitch", "q")))
+        if rate in vehicle.free
+    }
+    name = max(swings, key=lambda n: swings[n], default="")
+    if not name or swings[name] < SWINGS or not {"v", "r"} <= set(vehicle.free):
+        return ""
+    return f"; {name} swings by +-{np.degrees(swings[name]):.2g} deg. In the horizontal plane alone: --free u,v,r"
+
+
+def _steady(trajectory: Trajectory, vehicle: Vehicle) -> list[Figure]:
     """Rate of heading and horizontal speed, so that a turn which climbs or rolls has the diameter of its track."""
     t, speeds = trajectory.time, trajectory.speed
     turning, ahead = trajectory.heading_rate, trajectory.horizontal_speed
@@ -109,10 +124,10 @@ def _steady(trajectory: Trajectory, length: float) -> list[Figure]:
     rate = settled(t, turning, window, SETTLED * float(np.max(np.abs(turning))) + 1e-12)
     speed = settled(t, speeds, window, SETTLED * float(np.max(speeds)))
     flat = settled(t, ahead, window, SETTLED * float(np.max(speeds)))
-    turns = rate is not None and abs(rate) * length > STRAIGHT * float(np.max(speeds))
+    turns = rate is not None and abs(rate) * vehicle.length > STRAIGHT * float(np.max(speeds))
     why = "" if turns else "the vehicle does not turn"
     if rate is None or speed is None or flat is None:
-        why = f"rate and speed still change by more than {100 * SETTLED:g} % in the last tenth"
+        why = f"rate and speed still change by more than {100 * SETTLED:g} % in the last tenth{swinging(trajectory, vehicle)}"
     drift = float(np.arcsin(np.clip(trajectory.velocity[-1, 1] / max(float(speeds[-1]), 1e-9), -1.0, 1.0)))
     values: tuple[float | None, ...] = (None,) * 4
     if turns and rate is not None and speed is not None and flat is not None:

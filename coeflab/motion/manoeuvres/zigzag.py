@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, measured, parse_options, words
+from coeflab.core.options import bounded, measured, orders, parse_options
 from coeflab.motion.approach import (
     along,
     judged,
@@ -55,7 +55,7 @@ class Options:
 
     rudder: float = measured(float(np.radians(10.0)), 1e-4, 1.2, "angle")
     heading: float = measured(0.0, 0.0, 1.5, "angle")
-    commands: tuple[str, ...] = words()
+    commands: tuple[str, ...] = orders()
     executes: int = bounded(5, 2, 50)
     speed: float = measured(0.0, 0.0, 100.0, "speed")
     longest: float = bounded(300.0, 1.0, 1e5)

@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.bodies.arm_keys import DIMENSIONS, ArmPhaseKeys
 from coeflab.bodies.readers.arm import File
 from coeflab.core.errors import InputError, shown
-from coeflab.core.options import NoOptions, measured, parse_options, text
+from coeflab.core.options import RAD_AT_MOST, TURNING, NoOptions, measured, parse_options, text
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
@@ -31,9 +31,9 @@ class FreeMotion:
     lasts : float
         How long.
     velocity : str
-        u v w p q r of the vehicle over ground at the start, m/s and rad/s, apart at commas; [start] unless given.
+        u v w p q r of the vehicle over ground at the start, bare in m/s and deg/s, apart at commas; [start] unless given.
     rates : str
-        Of the joints at the start, rad/s or m/s where bare, apart at commas; [start] unless given.
+        Of the joints at the start, bare in deg/s or m/s, apart at commas; [start] unless given.
     """
 
     lasts: float = measured(FREE, 1e-3, 1e6, "time")
@@ -185,7 +185,7 @@ def _ways(name: str, o: Any, file: File, chain: Chain) -> list[tuple[str, dict[s
 
 
 def _listed(option: str, given: str, dimensions: Sequence[str]) -> tuple[float, ...]:
-    """Values of an option in SI, one for each dimension; bare angles are in degrees."""
+    """Values of an option in SI, one for each dimension; bare angles are in degrees, their rates in deg/s."""
     words = given.split(",")
     if len(words) != len(dimensions):
         raise InputError(
@@ -197,8 +197,13 @@ def _listed(option: str, given: str, dimensions: Sequence[str]) -> tuple[float, 
             value: float | str = float(word)
         except ValueError:
             value = word.strip()
-        if dimension == "angle" and isinstance(value, float):
-            value = f"{value!r} deg"
+        if dimension == "rate" and isinstance(value, float) and 0.0 < abs(value) < RAD_AT_MOST:
+            raise InputError(
+                f"{value:g}, a rate without a unit", f'deg/s, at least {RAD_AT_MOST:g}, or a unit: "{value:g} deg/s"',
+                column=f"--{option}", advice=f'In radians it is written "{value:g} rad/s".',
+            )  # fmt: skip
+        if dimension in TURNING and isinstance(value, float):
+            value = f"{value!r} {TURNING[dimension]}"
         try:
             out.append(with_unit(value, dimension))
         except InputError as why:

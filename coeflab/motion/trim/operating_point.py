@@ -56,7 +56,8 @@ class Unknown:
     weight: float = 1.0
 
     def shown(self, value: float, digits: int = 6) -> str:
-        """A value with its unit, angles in degrees."""
+        """A value with its unit, angles in degrees; 0 where it is less than a search can tell from it."""
+        value = 0.0 if abs(value) < HOLDS * self.scale else value
         turned = self.unit.startswith("rad")
         text = number(float(np.degrees(value) if turned else value) + 0.0, digits)
         return f"{text} {self.unit.replace('rad', 'deg') if turned else self.unit}"

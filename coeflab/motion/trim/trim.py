@@ -17,18 +17,20 @@ from coeflab.core.machine import one_thread
 from coeflab.core.table import Table, number
 from coeflab.core.types import Array, brief
 from coeflab.law.force_law import WIND
-from coeflab.law.symbols import COMPONENTS, CONTROLS
+from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
 from coeflab.law.transforms import incidence
-from coeflab.motion.dynamics import from_euler, growth, linearised, modes
+from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.vehicle import THRUST, Vehicle
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
+LEANS = {"p": "roll", "q": "pitch"}
 FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch": "q"}
 # Bounds of the search: three times the speed, a turn on a sixth of a length, and short of 90 deg, where heading has no sense.
 FASTEST, TURNS, STEEP = 3.0, 6.0, np.radians(85.0)
 TILTED = 0.1  # rad, what counts as one unit of lean among the scaled unknowns
+LEAST_THRUST = 1e-3  # of what turns the vehicle's own speed about within one length
 UNSTATED_LIMIT = float(np.radians(30.0))  # taken where the file states none, and said; few control surfaces go further
 NAMES = {
     "X": "surge force X", "Y": "sway force Y", "Z": "heave force Z", "K": "roll moment K", "M": "pitch moment M",
@@ -79,32 +81,80 @@ class SteadyMotion:
         total = self.vehicle.unbalanced(nu[None, :], attitude[None, :], controls[None, :], wrench)[0]
         return np.asarray(total[list(self.vehicle.free_columns)])
 
-    def modes(self, x: Array) -> NDArray[np.complex128]:
-        """Eigenvalues of small motions about it with the commands as they are, 1/s; heading and place do not matter."""
+    @property
+    def command_unknowns(self) -> tuple[Unknown, ...]:
+        """The commands among the unknowns."""
+        return self.unknowns[len(MOTION) :]
+
+    @property
+    def states(self) -> tuple[tuple[str, str], ...]:
+        """Name and unit of what small motions change: free velocities, roll where p is free, pitch where q is."""
+        speeds = [(m, "m/s" if m in LINEAR else "rad/s") for m in MOTIONS if m in self.vehicle.free]
+        return (*speeds, *((LEANS[m], "rad") for m in "pq" if m in self.vehicle.free))
+
+    def departed(self, x: Array) -> Array:
+        """(n,) values of `states`."""
         nu, lean = self.state(x)
+        return np.concatenate([nu[list(self.vehicle.free_columns)], lean[self._leaning]])
+
+    @property
+    def _leaning(self) -> list[int]:
+        return [i for i, m in enumerate("pq") if m in self.vehicle.free]
+
+    def rates(self, x: Array, small: Array) -> Array:
+        """(n,) rates of `states` with these values and the commands of x; heading and place do not matter."""
+        (moved, leant), craft = self.state(x), self.vehicle
+        columns, leaning = list(craft.free_columns), self._leaning
         controls, wrench = self.commands(x)
-        craft, columns = self.vehicle, list(self.vehicle.free_columns)
-        leaning = [i for i, m in enumerate("pq") if m in craft.free]
-        speed = max(float(np.linalg.norm(nu[:3])), 0.1 * craft.speed)
+        moved[columns], leant[leaning] = small[: len(columns)], small[len(columns) :]
+        attitude = from_euler(leant[0], leant[1], 0.0)[None, :]
+        faster = craft.acceleration(moved[None, :], attitude, controls[None, :], wrench)[0]
+        (sin, cos), (p, q, r) = (np.sin(leant[0]), np.cos(leant[0])), moved[3:]
+        turned = np.array([p + np.tan(leant[1]) * (q * sin + r * cos), q * cos - r * sin])
+        return np.concatenate([faster[columns], turned[leaning]])
 
-        def rates(small: Array) -> Array:
-            moved, leant = nu.copy(), lean.copy()
-            moved[columns], leant[leaning] = small[: len(columns)], small[len(columns) :]
-            attitude = from_euler(leant[0], leant[1], 0.0)[None, :]
-            faster = craft.acceleration(moved[None, :], attitude, controls[None, :], wrench)[0]
-            (sin, cos), (p, q, r) = (np.sin(leant[0]), np.cos(leant[0])), moved[3:]
-            turned = np.array([p + np.tan(leant[1]) * (q * sin + r * cos), q * cos - r * sin])
-            return np.concatenate([faster[columns], turned[leaning]])
+    def state_slopes(self, x: Array) -> Slopes:
+        """Derivatives (n, n) of `rates` by the states, the commands as they are.
 
-        scale = np.array([speed if i < 3 else speed / craft.length for i in columns] + [1.0] * len(leaning))
-        slopes = linearised(rates, np.concatenate([nu[columns], lean[leaning]]), scale)
-        if not np.isfinite(slopes).all():
-            raise InputError(
-                "rates of small motions that are not finite",
-                "a motion and coefficients whose forces are",
-                column="motion",
-            )
-        return modes(slopes)
+        Raises
+        ------
+        InputError
+            They are not finite.
+        """
+        craft = self.vehicle
+        speed = max(float(np.linalg.norm(self.state(x)[0][:3])), 0.1 * craft.speed)
+        scale = [speed if i < 3 else speed / craft.length for i in craft.free_columns] + [1.0] * len(self._leaning)
+        endless = np.full(len(scale), np.inf)
+        return _finite(slopes(lambda small: self.rates(x, small), self.departed(x), np.array(scale), -endless, endless))
+
+    def command_slopes(self, x: Array) -> Slopes:
+        """Derivatives (n, m) of `rates` by the commands, within their bounds.
+
+        Raises
+        ------
+        InputError
+            They are not finite.
+        """
+        first, small = len(MOTION), self.departed(x)
+        bounds = command_unknowns(self.vehicle, max(abs(float(x[0])), self.vehicle.speed))
+
+        def ordered(commands: Array) -> Array:
+            return self.rates(np.concatenate([x[:first], commands]), small)
+
+        scale, low, high = (np.array([getattr(u, k) for u in bounds]) for k in ("scale", "low", "high"))
+        return _finite(slopes(ordered, x[first:], scale, low, high))
+
+    def modes(self, x: Array) -> NDArray[np.complex128]:
+        """Eigenvalues of small motions about it with the commands as they are, 1/s."""
+        return modes(self.state_slopes(x).matrix)
+
+
+def _finite(found: Slopes) -> Slopes:
+    if not np.isfinite(found.matrix).all():
+        raise InputError(
+            "rates of small motions that are not finite", "a motion and coefficients whose forces are", column="motion"
+        )
+    return found
 
 
 def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mapping[str, float]) -> SteadyMotion:
@@ -178,7 +228,9 @@ def command_unknowns(vehicle: Vehicle, speed: float) -> tuple[Unknown, ...]:
         if t.tilt_axis is not None:
             out.append(Unknown(f"{t.name}.tilt", "rad", t.tilt_low, t.tilt_high, 1.0, weight=0.0))
     if not vehicle.thrusters:
-        out.append(Unknown(THRUST, "N", -np.inf, np.inf, max(abs(vehicle.resistance(speed)), 1e-6)))
+        # A file without resistance takes no thrust: a scale of nothing would leave it out of the equations.
+        least = LEAST_THRUST * float(vehicle.effective_mass[0, 0]) * speed**2 / vehicle.length
+        out.append(Unknown(THRUST, "N", -np.inf, np.inf, max(abs(vehicle.resistance(speed)), least)))
     felt = {*WIND, *(COMPONENTS[i] for i in vehicle.free_columns)}
     limits: dict[str, float] = {s.control: s.limit for s in vehicle.surfaces}
     for c in CONTROLS:
@@ -334,7 +386,11 @@ def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tu
 
 def _unstated(vehicle: Vehicle, unknowns: tuple[Unknown, ...]) -> list[str]:
     stated = {s.control for s in vehicle.surfaces}
-    return [
+    still = "u" in vehicle.free and vehicle.resistance(vehicle.speed) == 0.0
+    surge = (
+        ["surge has no law in the file: no term of X resists a straight run, which takes no thrust."] if still else []
+    )
+    return surge + [
         f"{u.name}: no limit in the file, {u.shown(u.high)} either way taken."
         for u in unknowns
         if u.name in CONTROLS and u.name not in stated and u.low < u.high

@@ -201,7 +201,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
     own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
-        lines.append("The parameter file has no measured points: neither law is compared with any.")
+        lines.append("The parameter file has no measured points to compare the two laws with.")
     for table in (forces(loss), measured, own, parts(parameters, loss.water)):
         if table.rows:
             lines += ["", table.title, *_aligned(table), *(f"  {n}" for n in table.notes)]

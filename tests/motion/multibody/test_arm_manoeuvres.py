@@ -74,7 +74,7 @@ def test_an_end_effector_track_goes_to_its_place() -> None:
 
 
 def test_free_motion_has_no_drives() -> None:
-    run = moved(planned("free_motion", lasts=0.5, velocity="0.5,0,0,0,0,0", rates="0.2,-0.1,10 deg/s"))
+    run = moved(planned("free_motion", lasts=0.5, velocity="0.5,0,0,0,0,0", rates="0.2 rad/s,-0.1 rad/s,10"))
     torques = [values for name, values in run.controls.items() if name.endswith(("torque [N m]", ".vehicle [N]"))]
     assert np.abs(torques).max() == 0.0
     assert run.controls["forearm.rate [rad/s]"][0] == pytest.approx(np.radians(10.0))
@@ -131,7 +131,8 @@ def test_at_once_takes_no_commands() -> None:
         ("zigzag", {}, "--manoeuvre", "one of phases, free_motion, station_keeping, end_effector_track"),
         ("station_keeping", {"joints": "1, 2"}, "--joints", "found 2 values; expected 3"),
         ("station_keeping", {"joints": "1, 2, x"}, "--joints", "an angle, bare in deg or with its unit"),
-        ("station_keeping", {"rates": "1, 2, 3 kg"}, "--rates", "expected a unit of rate"),
+        ("station_keeping", {"rates": "10, 20, 3 kg"}, "--rates", "expected a unit of rate"),
+        ("station_keeping", {"rates": "0.4, 20, 30"}, "--rates", "0.4, a rate without a unit"),
         ("station_keeping", {"lasts": -1.0}, "--lasts", "See --help-options"),
         ("free_motion", {"velocity": "1"}, "--velocity", "found 1 value; expected 6"),
         ("end_effector_track", {"end": "1,2"}, "--end", "found 2 values; expected 3"),

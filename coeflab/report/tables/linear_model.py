@@ -1,0 +1,141 @@
+"""The linear model about a steady motion as tables, as CSV and as a function of MATLAB and Octave."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.core.table import Table, folded, number
+from coeflab.core.wording import one_line
+from coeflab.law.symbols import CONTROLS
+from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
+
+PART = 0.1  # a state with a smaller share is not named in a mode
+FUNCTION = "linear"
+ABOUT = "x_dot = A x + B d for small departures x of the states and d of the commands"
+AXES = "SI, angles in rad; x forward, y starboard, z down"
+SENSES = {
+    "dr": ("r", "turns to starboard", "turns to port"),
+    "ds": ("q", "bow up", "bow down"),
+    "db": ("q", "bow up", "bow down"),
+}
+
+
+def matrix_tables(model: LinearModel) -> tuple[Table, Table]:
+    """A and B with the units of their rows."""
+    notes = (f"{ABOUT}; {AXES}.", *(f"{said}." for said in senses(model)), *(f"{said}." for said in model.statements))
+    return (
+        _matrix("A", model, model.a.matrix, model.states, ()),
+        _matrix("B", model, model.b.matrix, model.commands, notes),
+    )
+
+
+def _matrix(
+    name: str, model: LinearModel, matrix: np.ndarray, columns: Sequence[Variable], notes: tuple[str, ...]
+) -> Table:
+    rows = tuple(
+        (f"{state.name}_dot", unit, *(number(float(v), 4) for v in row))
+        for state, unit, row in zip(model.states, model.rate_units, matrix, strict=True)
+    )
+    headers = ("", "unit", *(f"per {c.name}" if c.unit == "" else f"{c.name} [{c.unit}]" for c in columns))
+    return Table(f"{name}, linear model of {model.vehicle}", headers, rows, notes, frozenset({0, 1}))
+
+
+def mode_table(model: LinearModel) -> Table:
+    """Eigenvalues of A, one row a pair, with the states that take part most."""
+    rows = tuple(
+        (_eigenvalue(m), number(m.period), number(m.doubles), number(m.halves), _parts(m))
+        for m in model.modes
+        if m.eigenvalue.imag >= 0.0
+    )
+    notes = (
+        "Period, time to double and time to halve in s. Motion: states with a tenth or more of the mode, by participation.",
+    )
+    headers = ("eigenvalue, 1/s", "period", "doubles in", "halves in", "motion")
+    return Table("Modes: eigenvalues of A", headers, rows, notes, frozenset({4}))
+
+
+def _eigenvalue(mode: Mode) -> str:
+    real, imag = (number(x, 4) for x in (mode.eigenvalue.real, abs(mode.eigenvalue.imag)))
+    return f"{real} +- {imag}i" if mode.eigenvalue.imag else real
+
+
+def _parts(mode: Mode) -> str:
+    named = sorted((item for item in mode.shares.items() if item[1] >= PART), key=lambda item: -round(item[1], 6))
+    return ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in named)
+
+
+def senses(model: LinearModel) -> tuple[str, ...]:
+    """What a positive control angle begins to do, by B."""
+    names, out = [s.name for s in model.states], []
+    for i, command in enumerate(model.commands):
+        if command.name not in CONTROLS or SENSES[command.name][0] not in names:
+            continue
+        row, up, down = SENSES[command.name]
+        value = float(model.b.matrix[names.index(row), i])
+        if value:
+            out.append(f"{command.name} > 0: {up if value > 0.0 else down}")
+    return tuple(out)
+
+
+def files(model: LinearModel) -> dict[str, bytes]:
+    """A.csv, B.csv and linear.m by name."""
+    return {
+        "A.csv": _csv(model, model.a.matrix, model.states),
+        "B.csv": _csv(model, model.b.matrix, model.commands),
+        f"{FUNCTION}.m": _m_file(model).encode(),
+    }
+
+
+def _csv(model: LinearModel, matrix: np.ndarray, columns: Sequence[Variable]) -> bytes:
+    """Rates by row, variables by column, units with both; numbers as they read back."""
+    lines = [",".join(("rate", *(f"{c.name} [{c.unit}]" for c in columns)))]
+    for state, unit, row in zip(model.states, model.rate_units, matrix.tolist(), strict=True):
+        lines.append(",".join((f"{state.name}_dot [{unit}]", *(repr(v + 0.0) for v in row))))
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _m_file(model: LinearModel) -> str:
+    call = f"[A, B, names, at] = {FUNCTION}()"
+    return "\n".join(
+        [
+            f"function {call}",
+            f"% {call} returns the linear model about a steady motion.",
+            "% Plain MATLAB language; runs in GNU Octave.",
+            "%",
+            f"%   {one_line(model.vehicle)}: {ABOUT}.",
+            f"%   {AXES}.",
+            *(f"%   {said}." for said in senses(model)),
+            "%",
+            "%   names = struct of cell rows: states, state_units, commands, command_units",
+            "%   at    = struct of columns: states and commands in the steady motion, where x and d are zero",
+            *(line for said in model.statements for line in folded(one_line(f"{said}."), 78, "%   ", "%     ")),
+            "",
+            f"A = {_rows(model.a.matrix, 'A = [')};",
+            f"B = {_rows(model.b.matrix, 'B = [')};",
+            f"names.states = {_cells([s.name for s in model.states])};",
+            f"names.state_units = {_cells([s.unit for s in model.states])};",
+            f"names.commands = {_cells([c.name for c in model.commands])};",
+            f"names.command_units = {_cells([c.unit for c in model.commands])};",
+            f"at.states = {_column(model.states)};",
+            f"at.commands = {_column(model.commands)};",
+            "end",
+            "",
+        ]
+    )
+
+
+def _rows(matrix: np.ndarray, begun: str) -> str:
+    if not matrix.size:
+        return f"zeros({matrix.shape[0]}, {matrix.shape[1]})"
+    rows = [" ".join(repr(v + 0.0) for v in row) for row in matrix.tolist()]
+    return "[" + (";\n" + " " * len(begun)).join(rows) + "]"
+
+
+def _cells(names: Sequence[str]) -> str:
+    return "{" + ", ".join("'" + one_line(n).replace("'", "''") + "'" for n in names) + "}"
+
+
+def _column(variables: Sequence[Variable]) -> str:
+    return "[" + "; ".join(repr(v.value + 0.0) for v in variables) + "]"
