@@ -18,7 +18,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
-from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
 from coeflab.tables.force_table import Exclusion, ForceTable
 
@@ -147,7 +147,6 @@ def _first(where: NDArray[np.bool_]) -> int | None:
 
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
-SYMMETRIC = ("X", "Z", "M")
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
@@ -192,10 +191,10 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if table.arm_point is not None and np.any(table.arm_point != point):
         notes.append(f"U and velocities are those of {_place(table.arm_point)}, moved from there")
     half = campaign.half_model if table.half_model is None else table.half_model
-    if half:
-        _require_symmetry(columns, forces, motion)
+    if (cut := cut_of(half)) is not None:
+        _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: X, Z, M doubled")
+        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
@@ -486,17 +485,18 @@ def _sources(campaign: Campaign) -> dict[str, tuple[str, float]]:
     return out
 
 
-def _require_symmetry(columns: Columns, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
-    """Refuse what a half model cannot measure."""
-    odd = [c for c in forces if c not in SYMMETRIC]
-    moving = [m for m in ("v", "p", "r") if np.any(motion[m] != 0.0)]
-    moving += [c for c in ("dr",) if np.any(columns.controls.get(c, 0.0) != 0.0)]
+def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
+    """Refuse what half of a body cannot measure."""
+    odd = [c for c in forces if c in cut.lost]
+    moving = [m for m in cut.across if np.any(motion[m] != 0.0)]
+    moving += [c for c in cut.controls if np.any(columns.controls.get(c, 0.0) != 0.0)]
     if odd or moving:
         what = f"the antisymmetric {', '.join(odd)}" if odd else f"motion {', '.join(moving)}"
+        remedy = "leave these columns out (ignore), or " if odd else ""
         raise columns.fail(
-            f"{what} on a half model",
-            "X, Z, M in symmetric flow",
-            advice="A symmetry plane cannot carry side force, roll or yaw; compute the whole model for those.",
+            f"{what} on a half model cut at {cut.plane}",
+            f"{', '.join(cut.doubled)} in flow along the plane {cut.plane}",
+            advice=f"A symmetry plane at {cut.plane} cannot carry {cut.carries_no}: {remedy}compute the whole model for those.",
         )
 
 
