@@ -160,7 +160,14 @@ def cut_of(half: bool | str) -> Cut | None:
     return CUTS[HALVES[half] if isinstance(half, str) else PORT_STARBOARD]
 
 
-def _half(value: Any, _file: Path) -> bool | str:
+def half_of_body(value: Any, _file: Path | None = None) -> bool | str:
+    """A value of ``half_model``.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
     if isinstance(value, bool) or (isinstance(value, str) and value in HALVES):
         return Verbatim(value) if isinstance(value, str) else value
     raise InputError(shown(value), HALF_WORDS)
@@ -181,7 +188,7 @@ SYMMETRY_WORDS = takes.Takes(
 )
 HalfModel = Annotated[
     bool | str,
-    takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
+    takes.Takes(HALF_WORDS, half_of_body, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
 ]
 
 

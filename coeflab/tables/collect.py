@@ -19,7 +19,7 @@ from coeflab.core.units import SI
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
 from coeflab.tables.conditions import DIMENSIONS, SETTINGS, Condition, NamePattern, name_pattern, named, of_files
 from coeflab.tables.histories import ORDER, Convergence
-from coeflab.tables.raw_table import NO_FORCES, RawColumn, RawTable, Stated
+from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, RawColumn, RawTable, Stated
 from coeflab.tables.run_list import RunList, joined, read_run_list, required
 from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
@@ -571,6 +571,12 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], dict[str, st
                     f"{before.value} in {name} ({before.place}) and {one.value} in {r.name} ({one.place})",
                     "one value for all runs of a table", key=key, advice="Collect them into tables of their own.",
                 ))  # fmt: skip
+    halves = {HALF_MODEL in r.stated: r for r in rows if r.status.has_numbers}
+    if len(halves) > 1:
+        complaints.append(InputError(
+            f"a symmetry plane in {halves[True].name} ({halves[True].stated[HALF_MODEL].contradicted}) and none in {halves[False].name}",
+            "half of the body in all runs of a table, or in none", key=HALF_MODEL, advice="Collect them into tables of their own.",
+        ))  # fmt: skip
     if complaints:
         raise together(complaints)
     return {k: s for k, (_, s) in first.items() if k not in differing}, differing

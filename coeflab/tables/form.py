@@ -16,14 +16,15 @@ from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Question, without_unit
-from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_in, require_one_datum
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
+from coeflab.tables.settings import EXTRA, SYMMETRY, Setting, Settings, against_words, read_in, require_one_datum
 from coeflab.tables.understood import Doubt, Understood
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
 KEY, VALUE = 25, 22  # letters
-GRAVE = ("axes.", "table.", "inertia.")
+SAID = (HALF_MODEL, SYMMETRY)  # of the keys of the campaign: what decides numbers
+GRAVE = ("axes.", "table.", "inertia.", *SAID)
 UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
 
 
@@ -111,11 +112,16 @@ def form(
     out = [*read_by, *column_lines(raw, found), *map(question_line, found.questions)]
     words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
-        if not key.startswith(UNSHOWN):
+        if is_shown(key):
             out.append(setting_line(key, one, found.about.get(key, key), words.get(key, "")))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
+
+
+def is_shown(key: str) -> bool:
+    """Whether the form has a line for a setting."""
+    return key in SAID or not key.startswith(UNSHOWN)
 
 
 def question_line(q: Question) -> Line:

@@ -327,7 +327,7 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     if column is None:
         return [forces if star else frozenset() for star in starred]
     used = {one.column.name for one in known}
-    own = {c.name: "" for c in raw.columns if c.name not in used | names | {ALL}}
+    own = {n: "" for c in raw.columns for n in (c.name, c.means) if n and n not in used | names | {ALL}}
     own |= {one.column.name: one.said.name for one in known if one.said.name in names and not one.said.error}
     out = []
     for row, text in enumerate(texts_of(column)):

@@ -21,7 +21,7 @@ from coeflab.core.units import quantity
 from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
 
@@ -37,6 +37,7 @@ _KINDS = {
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 ARM_POINT = "table.arm_point"
+SYMMETRY = "campaign.symmetry"
 REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
@@ -122,6 +123,16 @@ def _flag(said: Any) -> bool:
     return found
 
 
+def _half(said: Any) -> bool | str:
+    words = {"yes": True, "no": False, "whole": False}
+    plain = said.strip().casefold() if isinstance(said, str) else said
+    return campaign.half_of_body(words.get(plain, plain) if isinstance(plain, str) else plain)
+
+
+def _listed(said: Any) -> Any:
+    return [word for part in said.split(",") if (word := part.strip(" \"'[]"))] if isinstance(said, str) else said
+
+
 def _measured(dimension: str) -> Callable[[Any], Any]:
     def read(said: Any) -> Any:
         if not quantity(said, dimension) > 0.0:
@@ -163,6 +174,8 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "conditions.density": _measured("density"),
     "conditions.speed": _measured("speed"),
     "table.contains_inertia": _flag,
+    **dict.fromkeys((HALF_MODEL, "table.half_model"), _half),
+    SYMMETRY: lambda said: list(campaign.SYMMETRY_WORDS.read(_listed(said), Path())),
     "source.kind": _one_of(*TABLE_KINDS),
     **dict.fromkeys(
         ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import angle_sign
+from coeflab.core.axes import Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
@@ -182,7 +182,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(
             f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
         )
-    sources = _sources(campaign)
+    sources = columns_of(campaign.axes)
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
     errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
@@ -348,7 +348,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
         A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
         flow itself; X or Z of the body beside drag, or Y beside side.
     """
-    sources = _sources(campaign)
+    sources = columns_of(campaign.axes)
     if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
         raise together(complaints)
     linear = _linear(columns, campaign)
@@ -475,13 +475,13 @@ def speed_of_rows(
     return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
 
 
-def _sources(campaign: Campaign) -> dict[str, tuple[str, float]]:
+def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:
     """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
     out = {}
     for group in (COMPONENTS[:3], COMPONENTS[3:]):
         for i, name in enumerate(group):
-            j = int(np.argmax(np.abs(campaign.axes.rotation[i])))
-            out[name] = group[j], float(campaign.axes.rotation[i, j])
+            j = int(np.argmax(np.abs(axes.rotation[i])))
+            out[name] = group[j], float(axes.rotation[i, j])
     return out
 
 
