@@ -43,7 +43,7 @@ def warned(
 ) -> list[Check]:
     (folder / "campaign.toml").write_text(CAMPAIGN.format(symmetry=declared, point=point))
     (folder / "table.csv").write_text(csv)
-    study: Any = SimpleNamespace(tables=read_tables(PlannedTable(folder, ())))
+    study: Any = SimpleNamespace(fits=(), tables=read_tables(PlannedTable(folder, ())))
     return list(symmetry.check(study))
 
 
@@ -95,5 +95,5 @@ def test_no_shipped_campaign_is_doubted() -> None:
         p.parent for p in Path(shipped("cfd_data")).glob("*/campaign.toml") if "\nsymmetry = [" in p.read_text()
     ]
     assert len(declared) > 3
-    tables: Any = SimpleNamespace(tables=[t for p in declared for t in read_tables(PlannedTable(p, ()))])
+    tables: Any = SimpleNamespace(fits=(), tables=[t for p in declared for t in read_tables(PlannedTable(p, ()))])
     assert symmetry.check(tables) == []

@@ -1,4 +1,4 @@
-"""Forces that a declared symmetry forbids: those of half of a body that nobody said to be one, or of a body that is not symmetric."""
+"""Symmetry: a body alike to port and starboard has no side force at zero drift, and one cut in half has a force across the cut."""
 
 from __future__ import annotations
 
@@ -6,27 +6,65 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.law.symbols import FORCES
+from coeflab.fits.results.fit_result import Sweep
+from coeflab.law.symbols import FORCES, primed
 from coeflab.study.study import Study
 from coeflab.tables.campaign import CUTS, HALVES, Cut
 from coeflab.tables.force_table import AT_REST, ForceTable
 
-summary = "forces and moments that vanish by a declared symmetry, in motions along its plane"
-citations = ()
-
-# Median over rows of a forbidden component, of the largest force or moment of the table. On half of a body the pressure on the cut's other side
-# is missing, a force of the order of the others; meshes and balances of whole bodies stay well below a twentieth.
+summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across the plane of a declared symmetry"
+citations = ("wahba1990",)
+ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
+NOTHING, LARGE = 1e-3, 0.05
+# Median over rows of a forbidden component, of the largest force or moment of the table. To half of a body the pressure on the other
+# side of the cut is missing, a force of the order of the others; meshes and balances of whole bodies stay well below a twentieth.
 FORCE, MOMENT = 0.05, 0.2
 LEVER = 0.02  # of the length: the largest moment is taken for the largest force at this lever at least
 NOISE = 4.0  # standard errors
+RULE = f"zero within U95; a note from {100 * NOTHING:g} % of the largest, a warning from {100 * LARGE:g} %"
+
+
+def _intercept(sweep: Sweep) -> Check | None:
+    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or sweep.value is None or sweep.symmetry:
+        return None
+    value, error = sweep.at_rest
+    reach = float(abs(sweep.y).max())
+    share = abs(value) / reach if reach else 0.0
+    if abs(value) <= error:
+        severity, comment = Severity.PASS, "The force at zero angle is within its error of zero."
+    elif share < NOTHING:
+        severity, comment = Severity.PASS, "The force at zero angle is negligible."
+    elif share < LARGE:
+        severity, comment = Severity.NOTE, "Model or rig bias; the intercept absorbs it."
+    else:
+        severity, comment = Severity.WARN, "A large bias: look for a misaligned model, tare or angle offset."
+    return Check(
+        "symmetry",
+        f"{sweep.campaign} {primed(sweep.symbol)}",
+        severity,
+        f"{sweep.component}' at zero {_motion(sweep)} = {plus_minus(value, error)}, should be zero by symmetry; it is {100 * share:.1f} % of "
+        f"the largest {sweep.component}'",
+        RULE,
+        comment,
+    )
+
+
+def _motion(sweep: Sweep) -> str:
+    return "drift" if sweep.variable == "v" else "yaw rate"
 
 
 def check(study: Study) -> Sequence[Check]:
-    """One warning a table and plane in which a symmetric body has a force across the plane."""
-    return [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
+    """One finding per odd sweep of a port-starboard component; one per table with forces that a declared symmetry forbids."""
+    sweeps = [s for f in study.fits for s in f.sweeps]
+    largest: dict[str, float] = {}
+    for s in sweeps:
+        largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
+    odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
+    across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
+    return [c for s in odd if (c := _intercept(s)) is not None] + across
 
 
 def _across(table: ForceTable, cut: Cut) -> Iterator[Check]:
