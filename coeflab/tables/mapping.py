@@ -152,6 +152,9 @@ def fault(
 ) -> InputError:
     """An error about a column of the file, or one cell of it, to be raised by the caller."""
     line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
+    if raw.path.is_dir():
+        line = 0
+        found = f"{found} in {row_name(raw, row)}" if row is not None else found
     return InputError(found, expected, file=raw.path, line=line or None, column=header(column), advice=advice)
 
 

@@ -83,12 +83,16 @@ class Columns:
     def fail(
         self, found: str, expected: str, *, row: int | None = None, name: str = "", advice: str = ""
     ) -> InputError:
-        """An error about one cell, a column or the header, to be raised by the caller."""
+        """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
+        is_folder = self.file.is_dir()
+        line = None if is_folder else self.header_line or None if row is None else self.lines[row]
+        if is_folder and row is not None and self.row_labels:
+            found = f"{found} in {self.row_labels[row]}"
         return InputError(
             found,
             expected,
             file=self.file,
-            line=self.header_line if row is None else self.lines[row],
+            line=line,
             column=self.headers.get(name, name) or None,
             advice=advice,
         )

@@ -162,3 +162,28 @@ def test_the_command_at_the_end_of_the_form_asks_for_what_is_missing(halves: Pat
     answered = [w.replace("campaign.half_model=?", "campaign.half_model=lower") for w in words]
     assert invoke(*answered).exit_code == 0
     np.testing.assert_allclose(table_of(tmp_path / "out").forces["X"], -18.0)
+
+
+def test_an_error_about_a_folder_names_no_line(halves: Path, tmp_path: Path) -> None:
+    done = invoke("import", halves, "--out", tmp_path / "out", *KNOWN, "--set", "campaign.half_model=port", "--accept")
+    (line,) = refused(done)
+    assert line.startswith(f"{halves}: found motion v")
+    mapped = invoke("import", halves, "--out", tmp_path / "out", *KNOWN, "--map", "Fx=X [m]", "--accept")
+    assert mapped.exception is not None
+    assert "line 0" not in str(mapped.exception)
+
+
+def test_the_run_at_zero_is_said_to_give_no_slope(halves: Path, tmp_path: Path) -> None:
+    case(halves / "b12", 12)
+    out = tmp_path / "out"
+    both = ("--set", "campaign.half_model=upper", "--set", "campaign.symmetry=up-down, port-starboard")
+    assert invoke("import", halves, "--out", out, *KNOWN, *both, "--accept").exit_code == 0
+    said = "extrapolated: the run at zero gives no slope, as it is zero by declared port-starboard symmetry."
+    assert said in flat(invoke("fit", out).output)
+    text = (
+        (out / "campaign.toml")
+        .read_text()
+        .replace('symmetry = ["up-down", "port-starboard"]', 'symmetry = ["up-down"]')
+    )
+    (out / "campaign.toml").write_text(text)
+    assert "gives no slope" not in flat(invoke("fit", out).output)

@@ -78,17 +78,17 @@ def _across(table: ForceTable, cut: Cut) -> Iterator[Check]:
     moment = max(_largest(table, [c for c in table.forces if c not in FORCES]), LEVER * length * force)
     found = {}
     for c in (c for c in cut.lost if c in table.forces and (c in FORCES or in_plane)):
-        rows = along & table.usable[c]
-        share = _beyond_noise(table, c, rows) / max(force if c in FORCES else moment, 1e-300)
+        share = _beyond_noise(table, c, along & table.usable[c]) / max(force if c in FORCES else moment, 1e-300)
         if share > (FORCE if c in FORCES else MOMENT):
             found[c] = share
     if found:
         halves = " or ".join(f'"{half}"' for half, symmetry in HALVES.items() if symmetry == cut.symmetry)
+        rows = int(np.count_nonzero(along))
         sizes = listed([f"{c} is {share:.0%}" for c, share in found.items()])
         kind = "force" if set(found) <= set(FORCES) else "moment" if not set(found) & set(FORCES) else "force or moment"
         yield Check(
             "symmetry", table.name, Severity.WARN,
-            f"{sizes} of the largest {kind} in motions along {cut.plane} (median of {int(along.sum())} rows)",
+            f"{sizes} of the largest {kind} in motions along {cut.plane} (median of {rows} row{'s' * (rows > 1)})",
             f"none of {', '.join(cut.lost)}: the body is declared {cut.symmetry}",
             f"Forces of half of the body? half_model = {halves} doubles {', '.join(cut.doubled)}, and {', '.join(cut.lost)} are left out. "
             f"Else the body or the balance is not that symmetric.",
