@@ -17,7 +17,17 @@ from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Question, without_unit
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, SYMMETRY, Setting, Settings, against_words, read_in, require_one_datum
+from coeflab.tables.settings import (
+    EXTRA,
+    SYMMETRY,
+    VISCOSITY,
+    Setting,
+    Settings,
+    against_words,
+    read_in,
+    require_one_datum,
+    reynolds,
+)  # fmt: skip
 from coeflab.tables.understood import Doubt, Understood
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
@@ -113,7 +123,7 @@ def form(
     words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
         if is_shown(key):
-            out.append(setting_line(key, one, found.about.get(key, key), words.get(key, "")))
+            out.append(with_reynolds(setting_line(key, one, found.about.get(key, key), words.get(key, "")), settings))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
@@ -138,6 +148,16 @@ def setting_line(key: str, one: Setting, about: str, against: str) -> Line:
     value = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
     why = f"{AGAINST}{against}" if against else one.origin.replace("confirmed", "said")
     return Line(key, value, why, group, f"{about}. It is {value}: {one.origin}.")
+
+
+def with_reynolds(line: Line, settings: Settings) -> Line:
+    """The line of the viscosity with its unit and the Reynolds number, which show a dynamic one; any other as it is."""
+    if line.key.rpartition("/")[2] != VISCOSITY:
+        return line
+    number = reynolds(settings)
+    value = line.value if line.value.endswith("s") else f"{line.value} m^2/s"
+    said = "kinematic" if number is None else f"kinematic, Re = {number:.3g}"
+    return replace(line, value=value, why=f"{said}; {line.why}")
 
 
 def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:

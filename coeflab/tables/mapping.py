@@ -29,6 +29,7 @@ NO_FORCE = "no force column"
 MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
+SAME_VISCOSITY = 1e-2  # relative: by less than a degree of temperature
 
 
 @brief
@@ -384,6 +385,20 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     return InputError(
         f"conditions.density = {density:g} kg/m^3", f"{said.value:g}, the density that the forces were computed with "
         f"({said.place})", file=raw.path, column="conditions.density", advice=advice,
+    )  # fmt: skip
+
+
+def another_viscosity(raw: RawTable, viscosity: float) -> InputError | None:
+    """The complaint where a solver ran with a viscosity that the file states, and another one is declared."""
+    said = raw.stated.get("conditions.viscosity")
+    if said is None or said.offered or not isinstance(said.value, float):
+        return None
+    if abs(viscosity - said.value) <= SAME_VISCOSITY * abs(said.value):
+        return None
+    return InputError(
+        f"conditions.viscosity = {viscosity:g} m^2/s", f"{said.value:g}, the viscosity that the forces were computed with "
+        f"({said.place})", file=raw.path, column="conditions.viscosity",
+        advice="Leave it out: the Reynolds number of the runs is that of their viscosity, right or wrong.",
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
-from coeflab.tables.form import Line, argument, column_lines, form, is_shown, question_line, setting_line
+from coeflab.tables.form import Line, argument, column_lines, form, is_shown, question_line, setting_line, with_reynolds
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import Question
@@ -158,7 +158,7 @@ def form_together(
         plain = key.rpartition("/")[2]
         if is_shown(plain):
             line = setting_line(plain, one, about.get(plain, plain), words.get(plain, ""))
-            out.append(replace(line, key=key))
+            out.append(with_reynolds(replace(line, key=key), settings))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)

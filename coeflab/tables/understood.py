@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +20,7 @@ from coeflab.tables.mapping import (
     NO_FORCE,
     Assigned,
     another_density,
+    another_viscosity,
     assigned,
     entry_of,
     error_of,
@@ -29,7 +31,7 @@ from coeflab.tables.mapping import (
 from coeflab.tables.proposals import Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.settings import EXTRA, VISCOSITY, Setting, Settings, against_words, frame_of, read_setting
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -162,6 +164,11 @@ def understood(
     if "conditions.density" in settings:
         other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
         complaints += (other,) if other else ()
+    if VISCOSITY in settings:
+        with suppress(InputError):  # a text that is no viscosity is complained of with the whole campaign
+            complaints += tuple(
+                filter(None, [another_viscosity(raw, quantity(settings[VISCOSITY].value, "viscosity"))])
+            )
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns

@@ -187,3 +187,27 @@ def test_the_run_at_zero_is_said_to_give_no_slope(halves: Path, tmp_path: Path) 
     )
     (out / "campaign.toml").write_text(text)
     assert "gives no slope" not in flat(invoke("fit", out).output)
+
+
+def test_a_viscosity_in_pascal_seconds_is_warned_of(tmp_path: Path) -> None:
+    for degrees in (0, 4):
+        case(tmp_path / "mu" / f"b{degrees}", degrees, cut="", nu=1e-3)
+        case(tmp_path / "nu" / f"b{degrees}", degrees, cut="")
+    asked = invoke("import", tmp_path / "mu", "--out", tmp_path / "out", *KNOWN).output
+    assert "0.001 m^2/s" in asked
+    assert "kinematic, Re = 1e+03" in asked
+    assert "warning, conditions.viscosity: 0.001 m^2/s is not the kinematic viscosity of water" in flat(asked)
+    assert "998 kg/m^3 is 1e-06 m^2/s" in flat(asked)
+    done = invoke("import", tmp_path / "mu", "--out", tmp_path / "out", *KNOWN, "--accept")
+    assert done.exit_code == 0, done.output
+    assert "is not the kinematic viscosity" in flat(done.output)
+    assert "viscosity of water" not in flat(invoke("import", tmp_path / "nu", "--out", tmp_path / "b", *KNOWN).output)
+
+
+def test_another_viscosity_than_that_of_the_runs_is_refused(halves: Path, tmp_path: Path) -> None:
+    said = (*KNOWN, "--set", "campaign.half_model=upper", "--accept", "--set")
+    done = invoke("import", halves, "--out", tmp_path / "out", *said, "conditions.viscosity=1.2e-6")
+    (line,) = refused(done)
+    assert "found conditions.viscosity = 1.2e-06 m^2/s; expected 1e-06" in line
+    assert "constant/transportProperties:2" in line
+    assert invoke("import", halves, "--out", tmp_path / "out", *said, "conditions.viscosity=1.0034e-6").exit_code == 0
