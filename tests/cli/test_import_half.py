@@ -211,3 +211,33 @@ def test_another_viscosity_than_that_of_the_runs_is_refused(halves: Path, tmp_pa
     assert "found conditions.viscosity = 1.2e-06 m^2/s; expected 1e-06" in line
     assert "constant/transportProperties:2" in line
     assert invoke("import", halves, "--out", tmp_path / "out", *said, "conditions.viscosity=1.0034e-6").exit_code == 0
+
+
+def test_the_campaign_says_what_part_of_each_history_is_averaged(tmp_path: Path) -> None:
+    settling = np.vstack([np.outer(np.linspace(3.0, 0.0, 40), FORCE), np.zeros((80, 3))]) + np.array(FORCE)
+    case(tmp_path / "runs" / "b0", 0, cut="")
+    case(tmp_path / "runs" / "b4", 4, cut="", force=settling)
+    out = tmp_path / "out"
+    assert invoke("import", tmp_path / "runs", "--out", out, *KNOWN, "--accept").exit_code == 0
+    text = (out / "campaign.toml").read_text()
+    assert "averaged over a window of each run, in the column averaged over" in text
+    assert 'labels = ["status", "averaged over", "condition from"]' in text
+    table = (out / "table.csv").read_text()
+    assert "iterations 1 to 120" in table
+    assert "iterations 61 to 120" in table
+
+
+def test_a_steady_solver_that_ends_in_a_cycle_is_known_to_its_range(tmp_path: Path) -> None:
+    swing = np.tile([[0.0, 5e-4, 0.0], [0.0, -5e-4, 0.0]], (60, 1))
+    for degrees in (0, 4):
+        case(
+            tmp_path / "runs" / f"b{degrees}", degrees, cut="", force=np.array([FORCE[0], -1.5 * degrees, 0.0]) + swing
+        )
+    assert invoke("import", tmp_path / "runs", "--out", tmp_path / "out", *KNOWN, "--accept").exit_code == 0
+    np.testing.assert_allclose(table_of(tmp_path / "out").errors["Y"], 5e-4, rtol=1e-9)
+    for degrees in (0, 4):  # the same numbers over time
+        (tmp_path / "runs" / f"b{degrees}" / "system/fvSchemes").write_text(
+            HEAD.format("dictionary", "fvSchemes") + "ddtSchemes { default Euler; }\n"
+        )
+    assert invoke("import", tmp_path / "runs", "--out", tmp_path / "time", *KNOWN, "--accept").exit_code == 0
+    assert np.all(table_of(tmp_path / "time").errors["Y"] < 2e-4)
