@@ -270,6 +270,9 @@ class TableDeclaration(takes.Declaration):
     by_symmetry : str
         File of the table whose rows these are, mirrored or turned by the body's symmetry: stated, not run. They decide no fit
         together with those.
+    forces_density : float or None
+        Of the fluid that the forces were computed with, kg/m^3, where a solver's files state it. Another density of the campaign is
+        refused: the primes would be wrong by their ratio.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -287,6 +290,7 @@ class TableDeclaration(takes.Declaration):
     centre: Annotated[str, takes.one_of(*CENTRES)] = ""
     half_model: HalfModel | None = None
     by_symmetry: takes.Words = ""
+    forces_density: takes.Density | None = None
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:

@@ -132,6 +132,9 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
                 at_reference = key == ARM_POINT and one.value == REFERENCE
                 own[name] = t.settings[POINT_OF].value if at_reference else one.value
                 said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+        made_with = t.raw.stated.get("conditions.density")
+        if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
+            own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"
         if HALF_MODEL in t.settings and len(set(map(str, halves))) > 1:
             one = t.settings[HALF_MODEL]
             own["half_model"], said["half_model"] = one.value, one.origin + _of_half(one.value)

@@ -19,7 +19,7 @@ from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import BLANK, SAME_DENSITY, Columns, force_table, speed_of_rows
 from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
@@ -28,7 +28,6 @@ ALL = "all"
 NO_FORCE = "no force column"
 MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
-SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 SAME_VISCOSITY = 1e-2  # relative: by less than a degree of temperature
 
 

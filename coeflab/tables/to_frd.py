@@ -152,6 +152,7 @@ def _first(where: NDArray[np.bool_]) -> int | None:
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
+SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
@@ -249,7 +250,15 @@ def _place(point: Array) -> str:
 
 
 def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -> Iterator[InputError]:
-    """Everything that campaign.toml leaves open or contradicts about a table on an arm."""
+    """Everything that campaign.toml leaves open or contradicts about a table: the density of its forces, and an arm."""
+    made, declared = table.forces_density, campaign.conditions.density
+    in_newton = any(not columns.headers.get(c, c).startswith(f"{c}'") for c in columns.forces)
+    if made is not None and columns.density is None and in_newton and abs(declared - made) > SAME_DENSITY * made:
+        yield InputError(
+            f"density = {declared:g} kg/m^3", f"{made:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
+            advice="Primes are right with the density that the forces were computed with. To state them at another, import the runs "
+            f"again with --option density={declared:g}.",
+        )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
     if columns.radius is not None:
         if rates:

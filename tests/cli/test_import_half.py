@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.tables.campaign import read_campaign
 from tests.cli.conftest import flat
 from tests.cli.test_import import command_of, invoke, left_open, refused, table_of, without_slopes
@@ -241,3 +242,18 @@ def test_a_steady_solver_that_ends_in_a_cycle_is_known_to_its_range(tmp_path: Pa
         )
     assert invoke("import", tmp_path / "runs", "--out", tmp_path / "time", *KNOWN, "--accept").exit_code == 0
     assert np.all(table_of(tmp_path / "time").errors["Y"] < 2e-4)
+
+
+def test_an_edited_density_is_refused_as_the_forces_were_made_with_another(tmp_path: Path) -> None:
+    for degrees in (0, 4):
+        case(tmp_path / "runs" / f"b{degrees}", degrees, cut="")
+    out = tmp_path / "out"
+    said = (*KNOWN, "--option", "density=1025", "--accept")
+    assert invoke("import", tmp_path / "runs", "--out", out, *said).exit_code == 0
+    text = (out / "campaign.toml").read_text()
+    assert "forces_density = 1025.0                   # stated: option density" in text
+    (out / "campaign.toml").write_text(text.replace("\ndensity = 1025.0", "\ndensity = 998.0"))
+    with pytest.raises(InputError, match=r"found density = 998 kg/m.3; expected 1025, the forces_density of table.csv"):
+        table_of(out)
+    (out / "campaign.toml").write_text(text.replace("\ndensity = 1025.0", "\ndensity = 1025.5"))
+    assert len(table_of(out)) == 2
