@@ -472,7 +472,7 @@ def _table(
 def _averaged(rows: Sequence[RunSummary]) -> str:
     """What the means of all runs are over: one window, or where each run has its own."""
     windows = {r.averaged for r in rows if r.averaged}
-    return windows.pop() if len(windows) == 1 else f"a window of each run, in the column {WINDOW}" if windows else ""
+    return windows.pop() if len(windows) == 1 else "a window of each run" if windows else ""
 
 
 def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:

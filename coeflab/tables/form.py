@@ -166,6 +166,8 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
     still = {column.name: offer for column, offer in found.open}
     for column, offer in zip(raw.columns, found.proposals, strict=True):
         name, span = column.name, _span(column)
+        if offer.certain and name in raw.dialect:  # told in the head of the form
+            continue
         if name in doubts:
             yield _doubtful(doubts[name])
         elif name in still:

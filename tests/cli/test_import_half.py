@@ -221,7 +221,7 @@ def test_the_campaign_says_what_part_of_each_history_is_averaged(tmp_path: Path)
     out = tmp_path / "out"
     assert invoke("import", tmp_path / "runs", "--out", out, *KNOWN, "--accept").exit_code == 0
     text = (out / "campaign.toml").read_text()
-    assert "averaged over a window of each run, in the column averaged over" in text
+    assert "averaged over a window of each run" in text
     assert 'labels = ["status", "averaged over", "condition from"]' in text
     table = (out / "table.csv").read_text()
     assert "iterations 1 to 120" in table
