@@ -54,6 +54,11 @@ def command(
         raise InputError(shown(to), ", ".join(complete.LANGUAGES), column="--to")
     place = located(body, "geometry")
     file = place / BODY if place.is_dir() else place
+    if file.suffix != ".toml":
+        raise InputError(
+            shown(file.name), "a vehicle with an arm: the name of a shipped one, or its body.toml", file=file,
+            advice="A parameter file has no links and joints. Such as: coeflab derive urv_puma.",
+        )  # fmt: skip
     chain = read_chain(file)
     try:
         from coeflab.motion.multibody.closed_form import derive

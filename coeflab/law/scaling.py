@@ -52,6 +52,8 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 
 GRAMS = (0.9, 1.1)  # kg/m^3 of hot or high air, and g/cm^3 of water
 LENGTHS = (0.05, 400.0)  # m, of models and ships
+WATERS = (950.0, 1060.0)  # kg/m^3, hot and fresh to cold and salt
+NU_OF_WATER = (0.7e-6, 2e-6)  # m^2/s: 37 deg C fresh to 0 deg C at sea (ITTC 7.5-02-01-03)
 FASTEST = 60.0  # m/s in water
 _AIR = re.compile(
     r"\b(?:air|airship|aircraft|luft|wind)\b|wind.?tunnel|windkanal|kinematic|rhoinf|openfoam", re.IGNORECASE
@@ -84,6 +86,24 @@ def doubtful_size(key: str, number: float, in_air: bool = False) -> str:
     if key == "conditions.speed" and number > FASTEST and not in_air:
         return f'{number:g} m/s is no speed in water: is it in mm/s? Then write "{number:g} mm/s"'
     return ""
+
+
+def doubtful_viscosity(viscosity: float, density: float) -> str:
+    """Why a kinematic viscosity is probably a dynamic one; empty for that of water, and beside a density of no water.
+
+    Parameters
+    ----------
+    viscosity : float
+        m^2/s.
+    density : float
+        kg/m^3.
+    """
+    if not WATERS[0] <= density <= WATERS[1] or NU_OF_WATER[0] <= viscosity <= NU_OF_WATER[1]:
+        return ""
+    return (
+        f"{viscosity:g} m^2/s is not the kinematic viscosity of water ({NU_OF_WATER[0]:g} to {NU_OF_WATER[1]:g}): is it mu in Pa s, "
+        f"which over {density:g} kg/m^3 is {viscosity / density:.3g} m^2/s?"
+    )
 
 
 ENDS = {

@@ -105,15 +105,70 @@ FILE = "campaign.toml"
 SIDES = {"starboard": (0.0, 1.0, 0.0), "port": (0.0, -1.0, 0.0), "above": (0.0, 0.0, -1.0), "below": (0.0, 0.0, 1.0)}
 SIGNED = "+R "  # before the side that a positive radius means
 CENTRES = (*SIDES, *(f"{SIGNED}{side}" for side in SIDES))
-HALVES = ("starboard", "port")
 # What a body may be declared to be: its own mirror image in y = 0 or z = 0, the same after a quarter of a turn about x.
 PORT_STARBOARD, UP_DOWN, FOURFOLD = "port-starboard", "up-down", "fourfold"
 SYMMETRIES = (PORT_STARBOARD, UP_DOWN, FOURFOLD)
-HALF_WORDS = f"true or false, or which half: {' or '.join(map(shown, HALVES))}"
 
 
-def _half(value: Any, _file: Path) -> bool | str:
-    if isinstance(value, bool) or value in HALVES:
+@brief
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A symmetry plane through the body, on one side of which its forces are computed or measured.
+
+    The image in the plane has the same ``doubled`` components, and the opposite ``lost`` ones, which vanish in the sum.
+
+    Attributes
+    ----------
+    plane : str
+    symmetry : str
+        That a body has which is its own image in the plane.
+    doubled, lost : tuple of str
+        Of X Y Z K M N, FRD.
+    carries_no : str
+        The lost ones in words.
+    across : tuple of str
+        Motions that leave the plane: half of the body says nothing of them.
+    controls : tuple of str
+        Controls that do so when they are deflected.
+    """
+
+    plane: str
+    symmetry: str
+    doubled: tuple[str, ...]
+    lost: tuple[str, ...]
+    carries_no: str
+    across: tuple[str, ...]
+    controls: tuple[str, ...]
+
+
+CUTS = {
+    PORT_STARBOARD: Cut(
+        "y = 0", PORT_STARBOARD, ("X", "Z", "M"), ("Y", "K", "N"), "side force, roll or yaw", ("v", "p", "r"), ("dr",)
+    ),
+    UP_DOWN: Cut(
+        "z = 0", UP_DOWN, ("X", "Y", "N"), ("Z", "K", "M"), "normal force, roll or pitch", ("w", "p", "q"), ("ds", "db")
+    ),
+}  # fmt: skip
+HALVES = {"starboard": PORT_STARBOARD, "port": PORT_STARBOARD, "upper": UP_DOWN, "lower": UP_DOWN}
+HALF_WORDS = 'true or false, or which half: "starboard" or "port" of a cut at y = 0, "upper" or "lower" of one at z = 0'
+
+
+def cut_of(half: bool | str) -> Cut | None:
+    """The cut of a half model, for which ``true`` is one at y = 0; None of a whole one."""
+    if not half:
+        return None
+    return CUTS[HALVES[half] if isinstance(half, str) else PORT_STARBOARD]
+
+
+def half_of_body(value: Any, _file: Path | None = None) -> bool | str:
+    """A value of ``half_model``.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    if isinstance(value, bool) or (isinstance(value, str) and value in HALVES):
         return Verbatim(value) if isinstance(value, str) else value
     raise InputError(shown(value), HALF_WORDS)
 
@@ -133,7 +188,7 @@ SYMMETRY_WORDS = takes.Takes(
 )
 HalfModel = Annotated[
     bool | str,
-    takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
+    takes.Takes(HALF_WORDS, half_of_body, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
 ]
 
 
@@ -215,6 +270,9 @@ class TableDeclaration(takes.Declaration):
     by_symmetry : str
         File of the table whose rows these are, mirrored or turned by the body's symmetry: stated, not run. They decide no fit
         together with those.
+    forces_density : float or None
+        Of the fluid that the forces were computed with, kg/m^3, where a solver's files state it. Another density of the campaign is
+        refused: the primes would be wrong by their ratio.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -232,6 +290,7 @@ class TableDeclaration(takes.Declaration):
     centre: Annotated[str, takes.one_of(*CENTRES)] = ""
     half_model: HalfModel | None = None
     by_symmetry: takes.Words = ""
+    forces_density: takes.Density | None = None
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:
@@ -271,7 +330,9 @@ class CampaignHead(takes.Declaration):
     importer : str
         Format of the tables; ``coeflab formats`` lists them.
     half_model : bool or str
-        Whether the tables are of one half of a symmetric model, and which: true, false, starboard or port.
+        Whether the tables are of one half of a symmetric model, and which. starboard, port or true, cut at y = 0: X, Z, M are
+        doubled, Y, K, N refused, as v, p, r. upper or lower, cut at z = 0: X, Y, N are doubled, Z, K, M refused, as w, p, q; the
+        body is declared up-down under symmetry. false: forces are of the whole body.
     symmetry : tuple of str
         What the body is exactly: port-starboard, up-down (each its own mirror image), fourfold (a quarter of a turn about x leaves
         it as it is). A sweep of one side is then odd or even by declaration, and needs no other side. Leave it out for a model
@@ -390,11 +451,22 @@ class CampaignFile(takes.Declaration):
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
-        """At least one table; those by symmetry are of others, and of a body with a symmetry."""
+        """At least one table; those by symmetry are of others, and of a body with a symmetry, as halves cut at z = 0 are."""
         if not self.table:
             raise InputError(
                 "no [[table]]", "at least one table", column="table", advice='Add [[table]] with file = "table.csv".'
             )
+        halves = [("campaign", self.campaign.half_model)]
+        halves += [(f"table[{i}]", t.half_model) for i, t in enumerate(self.table) if t.half_model is not None]
+        for where, half in halves:
+            cut = cut_of(half)
+            # Most bodies are alike to port and starboard; alike above and below are few, which somebody has to say.
+            if cut is not None and cut.symmetry == UP_DOWN and UP_DOWN not in self.campaign.symmetry:
+                raise InputError(
+                    f"{shown(half)}, half of a body cut at {cut.plane}, without declared {UP_DOWN} symmetry",
+                    f"a body that is its own mirror image in {cut.plane}", column=f"{where}.half_model",
+                    advice=f'Add "{UP_DOWN}" to campaign.symmetry: symmetry = ["{UP_DOWN}"]. A body that is not cannot be cut there.',
+                )  # fmt: skip
         for i, table in enumerate(self.table):
             others = [t.file for t in self.table if t is not table and not t.by_symmetry]
             if table.by_symmetry and table.by_symmetry not in others:

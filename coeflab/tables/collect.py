@@ -19,13 +19,14 @@ from coeflab.core.units import SI
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
 from coeflab.tables.conditions import DIMENSIONS, SETTINGS, Condition, NamePattern, name_pattern, named, of_files
 from coeflab.tables.histories import ORDER, Convergence
-from coeflab.tables.raw_table import NO_FORCES, RawColumn, RawTable, Stated
+from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, RawColumn, RawTable, Stated
 from coeflab.tables.run_list import RunList, joined, read_run_list, required
 from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size
 ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity", "table.contains_inertia")
 ITERATIONS, START, STATUS, ORIGIN = "iterations", "plateau start", "status", "condition from"
+WINDOW = "averaged over"
 DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
 FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
@@ -273,7 +274,7 @@ def _broken_off(runs: Sequence[RunSummary]) -> list[RunSummary]:
         why = f"ends at {r.last:g}{' within a line' * (r.is_cut and cut_is_news)}, the others at {end}"
         return replace(
             r, status=Convergence.CRASHED, why=why, means={}, errors={}, units={}, headers={}, by_name=False, beside={},
-            unsure={}, patches={}, start=math.nan, start_unit="", window=0,
+            unsure={}, patches={}, start=math.nan, start_unit="", averaged="", window=0,
         )  # fmt: skip
 
     return [judged(r) for r in runs]
@@ -445,6 +446,7 @@ def _table(
     unit = next((r.start_unit for r in rows if r.start_unit), "-")
     columns.append(RawColumn(START, unit, _numbers([r.start for r in rows]), means=IGNORE))
     columns.append(_text(STATUS, [str(r.status) for r in rows]))
+    columns.append(_text(WINDOW, [r.averaged for r in rows]))
     columns.append(_text(ORIGIN, [_origin(r, known) for r in rows]))
     columns.append(_text(DOUBTFUL, [doubtful[r.name] for r in rows], means=DOUBTFUL))
     columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
@@ -460,10 +462,17 @@ def _table(
             "importer": importer,
             "runs": str(len(rows)),
             **({"version": ", ".join(versions)} if versions else {}),
+            **({WINDOW: averaged} if (averaged := _averaged(rows)) else {}),
         },
         stated=stated,
         remarks=tuple(more),
     )
+
+
+def _averaged(rows: Sequence[RunSummary]) -> str:
+    """What the means of all runs are over: one window, or where each run has its own."""
+    windows = {r.averaged for r in rows if r.averaged}
+    return windows.pop() if len(windows) == 1 else "a window of each run" if windows else ""
 
 
 def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:
@@ -571,6 +580,12 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], dict[str, st
                     f"{before.value} in {name} ({before.place}) and {one.value} in {r.name} ({one.place})",
                     "one value for all runs of a table", key=key, advice="Collect them into tables of their own.",
                 ))  # fmt: skip
+    halves = {HALF_MODEL in r.stated: r for r in rows if r.status.has_numbers}
+    if len(halves) > 1:
+        complaints.append(InputError(
+            f"a symmetry plane in {halves[True].name} ({halves[True].stated[HALF_MODEL].contradicted}) and none in {halves[False].name}",
+            "half of the body in all runs of a table, or in none", key=HALF_MODEL, advice="Collect them into tables of their own.",
+        ))  # fmt: skip
     if complaints:
         raise together(complaints)
     return {k: s for k, (_, s) in first.items() if k not in differing}, differing

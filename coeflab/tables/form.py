@@ -16,14 +16,25 @@ from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Question, without_unit
-from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_in, require_one_datum
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
+from coeflab.tables.settings import (
+    EXTRA,
+    SYMMETRY,
+    VISCOSITY,
+    Setting,
+    Settings,
+    against_words,
+    read_in,
+    require_one_datum,
+    reynolds,
+)  # fmt: skip
 from coeflab.tables.understood import Doubt, Understood
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
 KEY, VALUE = 25, 22  # letters
-GRAVE = ("axes.", "table.", "inertia.")
+SAID = (HALF_MODEL, SYMMETRY)  # of the keys of the campaign: what decides numbers
+GRAVE = ("axes.", "table.", "inertia.", *SAID)
 UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
 
 
@@ -111,11 +122,16 @@ def form(
     out = [*read_by, *column_lines(raw, found), *map(question_line, found.questions)]
     words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
-        if not key.startswith(UNSHOWN):
-            out.append(setting_line(key, one, found.about.get(key, key), words.get(key, "")))
+        if is_shown(key):
+            out.append(with_reynolds(setting_line(key, one, found.about.get(key, key), words.get(key, "")), settings))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
+
+
+def is_shown(key: str) -> bool:
+    """Whether the form has a line for a setting."""
+    return key in SAID or not key.startswith(UNSHOWN)
 
 
 def question_line(q: Question) -> Line:
@@ -134,12 +150,24 @@ def setting_line(key: str, one: Setting, about: str, against: str) -> Line:
     return Line(key, value, why, group, f"{about}. It is {value}: {one.origin}.")
 
 
+def with_reynolds(line: Line, settings: Settings) -> Line:
+    """The line of the viscosity with its unit and the Reynolds number, which show a dynamic one; any other as it is."""
+    if line.key.rpartition("/")[2] != VISCOSITY:
+        return line
+    number = reynolds(settings)
+    value = line.value if line.value.endswith("s") else f"{line.value} m^2/s"
+    said = "kinematic" if number is None else f"kinematic, Re = {number:.3g}"
+    return replace(line, value=value, why=f"{said}; {line.why}")
+
+
 def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
     """The lines of the columns."""
     doubts = {d.column.name: d for d in found.doubts}
     still = {column.name: offer for column, offer in found.open}
     for column, offer in zip(raw.columns, found.proposals, strict=True):
         name, span = column.name, _span(column)
+        if offer.certain and name in raw.dialect:  # told in the head of the form
+            continue
         if name in doubts:
             yield _doubtful(doubts[name])
         elif name in still:

@@ -31,6 +31,8 @@ CITATIONS = ("white1997", "conway1963", "flegal2010", "geyer1992", "wolff2004", 
 BATCH = 5  # of MSER-5
 LATEST = 0.5  # share of a history that may be left out
 NO_PLATEAU = 0.48  # MSER-5 at its own limit, half of the history
+JUMPS, RETURNS = 0.5, 0.1  # of the range of a cycle: medians of its steps, and of what is left of them after a period
+LONGEST_CYCLE = 4  # iterations
 LEAST_ROWS, LEAST_BATCHES, MOST_BATCHES = 40, 8, 30
 CALIBRATED_ROWS = (
     100  # on the plateau: the least for which docs/data_in_runs.md has the coverage of too short histories
@@ -249,6 +251,22 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     error = float(np.hypot(error, trend / np.sqrt(12.0))) if drifts else error
     status = Convergence.DRIFTING if drifts else Convergence.CONVERGED
     return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status, within / 2.0)
+
+
+def is_cycle(values: Array) -> bool:
+    """Whether iterations end in a cycle of a few: every so many the value comes back, and between it jumps.
+
+    Batch means of such a history are exact, and say nothing of where a solver that did converge would have ended.
+
+    Parameters
+    ----------
+    values : (m,) array
+        Of successive iterations.
+    """
+    within = float(np.ptp(values)) if len(values) >= LEAST_ROWS else 0.0
+    if not within > 0.0 or np.median(np.abs(np.diff(values))) < JUMPS * within:
+        return False
+    return any(np.median(np.abs(values[n:] - values[:-n])) <= RETURNS * within for n in range(2, LONGEST_CYCLE + 1))
 
 
 def scales(sizes: Mapping[str, float], groups: Mapping[str, str], length: float = 0.0) -> dict[str, float]:

@@ -21,14 +21,14 @@ from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import identifier, one_line
 from coeflab.law.symbols import CONTROL_COLUMNS
-from coeflab.tables.campaign import FILE, CampaignFile, read_campaign
+from coeflab.tables.campaign import FILE, CampaignFile, cut_of, read_campaign
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
 
@@ -101,6 +101,11 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         if section != "table":
             sections[section][name] = one.value
             comments[key] = one.origin
+    halves = [t.settings[HALF_MODEL].value if HALF_MODEL in t.settings else False for t in tables]
+    if len(set(map(str, halves))) > 1:
+        sections["campaign"].pop("half_model", None)
+    elif HALF_MODEL in common:
+        comments[HALF_MODEL] += _of_half(common[HALF_MODEL].value)
     sections["source"]["how_obtained"] = (
         ". ".join(
             [*filter(None, [str(sections["source"].get("how_obtained", ""))]), *(_how_obtained(t) for t in tables)]
@@ -127,6 +132,12 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
                 at_reference = key == ARM_POINT and one.value == REFERENCE
                 own[name] = t.settings[POINT_OF].value if at_reference else one.value
                 said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+        made_with = t.raw.stated.get("conditions.density")
+        if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
+            own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"
+        if HALF_MODEL in t.settings and len(set(map(str, halves))) > 1:
+            one = t.settings[HALF_MODEL]
+            own["half_model"], said["half_model"] = one.value, one.origin + _of_half(one.value)
         if t.settings[POINT_OF].value != common[POINT_OF].value:
             own["reference_point"], said["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
         declared.append((own, said))
@@ -138,6 +149,15 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         FILE: _campaign_text(sections, comments, declared, tables, source).encode(),
         SAVED: _saved(tables, settings).encode(),
     }
+
+
+def _of_half(half: bool | str) -> str:
+    """What becomes of the forces, for the comment beside half_model."""
+    cut = cut_of(half)
+    if cut is None:
+        return ": forces are of the whole body"
+    doubled, lost = ", ".join(cut.doubled), ", ".join(cut.lost)
+    return f": cut at {cut.plane}, {doubled} are doubled; {lost} left out"
 
 
 def _require_one(tables: Sequence[Filled], common: Settings) -> None:
@@ -227,7 +247,10 @@ def _campaign_text(
 
 
 HINTS = {
-    "campaign": ("half_model = true                       symmetry plane: X, Z, M are doubled; Y, K, N refused",),
+    "campaign": (
+        'half_model = "port"                     or "starboard", cut at y = 0: X, Z, M are doubled; Y, K, N refused',
+        'half_model = "upper"                    or "lower", cut at z = 0: X, Y, N are doubled; Z, K, M refused',
+    ),
     "conditions": ("viscosity = 1.05e-6                     m^2/s; for the Reynolds number",),
     "table": (
         "contains_inertia = true                 for a balance on a real rotating arm; then add [inertia]",

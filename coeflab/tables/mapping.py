@@ -19,7 +19,7 @@ from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import BLANK, SAME_DENSITY, Columns, force_table, speed_of_rows
 from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
@@ -28,7 +28,7 @@ ALL = "all"
 NO_FORCE = "no force column"
 MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
-SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
+SAME_VISCOSITY = 1e-2  # relative: by less than a degree of temperature
 
 
 @brief
@@ -152,6 +152,9 @@ def fault(
 ) -> InputError:
     """An error about a column of the file, or one cell of it, to be raised by the caller."""
     line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
+    if raw.path.is_dir():
+        line = 0
+        found = f"{found} in {row_name(raw, row)}" if row is not None else found
     return InputError(found, expected, file=raw.path, line=line or None, column=header(column), advice=advice)
 
 
@@ -327,7 +330,7 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     if column is None:
         return [forces if star else frozenset() for star in starred]
     used = {one.column.name for one in known}
-    own = {c.name: "" for c in raw.columns if c.name not in used | names | {ALL}}
+    own = {n: "" for c in raw.columns for n in (c.name, c.means) if n and n not in used | names | {ALL}}
     own |= {one.column.name: one.said.name for one in known if one.said.name in names and not one.said.error}
     out = []
     for row, text in enumerate(texts_of(column)):
@@ -381,6 +384,20 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     return InputError(
         f"conditions.density = {density:g} kg/m^3", f"{said.value:g}, the density that the forces were computed with "
         f"({said.place})", file=raw.path, column="conditions.density", advice=advice,
+    )  # fmt: skip
+
+
+def another_viscosity(raw: RawTable, viscosity: float) -> InputError | None:
+    """The complaint where a solver ran with a viscosity that the file states, and another one is declared."""
+    said = raw.stated.get("conditions.viscosity")
+    if said is None or said.offered or not isinstance(said.value, float):
+        return None
+    if abs(viscosity - said.value) <= SAME_VISCOSITY * abs(said.value):
+        return None
+    return InputError(
+        f"conditions.viscosity = {viscosity:g} m^2/s", f"{said.value:g}, the viscosity that the forces were computed with "
+        f"({said.place})", file=raw.path, column="conditions.viscosity",
+        advice="Leave it out: the Reynolds number of the runs is that of their viscosity, right or wrong.",
     )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import texts_of
 from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF, proposals
-from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError, Stated
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
 from coeflab.tables.settings import Setting, stated_settings
@@ -36,12 +36,13 @@ JOIN = "joined"  # option: tables of the same columns become one
 SPLIT = (
     "conditions.speed",
     "conditions.density",
+    HALF_MODEL,
     POINT_OF,
     "table.",
     "coefficients.",
     "columns.",
 )  # each table may have its own
-OWN_KEYS = f"table.centre, .arm_point, .contains_inertia, {POINT_OF}, conditions.speed, conditions.density, {AREA}, {LENGTH_OF}, {UNITS_OF}"
+OWN_KEYS = f"table.centre, .arm_point, .contains_inertia, {HALF_MODEL}, {POINT_OF}, conditions.speed, conditions.density, {AREA}, {LENGTH_OF}, {UNITS_OF}"
 ALONE = ("table.", "coefficients.")  # what one table has is no proposal for another
 _FORCE = re.compile(r"-?(?:[XYZKMN]|lift|drag|side)\b")
 _SETS = ("angle", "velocity", "radius", "control")  # what a row of a table of means has, and a record over time has not
@@ -384,7 +385,7 @@ def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
         if not all(s.offered for _, s in have):
             continue
         placed = {p.name: replace(s, place=f"{p.name}, {s.place}") for p, s in have}
-        if key.startswith("table."):
+        if key.startswith(("table.", HALF_MODEL)):
             for p, one in zip(parts, stated, strict=True):
                 if p.name in placed:
                     one[key] = placed[p.name]

@@ -8,11 +8,11 @@ from dataclasses import replace
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
-from coeflab.tables.form import UNSHOWN, Line, argument, column_lines, form, question_line, setting_line
+from coeflab.tables.form import Line, argument, column_lines, form, is_shown, question_line, setting_line, with_reynolds
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import Question
-from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import Setting, Settings, against_words, read_in
 from coeflab.tables.understood import Understood, understood
 from coeflab.tables.words.points import POINT_FROM, POINT_OF
@@ -63,7 +63,11 @@ def questions_together(
             out.append((key, replace(strong[0][1], default=whole)))
         elif len(values) > 1 and strong[0][1].harmless and len({q.default for q in named}) == 1:
             out.append((key, named[0]))
-        elif (len(values) > 1 and key.startswith(SPLIT)) or (key == POINT_OF and not values and _points_differ(parts)):
+        elif (
+            (len(values) > 1 and key.startswith(SPLIT))
+            or (key == POINT_OF and not values and _points_differ(parts))
+            or (key == HALF_MODEL and len(parts) > 1)
+        ):
             out += [(f"{p.name}/{key}", q) for p, q in have]
         elif len(values) > 1:
             each = "; ".join(f"{p.name}: {q.default} ({q.short or q.why})" for p, q in strong if q.default)
@@ -152,9 +156,9 @@ def form_together(
     about = {key: text for found in founds for key, text in found.about.items()}
     for key, one in settings.items():
         plain = key.rpartition("/")[2]
-        if not plain.startswith(UNSHOWN):
+        if is_shown(plain):
             line = setting_line(plain, one, about.get(plain, plain), words.get(plain, ""))
-            out.append(replace(line, key=key))
+            out.append(with_reynolds(replace(line, key=key), settings))
     taken: dict[str, int] = {} if numbers is None else numbers
     ordered = sorted(out, key=lambda line: line.group)
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)

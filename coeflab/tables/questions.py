@@ -12,15 +12,16 @@ from coeflab.core.axes import ANGLE_SIGNS, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.campaign import CENTRES
+from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
 from coeflab.tables.column_map import ROLES, read_column_map
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
-from coeflab.tables.raw_table import RawTable, Stated
+from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import (
     ARM_POINT,
     REFERENCE,
+    SYMMETRY,
     Setting,
     Settings,
     arm_by_words,
@@ -114,7 +115,7 @@ def questions(
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
         *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_halves(raw, settings), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -232,6 +233,25 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         yield Question(
             "axes.datum", asks, "nose, midship, cg ...", shown=follows, short="-2.1 from nose: nose", grave=True
         )
+
+
+def _of_halves(raw: RawTable, settings: Settings) -> Iterator[Question]:
+    """Which half of the body a domain with a symmetry plane holds, and what a body that may be cut there is."""
+    half = settings.get(HALF_MODEL)
+    if HALF_MODEL in raw.stated or half is not None:
+        yield Question(
+            HALF_MODEL, "Half of the body, whose forces are doubled: upper or lower of a cut at z = 0 (X, Y, N; Z, K, M are left out), "
+            "starboard or port of one at y = 0 (X, Z, M; Y, K, N are left out). false: the forces are of the whole body, as they are "
+            "doubled already or no symmetry plane cuts the body", "upper or lower (cut at z = 0) or starboard or port (y = 0): "
+            "forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
+        )  # fmt: skip
+    cut = cut_of(half.value) if half is not None else None
+    if cut is not None and cut.symmetry == UP_DOWN:
+        yield Question(
+            SYMMETRY, f"What the body is exactly: {', '.join(SYMMETRIES)}; half of one cut at {cut.plane} is {UP_DOWN}. A body that "
+            f"is {PORT_STARBOARD} too needs runs of one side only", f"{UP_DOWN}; or {UP_DOWN}, {PORT_STARBOARD}", UP_DOWN,
+            f"a body that is cut at {cut.plane}", f"cut at {cut.plane}; add {PORT_STARBOARD} where it holds", grave=True,
+        )  # fmt: skip
 
 
 def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Question]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 
+HALF_MODEL = "campaign.half_model"  # key of what a symmetry plane in the domain leaves open
 NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
 
 
@@ -102,7 +103,8 @@ class RawTable:
         What was recognised: ``delimiter``, ``decimal mark``, ``encoding``, ``sheet``, ``version`` ..., as people read it.
     stated : mapping of str to Stated
         What the files say of keys of campaign.toml: ``axes.frame``, ``axes.reference_point``, ``conditions.speed``,
-        ``conditions.density``, ``scaling.length``, ``table.contains_inertia``, ``source.how_obtained`` ...
+        ``conditions.density``, ``scaling.length``, ``table.contains_inertia``, ``source.how_obtained`` ...; under `HALF_MODEL`
+        the patches of a symmetry plane, which may be a cut through the body.
     remarks : tuple of str
         What was left out or mended, one sentence each, with file and line.
     """

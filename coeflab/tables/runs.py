@@ -33,13 +33,13 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
-from coeflab.tables.histories import Convergence, plateau
+from coeflab.tables.histories import Convergence, is_cycle, plateau
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 Progress = Callable[[str], None]
 STATE = "collected_runs.jsonl"
-STATE_KIND = "coeflab collected runs 2"
+STATE_KIND = "coeflab collected runs 3"
 DEEPEST, MOST_ENTRIES = 12, 500_000
 SHALLOW, MOST_SHALLOW = 2, 2_000  # levels of a run's folder, and their entries, that tell whether it changed
 STILL_WRITTEN = 2_000_000_000  # ns; what changed so shortly before it was read may change again unseen
@@ -81,6 +81,8 @@ class RunSummary:
     start : float
         Time or iteration at which the plateau begins; NaN without one.
     start_unit : str
+    averaged : str
+        The part of the history that the means are over, such as ``iterations 151 to 300``; empty without one.
     rows, window : int
         Of the history and of the plateau.
     iterations : float
@@ -115,6 +117,7 @@ class RunSummary:
     unsure: Mapping[str, bool] = field(default_factory=dict)
     start: float = math.nan
     start_unit: str = ""
+    averaged: str = ""
     rows: int = 0
     window: int = 0
     iterations: float = math.nan
@@ -231,7 +234,8 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
     name : str
         Under which it is listed.
     steady : bool
-        Of a solver that is known to be steady: no error is below what the range of its iterations allows.
+        Of a solver that is known to be steady: no error is below what the range of its iterations allows. Of others that holds
+        for iterations that end in a cycle, see `coeflab.tables.histories.is_cycle`.
     """
     history = run.history
     tables = (history, *run.patches.values())
@@ -266,6 +270,7 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
     if not found.status.has_numbers:
         return replace(common, status=found.status, why=found.why)
     start = float(at.values[found.start]) if at is not None else float(found.start)
+    counted = at is not None and at.means == "iteration"
     used = {id(at), *map(id, columns.values())}
     others = [c for c in history.columns if id(c) not in used and not c.is_text and not _RESIDUAL.search(c.name)]
     return replace(
@@ -273,7 +278,10 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
         status=found.status,
         why=found.why,
         means={c: m.value for c, m in found.means.items()},
-        errors={c: m.steady_error if steady else m.error for c, m in found.means.items()},
+        errors={
+            c: m.steady_error if steady or (counted and is_cycle(columns[c].values[found.start :])) else m.error
+            for c, m in found.means.items()
+        },
         units={c: k.unit for c, k in columns.items()},
         headers={c: k.name for c, k in columns.items()},
         by_name=by_name,
@@ -281,9 +289,19 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
         beside={c.name: (float(np.mean(c.values[found.start :])), c.unit) for c in others},
         start=start,
         start_unit=at.unit if at is not None else "",
+        averaged=_averaged(at, found.start, len(history)),
         window=found.rows,
         patches=_patches(run, start),
     )
+
+
+def _averaged(at: RawColumn | None, first: int, rows: int) -> str:
+    """The window of a mean from its first row to the end, in words."""
+    if at is None:
+        return f"rows {first + 1} to {rows}"
+    named = "iterations" if at.means == "iteration" else "times"
+    unit = f" {at.unit}" if at.unit not in ("", "-") else ""
+    return f"{named} {float(at.values[first]):.6g} to {float(at.values[-1]):.6g}{unit}"
 
 
 def _ends_within_a_line(file: Path) -> bool:

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -18,10 +19,10 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
-from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
+from coeflab.law.scaling import Scaling, doubtful_size, doubtful_viscosity, speaks_of_air
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
 
@@ -37,8 +38,10 @@ _KINDS = {
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 ARM_POINT = "table.arm_point"
+SYMMETRY = "campaign.symmetry"
 REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
+VISCOSITY = "conditions.viscosity"
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
@@ -122,6 +125,16 @@ def _flag(said: Any) -> bool:
     return found
 
 
+def _half(said: Any) -> bool | str:
+    words = {"yes": True, "no": False, "whole": False}
+    plain = said.strip().casefold() if isinstance(said, str) else said
+    return campaign.half_of_body(words.get(plain, plain) if isinstance(plain, str) else plain)
+
+
+def _listed(said: Any) -> Any:
+    return [word for part in said.split(",") if (word := part.strip(" \"'[]"))] if isinstance(said, str) else said
+
+
 def _measured(dimension: str) -> Callable[[Any], Any]:
     def read(said: Any) -> Any:
         if not quantity(said, dimension) > 0.0:
@@ -163,6 +176,8 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "conditions.density": _measured("density"),
     "conditions.speed": _measured("speed"),
     "table.contains_inertia": _flag,
+    **dict.fromkeys((HALF_MODEL, "table.half_model"), _half),
+    SYMMETRY: lambda said: list(campaign.SYMMETRY_WORDS.read(_listed(said), Path())),
     "source.kind": _one_of(*TABLE_KINDS),
     **dict.fromkeys(
         ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
@@ -412,14 +427,30 @@ def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
     """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
     one = settings[key]
     sizes = {key: _SIZES[key] for key in ("conditions.density", "conditions.speed", "scaling.length")}
+    if key == VISCOSITY and "conditions.density" in settings:
+        with suppress(InputError):
+            nu, rho = quantity(one.value, "viscosity"), quantity(settings["conditions.density"].value, "density")
+            return doubtful_viscosity(nu, rho)
     if key not in sizes or one.origin.startswith("stated"):
         return ""
     texts = [
         raw.path.name,
         raw.dialect.get("importer", ""),
-        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source."))),
+        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source.")) and isinstance(s.value, str)),
     ]
     return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
+
+
+def reynolds(settings: Settings) -> float | None:
+    """U L / nu by what is said so far; None while one of them is open."""
+    found = [settings.get(key) for key in ("conditions.speed", "scaling.length", VISCOSITY)]
+    with suppress(InputError, ZeroDivisionError):
+        speed, length, nu = (
+            quantity(one.value, dimension) if one is not None else np.nan
+            for one, dimension in zip(found, ("speed", "length", "viscosity"), strict=True)
+        )
+        return None if np.isnan(speed * length * nu) else speed * length / nu
+    return None
 
 
 def frame_of(settings: Settings) -> Axes | None:

@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import angle_sign
+from coeflab.core.axes import Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
-from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
 from coeflab.tables.force_table import Exclusion, ForceTable
 
@@ -83,12 +83,16 @@ class Columns:
     def fail(
         self, found: str, expected: str, *, row: int | None = None, name: str = "", advice: str = ""
     ) -> InputError:
-        """An error about one cell, a column or the header, to be raised by the caller."""
+        """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
+        is_folder = self.file.is_dir()
+        line = None if is_folder else self.header_line or None if row is None else self.lines[row]
+        if is_folder and row is not None and self.row_labels:
+            found = f"{found} in {self.row_labels[row]}"
         return InputError(
             found,
             expected,
             file=self.file,
-            line=self.header_line if row is None else self.lines[row],
+            line=line,
             column=self.headers.get(name, name) or None,
             advice=advice,
         )
@@ -147,8 +151,8 @@ def _first(where: NDArray[np.bool_]) -> int | None:
 
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
-SYMMETRIC = ("X", "Z", "M")
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
+SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
@@ -183,7 +187,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(
             f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
         )
-    sources = _sources(campaign)
+    sources = columns_of(campaign.axes)
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
     errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
@@ -192,10 +196,10 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if table.arm_point is not None and np.any(table.arm_point != point):
         notes.append(f"U and velocities are those of {_place(table.arm_point)}, moved from there")
     half = campaign.half_model if table.half_model is None else table.half_model
-    if half:
-        _require_symmetry(columns, forces, motion)
+    if (cut := cut_of(half)) is not None:
+        _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: X, Z, M doubled")
+        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
@@ -246,7 +250,15 @@ def _place(point: Array) -> str:
 
 
 def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -> Iterator[InputError]:
-    """Everything that campaign.toml leaves open or contradicts about a table on an arm."""
+    """Everything that campaign.toml leaves open or contradicts about a table: the density of its forces, and an arm."""
+    made, declared = table.forces_density, campaign.conditions.density
+    in_newton = any(not columns.headers.get(c, c).startswith(f"{c}'") for c in columns.forces)
+    if made is not None and columns.density is None and in_newton and abs(declared - made) > SAME_DENSITY * made:
+        yield InputError(
+            f"density = {declared:g} kg/m^3", f"{made:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
+            advice="Primes are right with the density that the forces were computed with. To state them at another, import the runs "
+            f"again with --option density={declared:g}.",
+        )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
     if columns.radius is not None:
         if rates:
@@ -349,7 +361,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
         A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
         flow itself; X or Z of the body beside drag, or Y beside side.
     """
-    sources = _sources(campaign)
+    sources = columns_of(campaign.axes)
     if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
         raise together(complaints)
     linear = _linear(columns, campaign)
@@ -476,27 +488,28 @@ def speed_of_rows(
     return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
 
 
-def _sources(campaign: Campaign) -> dict[str, tuple[str, float]]:
+def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:
     """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
     out = {}
     for group in (COMPONENTS[:3], COMPONENTS[3:]):
         for i, name in enumerate(group):
-            j = int(np.argmax(np.abs(campaign.axes.rotation[i])))
-            out[name] = group[j], float(campaign.axes.rotation[i, j])
+            j = int(np.argmax(np.abs(axes.rotation[i])))
+            out[name] = group[j], float(axes.rotation[i, j])
     return out
 
 
-def _require_symmetry(columns: Columns, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
-    """Refuse what a half model cannot measure."""
-    odd = [c for c in forces if c not in SYMMETRIC]
-    moving = [m for m in ("v", "p", "r") if np.any(motion[m] != 0.0)]
-    moving += [c for c in ("dr",) if np.any(columns.controls.get(c, 0.0) != 0.0)]
+def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
+    """Refuse what half of a body cannot measure."""
+    odd = [c for c in forces if c in cut.lost]
+    moving = [m for m in cut.across if np.any(motion[m] != 0.0)]
+    moving += [c for c in cut.controls if np.any(columns.controls.get(c, 0.0) != 0.0)]
     if odd or moving:
         what = f"the antisymmetric {', '.join(odd)}" if odd else f"motion {', '.join(moving)}"
+        remedy = "leave these columns out (ignore), or " if odd else ""
         raise columns.fail(
-            f"{what} on a half model",
-            "X, Z, M in symmetric flow",
-            advice="A symmetry plane cannot carry side force, roll or yaw; compute the whole model for those.",
+            f"{what} on a half model cut at {cut.plane}",
+            f"{', '.join(cut.doubled)} in flow along the plane {cut.plane}",
+            advice=f"A symmetry plane at {cut.plane} cannot carry {cut.carries_no}: {remedy}compute the whole model for those.",
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,12 +14,14 @@ from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
+from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
 from coeflab.tables.mapping import (
     NO_FORCE,
     Assigned,
     another_density,
+    another_viscosity,
     assigned,
     entry_of,
     error_of,
@@ -28,12 +31,14 @@ from coeflab.tables.mapping import (
 )
 from coeflab.tables.proposals import Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, questions
-from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
+from coeflab.tables.settings import EXTRA, VISCOSITY, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 MOST_IDLE = 5  # columns that a warning names
 FEWEST_SPEEDS = 3  # of straight runs that give X0'
+LOST = "of half of the body"  # why a column of it is left out
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +121,8 @@ def understood(
         Columns whose sign a person has settled, by default all of ``said``.
     """
     offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
+    cut = _cut_of(settings)
+    offers = tuple(_of_half(one, cut, frame_of(_with_frame(raw, settings))) for one in offers) if cut else offers
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()
@@ -145,6 +152,11 @@ def understood(
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
+    lost = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(LOST) and "se_" not in c.name]
+    if cut is not None:
+        shows += (Evidence(
+            f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(lost)} left out" * bool(lost)
+        ),)  # fmt: skip
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
@@ -155,6 +167,11 @@ def understood(
         other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
         complaints += (other,) if other else ()
     complaints += tuple(_two_ways(raw, columns))
+    if VISCOSITY in settings:
+        with suppress(InputError):  # a text that is no viscosity is complained of with the whole campaign
+            complaints += tuple(
+                filter(None, [another_viscosity(raw, quantity(settings[VISCOSITY].value, "viscosity"))])
+            )
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns
@@ -167,6 +184,21 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def _cut_of(settings: Settings) -> Cut | None:
+    """The cut of a body of which the table has one half."""
+    half = settings.get("table.half_model") or settings.get(HALF_MODEL)
+    return cut_of(half.value) if half is not None else None
+
+
+def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
+    """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
+    said = read_column_map(offer.text.partition(" [")[0]) if offer.text else None
+    own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.lost}
+    if said is None or said.role not in ("force", "error") or said.name not in [own[c] for c in cut.lost]:
+        return offer
+    return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {said} of the whole is not known", certain=True)
 
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:

@@ -23,7 +23,7 @@ from coeflab.core.types import Array, brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import natural, one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
-from coeflab.tables.campaign import FILE, FOURFOLD
+from coeflab.tables.campaign import CUTS, FILE, FOURFOLD, PORT_STARBOARD, UP_DOWN
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.runs import RunSummary, summarised
@@ -37,7 +37,9 @@ RUNS, HISTORIES = "runs.csv", "histories"
 HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
 CONVERGED = "converged"
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
-REPORTED = {Half.WHOLE: tuple(COMPONENTS), Half.UPPER: ("X", "Y", "N"), Half.PORT: ("X", "Z", "M")}
+REPORTED = {
+    Half.WHOLE: tuple(COMPONENTS), Half.UPPER: CUTS[UP_DOWN].doubled, Half.PORT: CUTS[PORT_STARBOARD].doubled,
+}  # fmt: skip
 LABELS = ("kind", "grid", "half", "status")
 VARIANT = "variant"
 LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}

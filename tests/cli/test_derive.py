@@ -51,6 +51,15 @@ def test_files_are_written_and_the_same_again(
     assert flat(again.stdout).count(": unchanged") == 2
 
 
+def test_a_parameter_file_is_no_vehicle_with_an_arm(coeflab: Run, tmp_path: Path) -> None:
+    (tmp_path / "one.parameters.json").write_text("{}")
+    done = coeflab("derive", "one.parameters.json", "--to", "latex")
+    assert done.returncode == 2
+    said = flat(done.stderr)
+    assert "expected a vehicle with an arm: the name of a shipped one, or its body.toml" in said
+    assert "valid TOML" not in said
+
+
 @pytest.mark.slow
 def test_every_language_and_json(coeflab: Run, one_link: Path, tmp_path: Path) -> None:
     for language, ending, symbols in (

@@ -100,6 +100,40 @@ def test_half_model_doubles_and_refuses(read_table: Read) -> None:
     assert read_table("v [m/s],q [rad/s],Z [N]\n0,0.1,1\n", campaign=half, table=ARM).forces["Z"][0] == 2.0
 
 
+UPPER = SECTIONS["campaign"] + '\nsymmetry = ["up-down"]\nhalf_model = "upper"'
+
+
+@pytest.mark.parametrize("half", ["upper", "lower"])
+def test_half_of_a_body_cut_at_z_0_doubles_x_y_n(read_table: Read, half: str) -> None:
+    csv = "v [m/s],r [rad/s],delta_r [deg],X [N],Y [N],N [N*m],se_Y [N]\n0.2,0.1,3,-3,-4,5,0.25\n"
+    table = read_table(csv, campaign=UPPER.replace("upper", half), table=ARM)
+    assert [float(table.forces[c][0]) for c in "XYN"] == [-6.0, -8.0, 10.0]
+    assert table.errors["Y"][0] == 0.5
+    assert f"half model ({half}): X, Y, N doubled" in table.notes
+
+
+def test_half_of_a_body_cut_at_z_0_refuses_what_leaves_that_plane(read_table: Read) -> None:
+    for component, unit in (("Z", "N"), ("K", "N*m"), ("M", "N*m")):
+        found = f"antisymmetric {component} on a half model cut at z = 0.*normal force, roll or pitch.*ignore"
+        with pytest.raises(InputError, match=found):
+            read_table(f"beta [deg],{component} [{unit}]\n2,1\n", campaign=UPPER)
+    moving = {"w [m/s]": "w", "p [rad/s]": "p", "q [rad/s]": "q", "delta_s [deg]": "ds"}
+    for header, name in moving.items():
+        with pytest.raises(InputError, match=f"motion {name} on a half model cut at z = 0"):
+            read_table(f"{header},Y [N]\n0.1,1\n", campaign=UPPER, table=ARM)
+
+
+def test_a_cut_at_z_0_needs_declared_up_down_symmetry(read_table: Read) -> None:
+    csv = "beta [deg],Y [N]\n2,1\n"
+    with pytest.raises(InputError, match="without declared up-down symmetry") as found:
+        read_table(csv, campaign=SECTIONS["campaign"] + '\nhalf_model = "lower"')
+    assert "campaign.half_model" in str(found.value)
+    assert 'symmetry = ["up-down"]' in str(found.value)
+    with pytest.raises(InputError, match="without declared up-down symmetry") as found:
+        read_table(csv, campaign=SECTIONS["campaign"] + '\nsymmetry = ["port-starboard"]', table='half_model = "upper"')
+    assert "table[0].half_model" in str(found.value)
+
+
 def test_inertia_of_a_rotating_arm_flips_the_sign_of_suboff(read_table: Read) -> None:
     """A balance with m' = .0174 reads (Yr' - m') = -.0130; the fluid's part is Yr' = +.0044."""
     mass = 0.0174 * 0.5 * 1000.0 * 4.0**3

@@ -16,6 +16,7 @@ from coeflab.tables.histories import (
     TIMES_A_BATCH,
     Convergence,
     Plateau,
+    is_cycle,
     long_run_variance,
     mean_of,
     plateau,
@@ -148,6 +149,19 @@ def test_the_cycles_of_a_steady_solver_are_known_to_their_range_however_long_the
     assert [m.steady_error for m in found] == pytest.approx([8.7e-5 / 2.0, 5.9e-4 / 2.0], rel=1e-6)
     assert abs(found[0].value - found[1].value) <= np.hypot(found[0].steady_error, found[1].steady_error)
     assert abs(found[0].value - found[1].value) > 3.0 * np.hypot(found[0].error, found[1].error)
+
+
+def test_a_cycle_of_iterations_is_told_from_noise_and_from_a_smooth_approach() -> None:
+    rng = np.random.default_rng(11)
+    t = np.arange(150)
+    settling = np.exp(-t / 15.0)
+    for cycle in ([1.0, -1.0], [1.0, -0.3, 0.99, -0.29], [1.0, -1.0, 0.2]):
+        y = 40.0 + 1e-4 * np.resize(cycle, 150)
+        assert is_cycle(y)
+        assert is_cycle(y + 1e-6 * rng.normal(size=150))
+    for y in (settling, np.full(150, 3.0), rng.normal(size=150), np.sin(t / 5.0), 40.0 + 1e-4 * t, t[:30] % 2.0):
+        assert not is_cycle(y)
+    assert not any(is_cycle(row) for row in noise(rng, 200, -0.5, 50))
 
 
 def test_short_constant_and_single_histories() -> None:

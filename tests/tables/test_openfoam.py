@@ -148,6 +148,8 @@ def test_two_groups_without_the_whole_are_asked_about(case: Callable[[str], Path
     np.testing.assert_allclose(forces(sail.history)[:, :3], 0.25 * WHOLE[:, :3])
     assert "leave out the walls hull" in remarks(sail)
     assert "leave out" not in remarks(both)
+    with pytest.raises(InputError, match=r"found hull twice; expected every function object once.*half_model"):
+        read(folder, function="hull hull")
     with pytest.raises(InputError, match='no forces of the function object "fin"'):
         read(folder, function=["fin"])
 

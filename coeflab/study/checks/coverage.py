@@ -74,18 +74,21 @@ def _sides(s: Sweep) -> Check | None:
     return None
 
 
-def _extrapolation(s: Sweep) -> Check | None:
-    """The slope at the origin is an extrapolation when no run lies near it."""
+def _extrapolation(s: Sweep, tables: Sequence[ForceTable]) -> Check | None:
+    """The slope at the origin is an extrapolation when no run lies near it; one at zero gives none by a declared symmetry."""
     size = np.abs(s.x)
     if not len(size) or size.max() == 0.0 or size.min() <= 0.25 * size.max():
         return None
+    moved = [t.primed_motion(s.variable, t.scaling.length) for t in tables if t.name == s.table]
+    has_zero = bool(s.symmetry) and any(np.any(np.abs(x) <= AT_REST) for x in moved)
+    at_zero = f": the run at zero gives no slope, as it is zero by declared {s.symmetry} symmetry" if has_zero else ""
     return Check(
         "coverage",
         f"{s.table} {s.variable}'",
         Severity.WARN,
         f"smallest |{s.variable}'| = {size.min():.3g}, largest {size.max():.3g}",
         "a run within a quarter of the range from zero",
-        "The value at the origin is extrapolated. Run smaller angles or rates.",
+        f"The value at the origin is extrapolated{at_zero}. Run smaller angles or rates.",
     )
 
 
@@ -181,6 +184,6 @@ def check(study: Study) -> Sequence[Check]:
             out.append(_points(s, f.coefficients[s.symbol].status))
             if s.by_symmetry:  # a copy has the findings of its source
                 continue
-            found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + replicates(s, groups)
+            found = [c for c in (_sides(s), _extrapolation(s, study.tables)) if c is not None] + replicates(s, groups)
             out += [c for c in found if c not in out]
     return out

@@ -13,6 +13,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.text.foam import Foam, FoamCase
+from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables import openfoam_case as of
 from coeflab.tables.openfoam_forces import (
@@ -25,7 +26,7 @@ from coeflab.tables.openfoam_forces import (
     moved,
     oriented,
 )
-from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
 citations = (
@@ -89,6 +90,11 @@ def _whole(case: FoamCase, found: Mapping[str, bool], parts: Mapping[str, Foam],
         raise InputError(
             f"no forces of the function object {shown(missing[0])}", f"one of {names}", file=case.root,
             column="function",
+        )  # fmt: skip
+    if twice := repeated(asked):
+        raise InputError(
+            f"{listed(twice)} twice", "every function object once", file=case.root, column="function",
+            advice="Several names are added: twice would be twice its forces. For half of a body: campaign.half_model.",
         )  # fmt: skip
     if asked:
         return list(asked)
@@ -270,6 +276,9 @@ def _stated(
         out["conditions.density"] = Stated(*density)
     if point is not None:
         out["axes.reference_point"] = Stated(tuple(point[0]), point[1])
+    if mirrors := of.mirror_patches(case):
+        place = mirrors.partition(": ")[0]
+        out[HALF_MODEL] = Stated("symmetry plane", place, offered=True, contradicted=mirrors)
     speed = history.facts.get("magUInf")
     if "U" in conditions:
         out["conditions.speed"] = conditions["U"]

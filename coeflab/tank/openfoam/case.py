@@ -24,6 +24,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all, write_atomically
 from coeflab.core.types import Array
+from coeflab.tables.campaign import CUTS, PORT_STARBOARD, UP_DOWN
 from coeflab.tank.openfoam import rendered
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, TowCondition
@@ -35,7 +36,7 @@ C_MU = 0.09
 FOOT = b"// ****"  # with which OpenFOAM ends every field that it has written whole
 STOP_AT = re.compile(r"^(stopAt\s+)\w+;", re.MULTILINE)
 # The image in the cut has the same; of the others it has the opposite, so that they vanish in the sum of both.
-EVEN = {Half.PORT: ("X", "Z", "M"), Half.UPPER: ("X", "Y", "N")}
+EVEN = {Half.PORT: CUTS[PORT_STARBOARD].doubled, Half.UPPER: CUTS[UP_DOWN].doubled}
 ACROSS = {Half.PORT: 1, Half.UPPER: 2}
 SAME = 0.01  # of the length and of the area: how well the image of a patch has to fit the patch on the other side
 ON_PLANE = 1e-5  # of the body's length: what ends this near to the plane of the cut does not cross it

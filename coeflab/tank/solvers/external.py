@@ -22,6 +22,7 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS
+from coeflab.tables.campaign import CUTS, PORT_STARBOARD, UP_DOWN
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tank.jobs import Job
 from coeflab.tank.solvers import Installation
@@ -34,7 +35,8 @@ citations = ()
 
 FOLDER, LIST, FORCES = "external", "run_list.csv", "forces.csv"
 CONDITION, COUNTS = "condition", ("cells", "iterations")
-BY_SYMMETRY = {Half.WHOLE: "", Half.UPPER: "Z K M", Half.PORT: "Y K N"}  # zero, and not to be filled in
+LOST = {Half.UPPER: CUTS[UP_DOWN].lost, Half.PORT: CUTS[PORT_STARBOARD].lost}
+BY_SYMMETRY = {Half.WHOLE: "", **{h: " ".join(c) for h, c in LOST.items()}}  # zero, and not to be filled in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
