@@ -163,15 +163,7 @@ def understood(
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
-    if "conditions.density" in settings:
-        other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
-        complaints += (other,) if other else ()
-    complaints += tuple(_two_ways(raw, columns))
-    if VISCOSITY in settings:
-        with suppress(InputError):  # a text that is no viscosity is complained of with the whole campaign
-            complaints += tuple(
-                filter(None, [another_viscosity(raw, quantity(settings[VISCOSITY].value, "viscosity"))])
-            )
+    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns))
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns
@@ -184,6 +176,17 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def _another_water(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> Iterator[InputError]:
+    """A stated density or viscosity that is not the one that the runs were computed with."""
+    if "conditions.density" in settings:
+        other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
+        yield from (other,) if other else ()
+    if VISCOSITY in settings:
+        with suppress(InputError):  # a text that is no viscosity is complained of with the whole campaign
+            different = another_viscosity(raw, quantity(settings[VISCOSITY].value, "viscosity"))
+            yield from (different,) if different else ()
 
 
 def _cut_of(settings: Settings) -> Cut | None:
