@@ -228,14 +228,19 @@ FIXED = replace(SLOPE, symbol="Nv", status=Status.FORM_ASSUMED)
 def test_u95_of_a_fixed_form_is_not_said_to_be_that_of_a_slope():
     only = noun_tables.coefficients([FIXED])
     assert not any(COVERS in note or "slope at the origin" in note for note in only.notes)
-    assert only.notes[0].startswith("U95 of a fixed form:") and only.notes[-1].startswith("form assumed: ")
+    assert only.notes[0].startswith("U95 of a fixed form:")
+    assert only.notes[-1].startswith("form assumed: ")
     both = noun_tables.coefficients([SLOPE, FIXED])
-    assert COVERS in both.notes[0] and both.notes[1].startswith("U95 of a fixed form:")
+    assert COVERS in both.notes[0]
+    assert both.notes[1].startswith("U95 of a fixed form:")
     at = both.headers.index("status")
-    assert [row[at] for row in both.rows] == ["-", "form assumed"] and at in both.left
+    assert [row[at] for row in both.rows] == ["-", "form assumed"]
+    assert at in both.left
     assert all(len(row) == len(both.headers) for row in both.rows)
     slopes = noun_tables.coefficients([SLOPE, OPEN])
-    assert "status" not in slopes.headers and COVERS in slopes.notes[0] and len(slopes.notes) == 2
+    assert "status" not in slopes.headers
+    assert COVERS in slopes.notes[0]
+    assert len(slopes.notes) == 2
 
 
 def test_the_note_on_an_open_sign_names_its_rows():
