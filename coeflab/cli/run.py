@@ -110,6 +110,9 @@ def summarise(study: Study, folder: Path) -> None:
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)
+        for source in tables.sources(study):
+            show.sentence(source)
+        show.text()
     else:
         _tows(study)
         for each in model_tables.qualities(models):

@@ -294,9 +294,15 @@ def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
         digits = "The first page has the digits of the test report itself."
-        return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
+        return f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits} {r.note}".strip()
     another = "by another method for the same body" if r.body in ours else "for another body"
-    return f"{r.name}: {another}, {r.body}. Source: {r.place or r.citation}. {r.note}".strip()
+    return f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}. {r.note}".strip()
+
+
+def _printed_in(r: Reference) -> str:
+    """Where a reference is printed; of a work that is no key its text as well."""
+    of = r.citation if work(r.citation) == r.citation else ""
+    return ", ".join(filter(None, (of, r.place))) or r.citation
 
 
 def campaigns(study: Study) -> Table:
@@ -485,6 +491,16 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     keys += [k for made in study.manoeuvres for k in made.citations]
     keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
+
+
+def sources(study: Study) -> tuple[str, ...]:
+    """Where the measured and computed tables and the published values come from, a sentence a work with the places in it."""
+    places: dict[str, dict[str, None]] = {}
+    for key, place in [(t.source.citation, t.source.place) for t in study.tables] + [
+        (r.citation, r.place) for r in study.references
+    ]:
+        places.setdefault(key, {}).update({place: None} if place else {})
+    return tuple(f"Source: {work(key)} {'; '.join(where)}".strip() for key, where in places.items())
 
 
 def _of(components: Sequence[str], table: ForceTable) -> str:
