@@ -191,7 +191,7 @@ def _folding(table: Table) -> set[int]:
     """Columns of text that fold: long ones, and where the line has no room others that have words."""
     widths = _widths(table)
     folds = {i for i in table.left if i < len(widths) and widths[i] > WIDE}
-    for i in sorted(table.left - folds, key=lambda i: (-widths[i], i)):
+    for i in sorted((table.left - folds) & set(range(len(widths))), key=lambda i: (-widths[i], i)):
         if _room(table, folds) <= LINE:
             break
         if widths[i] > NARROW and any(" " in row[i] for row in table.rows):

@@ -37,6 +37,7 @@ from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
+from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
@@ -98,7 +99,10 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         place,
         title,
         tuple(text),
-        filled(*(() if again else (tables.coefficients(study, fit.campaign),)), joint_tables.campaigns((fit,))),
+        filled(
+            *(() if again else (source_tables.declared(mine), tables.coefficients(study, fit.campaign))),
+            joint_tables.campaigns((fit,)),
+        ),
         tuple(
             incidence_figure(t, rate, study.body, anchor(f"{place} {t.name} {rate}", taken))
             for t in mine

@@ -493,16 +493,6 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
 
 
-def sources(study: Study) -> tuple[str, ...]:
-    """Where the measured and computed tables and the published values come from, a sentence a work with the places in it."""
-    places: dict[str, dict[str, None]] = {}
-    for key, place in [(t.source.citation, t.source.place) for t in study.tables] + [
-        (r.citation, r.place) for r in study.references
-    ]:
-        places.setdefault(key, {}).update({place: None} if place else {})
-    return tuple(f"Source: {work(key)} {'; '.join(where)}".strip() for key, where in places.items())
-
-
 def _of(components: Sequence[str], table: ForceTable) -> str:
     whole = "" in components or (len(components) > 1 and set(components) >= set(table.forces))
     return "row" if whole else " ".join(components)
