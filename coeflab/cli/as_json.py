@@ -28,6 +28,7 @@ from coeflab.report.tables import next_runs as next_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
+from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.inertia import WaterInertia
 
 
@@ -244,6 +245,27 @@ def tow(found: Towed) -> dict[str, Any]:
     }
 
 
+def declared(t: ForceTable) -> dict[str, Any]:
+    """What its campaign.toml says of a table."""
+    d = t.declared
+    return {
+        "table": t.name,
+        "frame": d.frame if d else None,
+        "signs": dict(d.signs) if d else {},
+        "signs_assumed": list(t.assumed),
+        "reference_point": list(d.reference_point) if d else None,
+        "datum": t.datum.id,
+        "length": t.scaling.length,
+        "length_name": t.scaling.length_name,
+        "density": t.conditions.density,
+        "speed": t.conditions.speed,
+        "symmetry": list(t.symmetry),
+        "source": t.source.citation,
+        "source_sha256": (d.source_sha256 if d else "") or None,
+        "notes": (d.notes if d else "") or None,
+    }
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -273,6 +295,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             for c in s.comparisons
         ],
         "tows": [tow(t) for t in towed(s)],
+        "campaigns": [declared(t) for t in s.tables if t.declared is not None],
         "law_at_points": {
             name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
         },

@@ -41,7 +41,9 @@ def command(
     from coeflab.vehicle.comparison import compare
     from coeflab.vehicle.parameter_file import read_parameter_file
 
-    found = compare(read_parameter_file(first), read_parameter_file(second))
+    files = read_parameter_file(first), read_parameter_file(second)
+    alike = files[0].name == files[1].name
+    found = compare(*files, (str(first), str(second)) if alike else None)
     if json:
         show.json_object(as_json(found))
     else:

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -128,7 +128,7 @@ def command(
     if json:
         from coeflab.cli import as_json
 
-        out = as_json.study(study, [])
+        out = _only(as_json.study(study, []), wanted)
         if next_runs:
             out["next"] = as_json.next_runs(study, wanted, next_runs)
         show.json_object(out)
@@ -178,6 +178,15 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
         else:
             out[key] = text
     return out
+
+
+def _only(told: dict[str, Any], symbols: list[str]) -> dict[str, Any]:
+    """The object of a study with nothing but the wanted coefficients, where any are."""
+    from coeflab.law.symbols import primed
+
+    named = set(map(primed, symbols))
+    parts = ("coefficients", "comparisons") if named else ()
+    return told | {part: [c for c in told[part] if c["symbol"] in named] for part in parts}
 
 
 def _refuse_strange(study: Study, symbols: list[str]) -> None:

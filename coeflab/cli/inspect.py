@@ -111,7 +111,7 @@ def _is_raw(table: str) -> bool:
 def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Sequence[tuple[str, str]]) -> None:
     """What a file is before anybody said what it means, and what is missing to read it as a campaign.
 
-    The next command repeats what was given, as it was given.
+    The next command repeats what was given, as it was given, and names what is open.
     """
     import shlex
 
@@ -137,9 +137,9 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     founds = understood_together(parts, {}, settings)
     lines = form_together(parts, founds, settings, [one.line for one in chosen], whole=path.resolve().name)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
-    following = " ".join(
-        ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given), f"--out {out}"]
-    )
+    words = ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given)]
+    still = [one.argument for one in open_lines(lines)]
+    following = " ".join([*words, f"--out {out}", *still, *(["--accept"] if still else [])])
     if json:
         from coeflab.report.tables.raw_tables import as_json
 
@@ -159,6 +159,8 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
         show.lines(line)
     show.text()
     show.command_line("Next", following)
+    if still:
+        show.sentence(f"{len(still)} open: replace each ? by its value. --accept takes the proposals shown.")
 
 
 def _run_importer(path: Path, importer: str) -> str:

@@ -97,6 +97,7 @@ def summarise(study: Study, folder: Path) -> None:
     from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import results as tables
+    from coeflab.report.tables import sources as source_tables
 
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
@@ -110,6 +111,9 @@ def summarise(study: Study, folder: Path) -> None:
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)
+        for source in source_tables.sources(study):
+            show.sentence(source)
+        show.text()
     else:
         _tows(study)
         for each in model_tables.qualities(models):

@@ -51,6 +51,7 @@ from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
+from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
 from coeflab.study.validation import validations
@@ -388,9 +389,9 @@ def _checks(study: Study) -> Section:
 
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
-    inputs = filled(tables.provenance(study))
+    inputs = filled(tables.provenance(study), source_tables.made_from(study))
     said = PROVENANCE
-    if many := (files := sum(len(t.rows) for t in inputs)) > MANY:
+    if many := (files := len(study.inputs)) > MANY:
         said = f"{files} input files; --full lists their sha256."
     text = (said, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))
     whole = (Section("inputs", "All inputs", tables=inputs, appendix=True),) if many else ()

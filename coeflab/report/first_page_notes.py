@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from coeflab.core.axes import point_in_words
+from coeflab.core.provenance import work
 from coeflab.core.types import brief
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.glide_polar import munk_in_words
@@ -112,10 +113,14 @@ def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str
     heads = {n.rpartition(" ")[0] for n in names}
     same = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
     whose = _several(same, [n.rpartition(" ")[2] for n in names]) if same else listed(names)
-    whose = whose or "the authors' values, same points"
-    places = [r.place.split(", ") for r in reports]
-    shared = ", ".join(parts[0] for parts in zip(*places) if len(set(parts)) == 1) if places else ""
-    return f"{column.name}: {whose}{f' ({shared})' * bool(shared)}{each}."
+    if whose == column.name:  # named as the column is: what it is stands in its citation
+        whose = "; ".join(dict.fromkeys(", ".join(filter(None, (work(r.citation), r.place))) for r in reports))
+    elif reports:
+        parts = zip(*(r.place.split(", ") for r in reports), strict=False)
+        shared = ", ".join(same[0] for same in parts if len(set(same)) == 1)
+        whose += f" ({shared})" * bool(shared)
+    whose = (whose or "the authors' values, same points").removesuffix(".")
+    return f"{column.name}: {whose}{each}."
 
 
 NOUNS = ("configuration", "condition", "model", "series", "table", "test")

@@ -509,6 +509,7 @@ class Campaign:
     planar_motion: PlanarMotionKeys | None = None
     symmetry: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
+    notes: str = ""
 
     def __post_init__(self) -> None:
         for name in ("signs", "columns", "options"):
@@ -562,4 +563,5 @@ def read_campaign(path: Path) -> Campaign:
         planar_motion=file.planar_motion,
         symmetry=head.symmetry,
         assumed=axes.assumed,
+        notes="" if head.notes is None else Verbatim(head.notes),
     )

@@ -71,6 +71,31 @@ class Exclusion:
     of_source: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """What campaign.toml says of a table, before it is turned to FRD and moved.
+
+    Attributes
+    ----------
+    frame : str
+        Axes of its columns.
+    signs : tuple of (str, str)
+        Angle and formula of its sign.
+    reference_point : tuple of float
+        Of its moments, m, FRD, from the datum.
+    notes : str
+        Of the campaign, for people.
+    source_sha256 : str
+        Of the file that the table was made from.
+    """
+
+    frame: str
+    signs: tuple[tuple[str, str], ...]
+    reference_point: tuple[float, ...]
+    notes: str = ""
+    source_sha256: str = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceTable:
     """Forces that the fluid exerts on a body in steady motion.
@@ -130,6 +155,8 @@ class ForceTable:
         Components that the file has as primes by ``scaling``.
     assumed : tuple of str
         Angles whose sign was inferred from the sign of the slope, alpha or beta.
+    declared : Declared or None
+        What its campaign.toml says of it, before it was turned and moved; None for a table made by a program.
     """
 
     name: str
@@ -162,6 +189,7 @@ class ForceTable:
     by_symmetry: str = ""
     primed: frozenset[str] = frozenset()
     assumed: tuple[str, ...] = ()
+    declared: Declared | None = None
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):

@@ -37,7 +37,7 @@ _KINDS = {
     "source": campaign.TableSource, "inertia": campaign.TowedInertia, "uncertainty": campaign.InputUncertainty, "table": campaign.TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
-ARM_POINT = "table.arm_point"
+ARM_POINT, TABLE_POINT = "table.arm_point", "table.reference_point"
 SYMMETRY = "campaign.symmetry"
 REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
@@ -257,7 +257,8 @@ def is_reference(said: Any) -> bool:
 def read_settings(key: str, text: str) -> dict[str, Any]:
     """What a person types for a key; a point says its datum and a length its name with it.
 
-    ``axes.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, the latter also ``reference point``;
+    ``axes.reference_point``, ``table.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, the last also
+    ``reference point``;
     ``scaling.length`` takes ``4.3 m LOA``.
 
     Raises
@@ -267,7 +268,9 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
     """
     if key == ARM_POINT and is_reference(text):
         return {key: REFERENCE}
-    if key in (POINT_OF, ARM_POINT) and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
+    if key in (POINT_OF, ARM_POINT, TABLE_POINT) and re.search(
+        r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)
+    ):
         datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
     if key == "scaling.length" and (sized := _SIZED.fullmatch(text)) and (name := sized[2].strip(" ()")):
@@ -276,14 +279,17 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
 
 
 def read_in(key: str, text: str) -> dict[str, Any]:
-    """`read_settings` of a key that may have the name of a table before it; a datum of the arm's point is that of all tables."""
+    """`read_settings` of a key that may have the name of a table before it; a datum of a table's points is that of all tables."""
     part, slash, plain = key.rpartition("/")
     read = read_settings(plain, text)
-    return {k if plain == ARM_POINT != k else f"{part}{slash}{k}": value for k, value in read.items()}
+    return {
+        k if plain in (ARM_POINT, TABLE_POINT) and k != plain else f"{part}{slash}{k}": value
+        for k, value in read.items()
+    }
 
 
 def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
-    """Refuse a point of the arm from another datum than the rest: both places would move.
+    """Refuse a point of the arm or of a table from another datum than the rest: both places would move.
 
     Raises
     ------
@@ -291,11 +297,11 @@ def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
         Naming both.
     """
     new, old = read.get("axes.datum"), known.get("axes.datum")
-    of_arm = any(key.endswith(ARM_POINT) for key in (*known, *read))
-    if of_arm and new is not None and old is not None and not of_datum(str(old.value), str(new)):
+    own = next((k for k in (ARM_POINT, TABLE_POINT) if any(key.endswith(k) for key in (*read, *known))), "")
+    if own and new is not None and old is not None and not of_datum(str(old.value), str(new)):
         raise InputError(
             f"places from {shown(str(old.value))} and from {shown(str(new))}", "one point that all places count from",
-            column=ARM_POINT, advice=f"Say {POINT_OF} and {ARM_POINT} from the same point.",
+            column=own, advice=f"Say {POINT_OF} and {own} from the same point.",
         )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
-from coeflab.tables.force_table import Exclusion, ForceTable
+from coeflab.tables.force_table import Declared, Exclusion, ForceTable
 
 
 @brief
@@ -233,6 +233,13 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         symmetry=campaign.symmetry,
         by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",
         assumed=campaign.assumed,
+        declared=Declared(
+            campaign.axes.name,
+            tuple(campaign.signs.items()),
+            tuple(map(float, point)),
+            campaign.notes,
+            "" if table.source_sha256 is None else str(table.source_sha256),
+        ),
         primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
     return made.about(campaign.reference_point)

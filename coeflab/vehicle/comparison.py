@@ -351,18 +351,25 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
 
 
 @one_thread()
-def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
+def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = None) -> Comparison:
     """Hold the second file against the first.
 
     The second is primed by the first one's length and moved to its reference point where both are measured from one
     datum. Differences of other bodies are shown, with a statement that they are of other bodies.
+
+    Parameters
+    ----------
+    a, b : ParameterFile
+    names : tuple of str, optional
+        What the comparison calls them; their own names by default.
     """
+    name_a, name_b = names or (a.name, b.name)
     ours, theirs = coefficient_set(a), coefficient_set(b)
     said = []
     if a.body != b.body:
         said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:
-        said.append(f"{b.name} converted from {theirs.scaling} to {ours.scaling}")
+        said.append(f"{name_b} converted from {theirs.scaling} to {ours.scaling}")
     theirs = theirs.to_length(ours.scaling)
     moved = theirs
     same_datum = ours.datum == theirs.datum
@@ -373,7 +380,7 @@ def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
         )
     elif not np.allclose(ours.reference_point, theirs.reference_point, rtol=0.0, atol=SAME_POINT):
         at = ", ".join(f"{x:g}" for x in ours.reference_point)
-        said.append(f"{b.name} moved to the reference point of {a.name}, ({at}) m")
+        said.append(f"{name_b} moved to the reference point of {name_a}, ({at}) m")
         moved = theirs.about(ours.reference_point)
     behind = _contributors(theirs, moved)
     rows = []
@@ -396,7 +403,7 @@ def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
         f"{table} is behind {'; '.join(names)} of both files: their errors are not independent"
         for table, names in alike.items()
     ]
-    return Comparison(a.name, b.name, a.body == b.body, tuple(rows), tuple(said), models)
+    return Comparison(name_a, name_b, a.body == b.body, tuple(rows), tuple(said), models)
 
 
 def _contributors(before: CoefficientSet, moved: CoefficientSet) -> dict[str, list[Coefficient]]:

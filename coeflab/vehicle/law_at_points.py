@@ -408,12 +408,13 @@ def motion_of(variable: str) -> str:
 def _within(
     m: MeasuredTable, component: str, held: Sequence[HeldRange], primes: Mapping[str, Array]
 ) -> NDArray[np.bool_]:
+    """Rows inside every held range to rounding: the row that ended a range may be a hundredth of a degree beyond it."""
     out = np.ones(len(m.labels), dtype=bool)
     for h in held:
         v = motion_of(h.variable)
         if (h.component, h.campaign) == (component, m.campaign) and v in primes:
             low, high = (np.sin(h.low), np.sin(h.high)) if h.variable.startswith("asin(") else (h.low, h.high)
-            out &= (primes[v] >= low - AT_REST) & (primes[v] <= high + AT_REST)
+            out &= (primes[v] >= low - NEAR) & (primes[v] <= high + NEAR)
     return out
 
 

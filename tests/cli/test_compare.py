@@ -222,6 +222,16 @@ def test_the_command_prints_a_table_and_exits_zero_even_when_apart(
     assert content["coefficients"][0]["difference"] == pytest.approx(-0.022)
 
 
+def test_files_of_one_name_are_called_by_their_paths(coeflab: Run, write: Callable[[ParameterFile, str], Path]) -> None:
+    point = {"point": [-1.5, 0.0, 0.0], "datum": "nose"}
+    one, other = write(made(VALUES), "old.json"), write(made(VALUES, reference_point=point), "new.json")
+    said = flat(coeflab("compare", one.name, other.name, cwd=one.parent).stdout)
+    assert "new.json against old.json" in said
+    assert "new.json moved to the reference point of old.json" in said
+    named = write(made(VALUES, name="second"), "named.json")
+    assert "second against first" in flat(coeflab("compare", one.name, named.name, cwd=one.parent).stdout)
+
+
 def test_files_of_one_body_that_are_apart_exit_one(coeflab: Run, write: Callable[[ParameterFile, str], Path]) -> None:
     a = write(made(VALUES), "a.json")
     assert coeflab("compare", a, write(made(VALUES, name="second"), "b.json")).returncode == 0

@@ -140,6 +140,8 @@ def test_the_next_runs_are_named_for_people_and_programs(coeflab: Run) -> None:
     assert "Nv'" in rows
     assert "Yv'" not in rows
     assert "asin(v/U)" in rows
+    only = json.loads(coeflab("fit", "suboff_roddy_3", "--symbol", "Nv", "--symbol", "Kv", "--json").stdout)
+    assert [c["symbol"] for c in only["coefficients"]] == ["Nv'", "Kv'"]
     misspelt = coeflab("fit", "suboff_roddy_3", "--symbol", "nv")
     assert misspelt.returncode == 2
     assert "Did you mean Nv?" in misspelt.stderr

@@ -41,6 +41,10 @@ def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch
     assert content["columns"][1]["low"] == -8.0
     assert [one["argument"] for one in content["missing"]][:1] == ["--set 'axes.frame=?'"]
     assert len(content["missing"]) == 5
+    still = [one["argument"] for one in content["missing"]]
+    assert content["next"].endswith(f" {' '.join(still)} --accept")
+    said = " ".join(done.output.replace("\\\n", " ").split())
+    assert f"{' '.join(still)} --accept 5 open: replace each ? by its value." in said
 
 
 def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:

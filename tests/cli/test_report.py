@@ -107,7 +107,7 @@ def test_the_appendix_comes_on_request_and_is_found_by_section(coeflab, study, t
     ("arguments", "words"),
     [
         (("boat", "--section", "verdikt"), ("verdikt", "Did you mean verdict?")),
-        (("boat", "--to", "html,docx"), ("docx", "html, pdf")),
+        (("boat", "--to", "html,docx"), ("docx", "html, latex, pdf")),
         (("boat", "--to", ","), ("no format",)),
         (("boat", "--summary", "--section", "verdict"), ("--summary",)),
         (("boat", "--summary", "--full"), ("--summary",)),

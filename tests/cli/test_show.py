@@ -78,8 +78,9 @@ def test_a_terminal_gets_no_escape_from_a_name(tmp_path) -> None:
 
     content = json.loads(made(VALUES).to_json()) | {"name": "x\x1b]0;owned\x07[/red]"}
     (tmp_path / "a.json").write_text(json.dumps(content), encoding="utf-8")
+    (tmp_path / "b.json").write_bytes(made(VALUES).to_json())  # of another name: files of one are called by their paths
     near, far = pty.openpty()
-    command = [str(COEFLAB), "compare", str(tmp_path / "a.json"), str(tmp_path / "a.json")]
+    command = [str(COEFLAB), "compare", str(tmp_path / "a.json"), str(tmp_path / "b.json")]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=far, stderr=far):
         os.close(far)
         heard = b"".join(iter(lambda: _read(near), b""))

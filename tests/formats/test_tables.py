@@ -7,6 +7,7 @@ import io
 import math
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from coeflab.core.provenance import work
 from coeflab.core.text.toml import toml_text
 from coeflab.formats.csv import write as csv_exporter
 from coeflab.formats.look_up import look_up
 from coeflab.formats.toml import write as toml_exporter
-from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, read_parameter_file
 from coeflab.workbench.exports import export
 from tests.formats import files as made
 
@@ -79,6 +81,35 @@ def test_csv_tables_are_the_same_numbers() -> None:
         np.testing.assert_array_equal([float(r[d] or "nan") for r in rows], values)
         np.testing.assert_array_equal([float(r[d + 1] or "nan") for r in rows], half)
         assert [r[d + 2] == "true" for r in rows] == list(inside)
+
+
+def test_a_row_of_a_csv_says_what_it_is_about() -> None:
+    file = sample()
+    given = {"Yv'": "v", "Nr'": "r", "Ydr'": "dr"}
+    fitted = [c for c in file.coefficients if c.symbol in given]
+    rest = replace(fitted[0], symbol="X0'", citation="roddy1990", campaign="tow", window=(-0.2, 0.1))
+    rows = [*(replace(c, window=(-0.3, 0.2)) for c in fitted), rest]
+    ranges = [
+        CoveredRange(variable="asin(v/U)", low=-0.2, high=0.1, unit="rad", campaign="tow"),
+        CoveredRange(variable="r'", low=-0.2, high=0.1, unit="1", campaign="arm"),
+    ]
+    made = csv_exporter.render(file.model_copy(update={"coefficients": tuple(rows), "covered": tuple(ranges)}))
+    read = list(csv.DictReader(io.StringIO(made[f"{file.name}.coefficients.csv"].decode())))
+    windows = {r["symbol"]: (r["window_over"], r["window_unit"]) for r in read}
+    known = {"Yv'": ("asin(v/U)", "rad"), "Nr'": ("r'", "1"), "Ydr'": ("dr", "rad"), "X0'": ("asin(v/U)", "rad")}
+    assert windows == {c.symbol: known[c.symbol] for c in rows}
+    point = file.reference_point
+    for row in read:
+        assert float(row["length [m]"]) == file.scaling.length
+        assert row["length_name"] == file.scaling.length_name
+        assert [float(row[f"reference_point_{x} [m]"]) for x in "xyz"] == list(point.point)
+        assert row["datum"] == str(point.datum)
+        assert float(row["density [kg/m^3]"]) == file.conditions.density
+        assert float(row["speed [m/s]"]) == file.conditions.speed
+        assert row["body"] == file.body
+    assert read[-1]["source"] == work("roddy1990")
+    assert read[-1]["citation"] == "roddy1990"
+    assert read[-1]["campaign"] == "tow"
 
 
 def test_outside_the_data_nothing_is_written() -> None:

@@ -17,8 +17,10 @@ from coeflab.core.several import ByName, Several
 from coeflab.core.table import Check, Severity, Table
 from coeflab.fits import FITS
 from coeflab.law.added_mass import AddedMass
+from coeflab.law.coefficient import COVERS, Coefficient, Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.first_page import answer
+from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables
@@ -216,3 +218,30 @@ def test_coefficients_fit_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     assert results.coefficients_in(None, 200).headers == headers  # type: ignore[arg-type]
     rows = (("Zw'", *none),)
     assert results.coefficients_in(None).rows[0][:2] == ("Zw'", "no table")  # type: ignore[arg-type]
+
+
+SLOPE = Coefficient("Yv", -0.02, 0.002, Status.OK, parts=Parts(0.001, 0.0017), origin="fit")
+OPEN = replace(SLOPE, symbol="Xvv", u95=0.03, status=Status.SIGN_OPEN)
+FIXED = replace(SLOPE, symbol="Nv", status=Status.FORM_ASSUMED)
+
+
+def test_u95_of_a_fixed_form_is_not_said_to_be_that_of_a_slope():
+    only = noun_tables.coefficients([FIXED])
+    assert not any(COVERS in note or "slope at the origin" in note for note in only.notes)
+    assert only.notes[0].startswith("U95 of a fixed form:")
+    assert only.notes[-1].startswith("form assumed: ")
+    both = noun_tables.coefficients([SLOPE, FIXED])
+    assert COVERS in both.notes[0]
+    assert both.notes[1].startswith("U95 of a fixed form:")
+    at = both.headers.index("status")
+    assert [row[at] for row in both.rows] == ["-", "form assumed"]
+    assert at in both.left
+    assert all(len(row) == len(both.headers) for row in both.rows)
+    slopes = noun_tables.coefficients([SLOPE, OPEN])
+    assert "status" not in slopes.headers
+    assert COVERS in slopes.notes[0]
+    assert len(slopes.notes) == 2
+
+
+def test_the_note_on_an_open_sign_names_its_rows():
+    assert noun_tables.coefficients([SLOPE, OPEN]).notes[-1].startswith("sign open (Xvv'): The 95 % interval")

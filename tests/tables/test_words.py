@@ -310,6 +310,13 @@ def test_a_point_of_the_arm_from_a_named_point() -> None:
         "Arm/table.arm_point": [-2.75, 0.0, 0.0],
         "axes.datum": "nose",
     }
+    assert read_in("Arm/table.reference_point", "-2.3 from nose") == {
+        "Arm/table.reference_point": [-2.3, 0.0, 0.0],
+        "axes.datum": "nose",
+    }
+    own = read_in("table.reference_point", "-0.1 from midship")
+    with pytest.raises(InputError, match=r"table\.reference_point from the same point"):
+        require_one_datum({"axes.datum": Setting("nose", "confirmed")}, own)
     with pytest.raises(InputError, match="midship"):
         require_one_datum({"axes.datum": Setting("nose", "confirmed")}, read_in("table.arm_point", "-0.1 from midship"))
 

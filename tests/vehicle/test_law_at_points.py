@@ -139,6 +139,16 @@ def test_a_tangent_names_where_it_holds_and_is_a_warning_with_the_points_left_ou
     assert worst(changed(tangent, "Yv'", -1.0)) is Severity.FAIL
 
 
+def test_a_row_a_hair_beyond_the_last_that_a_tangent_meets_is_left_out_too() -> None:
+    """5.57 degrees is met and ends the range, 5.6 is missed: no row of the range may be one that it was cut for."""
+    v = np.sin(np.radians([*ANGLES, 5.57, -5.6]))
+    table = planted(TRUTH, {"v": v})
+    y = next(c for c in points_of(made([slopes(table, **SLOPES)], table)) if c.component == "Y")
+    assert y.missed == ()
+    assert str(len(v) - 1) in y.beyond
+    assert str(len(v) - 2) not in y.beyond
+
+
 def test_a_law_beyond_its_slopes_that_misses_within_half_of_its_range_names_no_smaller_one() -> None:
     """A sign that flips between fit and file must not come out as a short range."""
     table = planted(TRUTH, {"v": V})

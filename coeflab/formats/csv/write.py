@@ -6,17 +6,28 @@ import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 
+from coeflab.core.provenance import work
 from coeflab.core.wording import file_stem, identifier
 from coeflab.formats.look_up import LookUp, look_up
 from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import derivative
 from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
 citations = ("sname1950",)
 
+ANGLES = {
+    "v": "asin(v/U)",
+    "w": "asin(w/U)",
+    "dr": "dr",
+    "ds": "ds",
+    "db": "db",
+}  # over which a window is one of angles
 HEADER = (
     "symbol", "value [-]", "u95 [-]", "random [-]", "model_form [-]", "input [-]", "value_si", "unit_si", "status", "origin",
     "table", "estimator", "window_low", "window_high", "n_points", "citation",
+    "window_over", "window_unit", "length [m]", "length_name", "reference_point_x [m]", "reference_point_y [m]", "reference_point_z [m]",
+    "datum", "density [kg/m^3]", "speed [m/s]", "body", "campaign", "source",
 )  # fmt: skip
 
 
@@ -36,11 +47,15 @@ def _table(rows: Iterable[Sequence[object]]) -> bytes:
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """The coefficients of a parameter file and the look-up tables of its models, numbers with all their digits.
 
+    Every row of a coefficient stands by itself: it says its length, reference point, density, speed and source in full.
+
     Text that a spreadsheet would take for a formula is set behind an apostrophe. A value is empty where the model may not
     be read.
     """
     files = {
-        f"{file_stem(parameters.name)}.coefficients.csv": _table([HEADER, *map(_coefficient, parameters.coefficients)])
+        f"{file_stem(parameters.name)}.coefficients.csv": _table(
+            [HEADER, *((*_coefficient(c), *_meant(c, parameters)) for c in parameters.coefficients)]
+        )
     }
     for k, model in enumerate(parameters.models, 1):
         response = identifier(model.response)
@@ -54,6 +69,28 @@ def _coefficient(c: Coefficient) -> tuple[object, ...]:
         c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,
         c.table, c.estimator, low, high, c.n_points, c.citation,
     )  # fmt: skip
+
+
+def _meant(c: Coefficient, parameters: ParameterFile) -> tuple[object, ...]:
+    """What the numbers of a row are about, and where they come from."""
+    over, unit = _window_over(c, parameters) if c.window is not None else ("", "")
+    at, scaling = parameters.conditions, parameters.scaling
+    sources = ", ".join(work(key.strip()) for key in c.citation.split(",")) if c.citation else ""
+    return (
+        over, unit, scaling.length, scaling.length_name, *map(float, parameters.reference_point.point), str(parameters.reference_point.datum),
+        at.density, at.speed, parameters.body, c.campaign, sources,
+    )  # fmt: skip
+
+
+def _window_over(c: Coefficient, parameters: ParameterFile) -> tuple[str, str]:
+    """Motion and unit of a window; of a force at rest, whose symbol names none, the one whose covered range it is."""
+    named = c.window_over or next(iter(derivative(c.symbol).factors), "")
+    if named:
+        return ANGLES.get(named) or f"{named}'", "rad" if named in ANGLES else "1"
+    same = {
+        (r.variable, r.unit) for r in parameters.covered if r.campaign == c.campaign and (r.low, r.high) == c.window
+    }
+    return same.pop() if len(same) == 1 else ("", "")
 
 
 def _look_up(of: LookUp) -> list[Sequence[object]]:

@@ -37,6 +37,7 @@ from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
+from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
@@ -101,7 +102,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         title,
         tuple(text),
         filled(
-            *(() if again else (tables.coefficients(study, fit.campaign),)),
+            *(() if again else (source_tables.declared(mine), tables.coefficients(study, fit.campaign))),
             joint_tables.campaigns((fit,)),
             *map(tables.straight_runs, fit.straight),
         ),

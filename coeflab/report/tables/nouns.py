@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, with_u95
-from coeflab.law.coefficient import COVERS
+from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import COMPONENTS, primed
 
 if TYPE_CHECKING:
@@ -25,6 +25,11 @@ DEFINED = (
     "U95 of a slope at the origin: 95 % half-width; covers {}. random: scatter of the points; form: the curve that "
     "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid."
 )
+DEFINED_FIXED = (
+    "U95 of a fixed form: 95 % half-width about that form, not over every curve that the points allow. random: scatter of the "
+    "points; form: what the form misses by its residuals; input: declared errors of inputs, and the grid."
+)
+STATUS = "status"
 ROUNDING = 1e-12
 REJECTED, NO_VALUE = "form rejected", "no value"
 
@@ -55,12 +60,22 @@ def without_value(c: Coefficient) -> str:
 
 
 def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed", *, covers: str = COVERS) -> Table:
-    """Coefficients with their uncertainty and how they were made; ``covers`` says what U95 of a slope at the origin does."""
+    """Coefficients with their uncertainty and how they were made.
+
+    Parameters
+    ----------
+    several : sequence of Coefficient
+    title : str
+    covers : str
+        What U95 of a slope at the origin covers. It is not said of fixed forms, whose rows are marked in a column of their own.
+    """
+    fixed = [c for c in several if c.value is not None and c.status is Status.FORM_ASSUMED]
     rows = [
         (
             primed(c.symbol),
             *with_status(c),
             percent(c.u95, c.value),
+            *((_mark(c),) if fixed else ()),
             percent(c.parts.random, c.value),
             percent(c.parts.model_form, c.value),
             percent(c.parts.input, c.value),
@@ -71,15 +86,30 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
         )
         for c in several
     ]
-    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "window", "n", "campaign", "estimator")
+    headers = ("", "value", "U95", "U95 %", *((STATUS,) if fixed else ()), "random", "form", "input", "window", "n")
+    headers += ("campaign", "estimator")
     fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
-    notes = (DEFINED.format(covers),) + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
+    slopes = [c for c in fitted if c not in fixed]
+    notes = ((DEFINED.format(covers),) if slopes or not fixed else ()) + ((DEFINED_FIXED,) if fixed else ())
+    notes += SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ()
     notes += tuple(
-        f"{NO_VALUE if s == 'not_determined' else s.replace('_', ' ')}: {s.advice}"
+        f"{NO_VALUE if s == 'not_determined' else s.replace('_', ' ')}{_named(several, s)}: {s.advice}"
         for s in sorted({c.status for c in several})
         if s.advice
     )
-    return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
+    flush = ("", STATUS, "window", "campaign", "estimator")
+    return Table(title, headers, tuple(rows), notes, frozenset(i for i, h in enumerate(headers) if h in flush))
+
+
+def _mark(c: Coefficient) -> str:
+    """The status of a row, where its value does not say it and there is something to say."""
+    return ABSENT if c.value is None or c.status in (Status.OK, Status.FORM_REJECTED) else c.status.replace("_", " ")
+
+
+def _named(several: Sequence[Coefficient], status: Status) -> str:
+    """The rows that a note is about, where no cell of theirs shows it."""
+    symbols = list(dict.fromkeys(primed(c.symbol) for c in several if c.status is status))
+    return f" ({', '.join(symbols)})" if status is Status.SIGN_OPEN else ""
 
 
 def _with_half(value: float, half: float, rejected: bool, known: bool) -> tuple[str, str]:

@@ -310,9 +310,15 @@ def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
     if r.relation is Relation.QUOTED:
         digits = "The first page has the digits of the test report itself."
-        return f"{r.name}, as quoted: {r.place or r.citation}. Body: {r.body}. {digits} {r.note}".strip()
+        return f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits} {r.note}".strip()
     another = "by another method for the same body" if r.body in ours else "for another body"
-    return f"{r.name}: {another}, {r.body}. Source: {r.place or r.citation}. {r.note}".strip()
+    return f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}. {r.note}".strip()
+
+
+def _printed_in(r: Reference) -> str:
+    """Where a reference is printed; of a work that is no key its text as well."""
+    of = r.citation if work(r.citation) == r.citation else ""
+    return ", ".join(filter(None, (of, r.place))) or r.citation
 
 
 def campaigns(study: Study) -> Table:

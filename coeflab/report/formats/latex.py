@@ -1,0 +1,301 @@
+"""One LaTeX file: every table of the report with booktabs, its caption, its notes below, and its symbols as mathematics."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from coeflab.core.table import ABSENT, Table, percent, plus_minus, with_u95
+from coeflab.core.version import VERSION
+from coeflab.law.symbols import primed
+from coeflab.report.document import Answer, AnswerRow, Document, Section
+from coeflab.report.notation import DOT, GREEK, Command, Factor, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
+from coeflab.report.printable import shortened, visible
+
+summary = "one LaTeX file with every table: booktabs, captions, notes, symbols as mathematics"
+citations: tuple[str, ...] = ()
+
+FILE = "report.tex"
+LONGEST_TITLE, LONGEST_COLUMN = 300, 160  # letters
+FLOATS = 30  # rows; a longer table goes on over pages
+LINE = 112  # letters of footnote size in a line, with three for the gap between two columns
+WIDE, NARROW, FOLDED = (
+    28,
+    14,
+    18,
+)  # letters: a column beyond the first folds, the second may, the third it then has at least
+LEVELS = ("section", "subsection", "subsubsection", "paragraph")
+SPECIAL = {
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "`": r"\textasciigrave{}", "\u2026": r"\ldots{}", "\u2013": r"\textendash{}",
+    "\u2014": r"\textemdash{}", "\u202f": r"\,", "\u00a0": "~", "\u2018": r"\textquoteleft{}", "\u2019": r"\textquoteright{}",
+    "\u201c": r"\textquotedblleft{}", "\u201d": r"\textquotedblright{}", "\u00a7": r"\S{}",
+}  # fmt: skip
+IN_MATH = {
+    "\u2212": "-", "\u00b1": r"\pm", "\u00d7": r"\times", "\u00b0": r"{}^{\circ}", "\u2264": r"\le", "\u2265": r"\ge", "\u00b7": r"\cdot",
+    "\u2032": "'", "\u00bd": r"\frac{1}{2}", "\u221a": r"\surd", "<": "<", ">": ">", "|": "|", "\u00b5": r"\mu", "\u00b2": "^{2}",
+    "\u00b3": "^{3}", "\u202f": r"\,",
+} | {letter: rf"\{name}" for name, letter in GREEK.items()}  # fmt: skip
+PLAIN = re.compile(r"\u2212?(?<![\w.])\d[\d.]*(?:\u202f×\u202f10)?|.", re.DOTALL)
+HEAD = r"""% Tables of {title}
+% by coeflab {version}, --to latex{digest}. Equal inputs give equal bytes.
+% By itself: pdflatex {file}, twice.
+% In a document of your own: \usepackage{{array,booktabs,graphicx,longtable,docmute}}; docmute skips the
+% preamble here; then \input{{report}}; or copy single tables from \begin{{table}} to \end{{table}}.
+\documentclass[a4paper]{{article}}
+\usepackage[utf8]{{inputenc}}
+\usepackage[T1]{{fontenc}}
+\usepackage{{textcomp}}
+\usepackage[margin=20mm]{{geometry}}
+\usepackage{{array}}
+\usepackage{{booktabs}}
+\usepackage{{graphicx}}
+\usepackage{{longtable}}
+\ifdefined\extrafloats\extrafloats{{500}}\fi
+\begin{{document}}
+"""
+END = "\\end{document}\n"
+
+
+class Piece(NamedTuple):
+    """A part of a text, set as mathematics or not."""
+
+    math: bool
+    tex: str
+
+
+def render(document: Document) -> Mapping[str, bytes]:
+    """The tables of a report as a file.
+
+    Parameters
+    ----------
+    document : Document
+
+    Returns
+    -------
+    mapping of file name to bytes
+        ``report.tex``; equal documents give equal bytes. Characters that pdflatex has no letter for stand as ``U+XXXX``.
+    """
+    with keeping(document.verbatim):
+        title = shortened(visible(document.title), LONGEST_TITLE)
+        digest = f", inputs {document.digest}" if document.digest else ""
+        made = [HEAD.format(title=_comment(title), version=VERSION, digest=digest, file=FILE)]
+        made.append(f"\\section*{{{tex(title)}}}\n")
+        tables = [*_first(document.answer), *(part for s in document.sections for part in _section(s, 0))]
+        made += tables or ["This report has no tables.\n"]
+    return {FILE: "\n".join([*made, END]).encode()}
+
+
+def _comment(text: str) -> str:
+    return "".join(ch if " " <= ch <= "~" else "?" for ch in text)
+
+
+def _first(answer: Answer | None) -> Iterator[str]:
+    """The table of the first page, if there is one."""
+    if answer is None:
+        return
+    found = answer.table or (_wanted(answer) if answer.rows else None)
+    if found is not None:
+        yield set_table(found, "answer-table")
+
+
+def _wanted(answer: Answer) -> Table:
+    """The wanted coefficients beside published ones."""
+    compared = bool(answer.compared)
+    headers = ("", "ours +- U95", "U95 %", *answer.columns, *(("difference", "difference / U95") * compared), "from")
+    rows = tuple((*_ours(r), *_published(r, answer), *(_difference(r) * compared), r.source) for r in answer.rows)
+    title = "Primed coefficients with their 95 % half-width U95" + " and published values" * compared
+    return Table(title, headers, rows, answer.notes, frozenset({0, len(headers) - 1}))
+
+
+def _ours(row: AnswerRow) -> tuple[str, str, str]:
+    if row.value is None:
+        return primed(row.symbol), row.status or "no data", ABSENT
+    said = " ".join(filter(None, (plus_minus(row.value, row.u95), row.status)))
+    return primed(row.symbol), said, percent(row.u95, row.value)
+
+
+def _published(row: AnswerRow, answer: Answer) -> tuple[str, ...]:
+    shown = (*row.shown, *[None] * len(answer.columns))[: len(answer.columns)]
+    return tuple("no data" if value is None else value for value in shown)
+
+
+def _difference(row: AnswerRow) -> tuple[str, str]:
+    sign = "+" if row.difference is not None and row.difference > 0.0 else ""
+    share = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
+    return sign + with_u95(row.difference, row.u95)[0], share
+
+
+def _section(section: Section, level: int) -> Iterator[str]:
+    """Its heading and tables, where it or a part of it has any."""
+    parts = [set_table(t, f"{section.anchor}-table-{k}") for k, t in enumerate(section.tables, 1)]
+    parts += [made for inner in section.subsections for made in _section(inner, level + 1)]
+    if parts:
+        yield f"\\{LEVELS[min(level, len(LEVELS) - 1)]}*{{{tex(shortened(section.title, LONGEST_TITLE))}}}\n"
+        yield from parts
+
+
+def set_table(table: Table, name: str) -> str:
+    """A table as LaTeX: a float, or one over several pages.
+
+    Parameters
+    ----------
+    table : Table
+    name : str
+        Of its label, after ``tab:``.
+    """
+    caption = f"\\caption{{{tex(shortened(table.title, LONGEST_TITLE))}}}\\label{{tab:{name}}}"
+    head = _row([tex(shortened(h, LONGEST_COLUMN)) for h in table.headers])
+    units = {i for i, h in enumerate(table.headers) if h == "unit"}
+    rows = [_row([_cell(c, i in units) for i, c in enumerate(row)]) for row in table.rows]
+    notes = [f"\\par\\noindent {tex(note)}" for note in table.notes]
+    folds = _folding(table)
+    columns = f"@{{}}{''.join(_columns(table, folds))}@{{}}"
+    is_wide = _room(table, folds) > LINE
+    if len(table.rows) > FLOATS:
+        size = r"\scriptsize\setlength{\tabcolsep}{2pt}" if is_wide else r"\footnotesize"
+        opening = [rf"\begingroup{size}\setlength{{\LTcapwidth}}{{\linewidth}}", f"\\begin{{longtable}}{{{columns}}}"]
+        above = [r"\toprule", head, r"\midrule"]
+        again = [caption + r" \\", *above, r"\endfirsthead", *above, r"\endhead", r"\bottomrule", r"\endfoot"]
+        return "\n".join([*opening, *again, *rows, r"\end{longtable}", *notes, r"\par\endgroup", ""])
+    opening = [
+        r"\begin{table}[htbp]",
+        r"\centering\footnotesize",
+        caption,
+        *([r"\resizebox{\linewidth}{!}{%"] * is_wide),
+    ]
+    body = [f"\\begin{{tabular}}{{{columns}}}", r"\toprule", head, r"\midrule", *rows, r"\bottomrule"]
+    body.append(r"\end{tabular}" + "}" * is_wide)
+    below = [r"\par\smallskip\begin{minipage}{\linewidth}\footnotesize", *notes, r"\end{minipage}"] if notes else []
+    return "\n".join([*opening, *body, *below, r"\end{table}", ""])
+
+
+def _row(cells: Sequence[str]) -> str:
+    """Cells as a row; a bracket or a star at its beginning is not an option of the row before."""
+    line = " & ".join(cells)
+    return ("{}" if line[:1] in ("[", "*") else "") + line + r" \\"
+
+
+def _widths(table: Table) -> list[int]:
+    return [max(map(len, (h, *(row[i] for row in table.rows)))) for i, h in enumerate(table.headers)]
+
+
+def _room(table: Table, folds: Collection[int]) -> int:
+    """Letters that a line needs at least."""
+    return sum((min(width, FOLDED) if i in folds else width) + 3 for i, width in enumerate(_widths(table)))
+
+
+def _folding(table: Table) -> set[int]:
+    """Columns of text that fold: long ones, and where the line has no room others that have words."""
+    widths = _widths(table)
+    folds = {i for i in table.left if i < len(widths) and widths[i] > WIDE}
+    for i in sorted((table.left - folds) & set(range(len(widths))), key=lambda i: (-widths[i], i)):
+        if _room(table, folds) <= LINE:
+            break
+        if widths[i] > NARROW and any(" " in row[i] for row in table.rows):
+            folds.add(i)
+    return folds
+
+
+def _columns(table: Table, folds: Collection[int]) -> list[str]:
+    """``l``, ``r``, or for text that has to fold its share of the line."""
+    widths = _widths(table)
+    rest = LINE - sum(width + 3 for i, width in enumerate(widths) if i not in folds) - 3 * len(folds)
+    wanted = sum(min(widths[i], 2 * WIDE) for i in folds)
+    flush, out = r">{\raggedright\arraybackslash}", []
+    for i, width in enumerate(widths):
+        if i in folds:
+            letters = max(FOLDED, min(width, rest * min(width, 2 * WIDE) / wanted))
+            out.append(f"{flush}p{{{min(letters / LINE, 0.95):.2f}\\linewidth}}")
+        else:
+            out.append("l" if i in table.left else "r")
+    return out
+
+
+def _cell(text: str, unit: bool) -> str:
+    return _set(unit_runs(text) if unit else cell_runs(text, kept()))
+
+
+def tex(text: str) -> str:
+    """A text as LaTeX; what a user wrote is set letter by letter."""
+    return _set(runs(" ".join(text.split()), kept()))
+
+
+def _set(pieces: Iterable[Run]) -> str:
+    """Runs as LaTeX, neighbouring formulas as one."""
+    out: list[Piece] = []
+    for piece in (p for run in pieces for p in _pieces(run)):
+        if out and out[-1].math is piece.math:
+            joined = _beside(out[-1].tex, piece.tex) if piece.math else out[-1].tex + piece.tex
+            out[-1] = Piece(piece.math, joined)
+        else:
+            out.append(piece)
+    return "".join(f"${p.tex}$" if p.math else _unligatured(p.tex) for p in out).strip()
+
+
+def _pieces(run: Run) -> Sequence[Piece]:
+    if isinstance(run, str):
+        return [_letter(found[0]) for found in PLAIN.finditer(visible(run))]
+    if isinstance(run, Raised):
+        return [Piece(True, f"^{{{_formula(run.text)}}}")]
+    if isinstance(run, Command):
+        return [Piece(False, r"\texttt{" + "".join(_letter(ch, typed=True).tex for ch in visible(run.text)) + "}")]
+    under = f"\\mathrm{{{_formula(run.index)}}}" if run.index.isalpha() and run.index.isascii() else _formula(run.index)
+    below = "".join(map(_factor, run.factors)) or under
+    return [Piece(True, _formula(run.letter) + f"_{{{below}}}" * bool(below) + "'" * run.primed)]
+
+
+def _factor(factor: Factor) -> str:
+    letter = _formula(factor.letter)
+    made = f"\\dot{{{letter}}}" if factor.dotted else letter
+    made += f"_{{{factor.index}}}" * bool(factor.index)
+    return f"|{made}|" if factor.absolute else made
+
+
+def _formula(text: str) -> str:
+    """Letters of a symbol or an exponent inside a formula."""
+    out = ""
+    for ch in unicodedata.normalize("NFD", text):
+        if ch == DOT:
+            out = f"{out[:-1]}\\dot{{{out[-1:]}}}"
+        else:
+            out = _beside(out, IN_MATH.get(ch) or SPECIAL.get(ch, ch if ch.isascii() else f"\\mbox{{U+{ord(ch):04X}}}"))
+    return out
+
+
+def _beside(formula: str, more: str) -> str:
+    """Two formulas as one; a command's name ends before a letter, and no power has a power."""
+    if more.startswith("^") and re.search(r"\^\{[^{}]*\}$", formula):
+        return formula + "{}" + more
+    return formula + " " * bool(re.search(r"\\[A-Za-z]+$", formula) and more[:1].isalpha()) + more
+
+
+def _letter(text: str, typed: bool = False) -> Piece:
+    """A character of plain text, or a negative number."""
+    if len(text) > 1:
+        is_math = text[0] == "\u2212" or text.endswith("\u202f10")
+        return Piece(is_math, "".join(IN_MATH.get(ch, ch) for ch in text))
+    if typed and text in "<>|'\"-":
+        return Piece(False, {"'": r"\textquotesingle{}", "-": "-{}"}.get(text, text))
+    if text in IN_MATH and text not in SPECIAL:
+        return Piece(True, IN_MATH[text])
+    return Piece(False, SPECIAL.get(text) or (text if text.isascii() or _has_type(text) else f"U+{ord(text):04X}"))
+
+
+def _has_type(ch: str) -> bool:
+    """Whether it is a letter of western or central Europe, which T1 fonts have."""
+    try:
+        ch.encode("iso8859-1")
+    except UnicodeError:
+        try:
+            ch.encode("iso8859-2")
+        except UnicodeError:
+            return False
+    return ch.isalpha()
+
+
+def _unligatured(text: str) -> str:
+    """Plain text whose hyphens, commas and marks stay those that were written."""
+    return re.sub(r"(?<=[-,'])(?=[-,'])", "{}", text)

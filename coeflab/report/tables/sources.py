@@ -1,0 +1,72 @@
+"""Where tables come from and what their campaigns declare, as tables and sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.axes import point_in_words
+from coeflab.core.provenance import work
+from coeflab.core.table import Table
+from coeflab.study.study import Study
+from coeflab.tables.force_table import ForceTable
+
+
+def declared(tables: Sequence[ForceTable]) -> Table:
+    """What the campaign.toml of some tables says of their columns, a row a matter; without rows where no file does."""
+    rows: dict[tuple[str, str], list[str]] = {}
+    for t in tables:
+        if t.declared is None:
+            continue
+        d, at, sign = t.declared, t.conditions, {"alpha": "angle of attack", "beta": "drift angle"}
+        each = [
+            ("frame", d.frame),
+            *(
+                (f"sign of the {sign.get(angle, angle)}", said + ", assumed" * (angle in t.assumed))
+                for angle, said in d.signs
+            ),
+            ("moments about", point_in_words(d.reference_point, t.datum)),
+            ("datum", str(t.datum)),
+            ("length of the primes", f"{t.scaling.length_name} = {t.scaling.length:.8g} m"),
+            ("density", f"{at.density:.6g} kg/m^3" if t.density is None else "of each row"),
+            ("speed", f"{at.speed:.6g} m/s"),
+            ("symmetry", ", ".join(t.symmetry) or "none declared"),
+            ("made from a file of sha256", d.source_sha256),
+        ]
+        for matter, said in each:
+            if said:
+                rows.setdefault((matter, said), []).append(t.name)
+    several = len(tables) > 1
+    made = tuple(
+        (matter, said, *((", ".join(names) if len(names) < len(tables) else "all",) if several else ()))
+        for (matter, said), names in rows.items()
+    )
+    notes = tuple(
+        dict.fromkeys(f"Notes: {' '.join(t.declared.notes.split())}" for t in tables if t.declared and t.declared.notes)
+    )
+    return Table(
+        "As campaign.toml declares it",
+        ("", "declared", *(("tables",) if several else ())),
+        made,
+        notes,
+        frozenset(range(2 + several)),
+    )
+
+
+def made_from(study: Study) -> Table:
+    """The files that tables were made from, as their campaigns state them; they are no inputs of the study."""
+    rows = tuple(
+        (t.name, t.source.citation, t.declared.source_sha256)
+        for t in study.tables
+        if t.declared is not None and t.declared.source_sha256
+    )
+    return Table("Files that the tables were made from", ("table", "source", "sha256"), rows, (), frozenset({0, 1, 2}))
+
+
+def sources(study: Study) -> tuple[str, ...]:
+    """Where the measured and computed tables and the published values come from, a sentence a work with the places in it."""
+    places: dict[str, dict[str, None]] = {}
+    for key, place in [(t.source.citation, t.source.place) for t in study.tables] + [
+        (r.citation, r.place) for r in study.references
+    ]:
+        places.setdefault(key, {}).update({place: None} if place else {})
+    return tuple(f"Source: {work(key)} {'; '.join(where)}".strip() for key, where in places.items())
