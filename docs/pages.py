@@ -114,9 +114,10 @@ def _shown(printed: list[str], part: str, command: str) -> list[str]:
 
 
 def pictures(text: str, folder: Path) -> Iterator[tuple[str, bytes]]:
-    """Name and content of those pictures of a page that its commands have written."""
+    """Name and content of those pictures of a page that its commands have written, of one name the first."""
     for name in PICTURE.findall(text):
-        yield from ((name, file.read_bytes()) for file in sorted(folder.rglob(name))[:1])
+        written = sorted(folder.rglob(name), key=lambda file: file.stat().st_mtime_ns)
+        yield from ((name, file.read_bytes()) for file in written[:1])
 
 
 def reference() -> str:
