@@ -331,7 +331,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
         "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
         "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
         "law misses a point by more, its range ends before that point. A shortened range is a warning. "
-        "If less than half of the tested range remains, the study fails; X, and laws with slopes only, are exempt. A component below 1 % of the largest force or moment is too small to judge, and ends no range.",
+        "If less than half of the tested range remains, the study fails; X, and laws with slopes only, are exempt. A component below 1 % of the largest force or moment is too small to judge, and ends no range, even where its own terms are fitted to a shorter one.",
         format_tables.IN_PERCENT,
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}

@@ -361,13 +361,13 @@ def _warnings(study: Study) -> Chip:
 def _exports(study: Study) -> Chip:
     made, refused = len(study.exports), len(study.refused)
     if not made and not refused:
-        return Chip("Simulator files", "none planned", Severity.NOTE)
+        return Chip("Exports to simulators", "none planned", Severity.NOTE)
     loss = sum(not e.lossless for e in study.exports)
     text = f"{made} made, {f'{loss} with losses' if loss else 'all complete'}" + (
         f", {refused} refused" if refused else ""
     )
     return Chip(
-        "Simulator files", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports"
+        "Exports to simulators", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports"
     )
 
 

@@ -408,13 +408,15 @@ def motion_of(variable: str) -> str:
 def _within(
     m: MeasuredTable, component: str, held: Sequence[HeldRange], primes: Mapping[str, Array]
 ) -> NDArray[np.bool_]:
-    """Rows inside every held range to rounding: the row that ended a range may be a hundredth of a degree beyond it."""
+    """Rows inside every held range to rounding, since the row that ended one may be a hundredth of a degree beyond it; rows at rest."""
     out = np.ones(len(m.labels), dtype=bool)
     for h in held:
         v = motion_of(h.variable)
         if (h.component, h.campaign) == (component, m.campaign) and v in primes:
             low, high = (np.sin(h.low), np.sin(h.high)) if h.variable.startswith("asin(") else (h.low, h.high)
-            out &= (primes[v] >= low - NEAR) & (primes[v] <= high + NEAR)
+            inside = (primes[v] >= low - NEAR) & (primes[v] <= high + NEAR)
+            has_rest = low <= AT_REST and high >= -AT_REST
+            out &= inside | (has_rest & (np.abs(primes[v]) <= AT_REST))
     return out
 
 

@@ -181,7 +181,7 @@ def test_any_name_and_any_sweep(angles: list[float], named: str):
         "Stability",
         "Largest U95 in the first table",
         "Warnings",
-        "Simulator files",
+        "Exports to simulators",
     ]
     assert all(len(c.text.split()) <= 6 for c in made.chips)
     folded = replace(answer_table(made), notes=())

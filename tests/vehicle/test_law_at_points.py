@@ -14,6 +14,7 @@ from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.law.scaling import Conditions
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.law_at_points import HeldRange, _within
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import law_findings, plausibility
 from tests.fits.test_tied_law import ANGLES, LENGTH, V, beyond, planted, slopes
@@ -212,3 +213,15 @@ def test_covariance_joins_slopes_and_what_is_tied_to_them(whole: ParameterFile) 
     assert row[j] == pytest.approx(tied.moves[0, 0] * 0.0015**2, rel=1e-6)
     matrix = np.array(whole.covariance.matrix, dtype=float)
     assert np.linalg.eigvalsh(matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).min() > -1e-9
+
+
+@pytest.mark.parametrize(("low", "high", "kept"), [(-10.0, 0.0, True), (2.0, 12.0, False)])
+def test_rows_at_rest_belong_to_a_one_sided_range_that_ends_at_rest(
+    whole: ParameterFile, low: float, high: float, kept: bool
+) -> None:
+    """Rows of an arm have v' of a rounding, on the wrong side of a drift sweep to one side: they were all left out."""
+    (measured,) = whole.measured
+    ends = {"low": np.radians(low), "high": np.radians(high), "unit": "rad"}
+    held = HeldRange(component="Y", variable="asin(v/U)", campaign=measured.campaign, **ends)
+    at_rest = {"v": np.full(len(measured.labels), 5e-5)}
+    assert set(_within(measured, "Y", [held], at_rest)) == {kept}

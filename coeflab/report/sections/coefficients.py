@@ -27,7 +27,7 @@ COVERS = "U95 is the half-width of the 95 % interval. For slopes it covers {}; w
 PARTS = "The parts of U95 are in % of the value. Random: scatter of the points. Form: unknown shape of the curve."
 SHAPE = "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law."
 INPUT = "Input: declared errors of the inputs, and the grid."
-SLOPE = "Slope: the part that comes from the U95 of the slopes, which the fit of the term holds fixed."
+SLOPE = "Slope: the part that comes from the U95 of the slopes (of X: Xvv', Xww', Xrr'), which the fit of the term holds fixed."
 DASH = "A dash: not applicable or not assessed; not in U95."
 POINTS = (
     "n: number of points in the fit. A slope is fitted to the runs in which only its own motion varies. For a term with an entry under slope, n counts "

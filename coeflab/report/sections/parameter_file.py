@@ -483,7 +483,7 @@ def summary(study: Study) -> Table:
             for used in ACCELERATIONS
             if any(row[4] == used for row in rows)
         ),
-        *(["files: each with a loss report, .loss.txt, beside it."] if lossy else []),
+        *(["files: each row also has one loss report, .loss.txt."] if lossy else []),
         "Largest difference in %: export minus parameter file, of any force or acceleration, divided by its largest value. A "
         "component below 1 % of the largest force or moment is too small to judge. "
         f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",

@@ -81,7 +81,8 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         Whether rows with a control off zero are among the points.
     """
     rows = tuple(
-        (f.component, f.table, str(f.n_points - len(f.beyond)), *(ABSENT if f.small else percent(x) for x in (f.share, f.rms_share)), f.worst_at,
+        (f.component, f.table, str(f.n_points - len(f.beyond)),
+         *(ABSENT if f.small or len(f.beyond) == f.n_points else percent(x) for x in (f.share, f.rms_share)), f.worst_at,
          ABSENT if f.small else percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
         for f in found
     )  # fmt: skip
@@ -107,6 +108,8 @@ def at_points_verdict(f: LawAtPoints) -> str:
     if f.missed:
         return f"misses {len(f.missed)}"
     n = len(f.beyond)
+    if n == f.n_points:
+        return "not compared: no point in its range"
     return f"holds; {n} point{'s' * (n > 1)} outside its range" if n else "holds"
 
 
