@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.table import html_by
-from coeflab.core.types import Array, in_angles, locked, locked_columns
+from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import force_transfer, velocity_transfer
@@ -71,6 +71,7 @@ class Exclusion:
     of_source: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Declared:
     """What campaign.toml says of a table, before it is turned to FRD and moved.

@@ -72,9 +72,9 @@ def test_one_error_soon(name: str, tmp_path: Path) -> None:
         read_model_file(path)
     assert time.process_time() - begun < 2.0
     message = str(caught.value)
-    assert name in message
-    assert "expected" in message
-    assert "\n" not in message
+    lines = message.split("\n")  # a line for each of two faults, of which a line each is planted
+    assert all(name in line and "expected" in line for line in lines)
+    assert len(lines) <= 2
     assert len(message) < 500
 
 

@@ -134,7 +134,9 @@ def test_a_campaign_of_straight_runs_replaces_the_estimate_of_a_vehicle(tmp_path
     assert found.value == pytest.approx(X0, rel=1e-9)
     assert found.origin == "fit"
     base = made({"X0": -4e-3, "Xu|u|": -1e-3, "Yv": -4e-2})
-    base = base.model_copy(update={"scaling": file.scaling, "reference_point": file.reference_point})
+    prime = base.mass.mass / (0.5 * base.conditions.density * file.scaling.length**3)
+    mass = replace(base.mass, mass_prime=prime)
+    base = base.model_copy(update={"scaling": file.scaling, "reference_point": file.reference_point, "mass": mass})
     after = merged(base, file).parameters
     assert after.coefficient("X0'").value == pytest.approx(X0, rel=1e-9)
     assert after.coefficient("Yv'").value == -4e-2
