@@ -37,7 +37,7 @@ from coeflab.tables.campaign import PORT_STARBOARD
 from coeflab.tables.campaign import UP_DOWN as ALIKE
 from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
 
-summary = "force law (v|v|, v^3, cross terms) over the widest range without a missed point; slopes of slope_at_origin"
+summary = "force law (v|v|, v^3, cross terms) over the widest range without a missed point; slopes from slope_at_origin"
 citations = ("hurvich1989", "gertler1967", "feldman1979", "mackinnon1985", "bell2002")
 completes = "slope_at_origin"
 SIMPLER = 2.0  # AICc that a longer form has to gain

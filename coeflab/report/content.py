@@ -403,4 +403,4 @@ def _settings(fit: FitResult) -> str:
     summary = FITS.load(fit.fit).summary if fit.fit in FITS.names() else ""
     each = [_setting(k, v) for k, v in sorted(fit.settings.items())]
     settings = in_sentences(f"Setting{'s' * (len(each) > 1)} of {fit.fit}: ", each, join=", ".join)
-    return f"{f'Fit {fit.fit}: {summary}. ' * bool(summary)}{settings}"
+    return f"{f'Fitting method {fit.fit}: {summary}. ' * bool(summary)}{settings}"

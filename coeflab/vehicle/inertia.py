@@ -226,14 +226,20 @@ def against_computed(parameters: ParameterFile) -> str:
     computed, stated = _computed(parameters), stated_accelerations(parameters)
     if computed is None or parameters.added_mass is None:
         return ""
-    how = "stated" if parameters.added_mass.method == STATED else f"by the method {parameters.added_mass.method}"
+    how = (
+        "stated as added mass"
+        if parameters.added_mass.method == STATED
+        else f"computed by the {parameters.added_mass.method} method"
+    )
     apart = [
         f"{primed(name)} {100.0 * (computed[i, i] / value - 1.0):+.0f} %"
         for (i, j), (name, value) in stated.items()
         if i == j and value > 0.0 and abs(computed[i, i] / value - 1.0) > APART
     ]
     return (
-        f"diagonal entries {how}, over {100.0 * APART:.0f} % off those in the file: {', '.join(apart)}" if apart else ""
+        f"diagonal entries {how} differ by over {100.0 * APART:.0f} % from the file's acceleration derivatives: {', '.join(apart)}"
+        if apart
+        else ""
     )
 
 

@@ -47,7 +47,7 @@ def test_a_computed_added_mass_far_from_the_stated_one_is_said() -> None:
     """The matrix of the torpedo over -Yvdot' and -Nrdot' of the file; within a tenth nothing is said."""
     said = against_computed(accelerating())
     over = {"Yvdot'": ADDED[1, 1] / (1.2e-2 * UNIT), "Nrdot'": ADDED[5, 5] / (7e-4 * UNIT * 4.0)}
-    assert said.startswith("diagonal entries by the method ")
+    assert said.startswith("diagonal entries computed by the ")
     for name, ratio in over.items():
         assert (f"{name} {100.0 * (ratio - 1.0):+.0f} %" in said) is bool(abs(ratio - 1.0) > 0.1)
     same = {"Yvdot": -ADDED[1, 1] / UNIT * 1.05, "Nrdot": -ADDED[5, 5] / UNIT / 4.0}

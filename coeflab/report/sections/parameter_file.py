@@ -103,7 +103,7 @@ def _said(part: str, values: Array) -> str:
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
     "m': mass; xG': x of the centre of gravity. Positive: stable. If the interval contains zero, the sign is open.",
-    "U95 of an index comes from the U95 of its four derivatives. Errors of mass and centre of gravity are not included. The verdict uses "
+    "U95 of an index comes from the U95 of its four derivatives and the covariance of those that are fitted. Errors of mass and centre of gravity are not included. The verdict uses "
     "this linearised U95, or the Monte Carlo limits where the remark gives them.",
     "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
     "Roots are the eigenvalues of small motions about a straight course at constant speed. They follow from the force law, mass and added mass of the parameter file.",
