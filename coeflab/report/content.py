@@ -338,7 +338,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (_not_in_a_file(none),)
     shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
-    return (Section("law-at-points", "Force law at the measured points", text, shown),)
+    return (Section("law-at-points", "Force law at its points", text, shown),)
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:

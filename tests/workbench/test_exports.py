@@ -113,8 +113,8 @@ def test_suboff_exports_hold_their_own_points(suboff: Study, target: str) -> Non
         assert max(f.share for f in found) <= 0.08
         assert not any(f.beyond for f in found)
         text = made[name].files[f"{name}.{target}.loss.txt"].decode()
-        assert f"Force law of {target} against the measured points" in text
-        assert "Force law of the parameter file against the measured points" in text
+        assert f"Force law of {target} against its points" in text
+        assert "Force law of the parameter file against its points" in text
 
 
 def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> None:

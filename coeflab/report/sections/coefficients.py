@@ -30,8 +30,8 @@ INPUT = "Input: declared errors of the inputs, and the grid."
 SLOPE = "Slope: the part that comes from the U95 of the slopes (of X: Xvv', Xww', Xrr'), which the fit of the term holds fixed."
 DASH = "A dash: not applicable or not assessed; not in U95."
 POINTS = (
-    "n: number of points in the fit. A slope, and a constant without an entry under slope, is fitted to the straight runs and those in which only "
-    "its own motion varies. For a term with an entry under slope, n counts the points where its motions are not zero, combined runs included; for a "
+    "n: number of points in the fit. A slope uses the straight runs and those that vary only its motion; a constant without an entry under slope, the "
+    "runs of one sweep (over v or w where there is one). For a term with an entry under slope, n counts the points where its motions are not zero, combined runs included; for a "
     "constant with such an entry, all points."
 )
 OPEN = "U95 exceeds the value. Use such a term only together with the other terms of the same fit."

@@ -113,9 +113,8 @@ def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
         names = by.setdefault("body" if bodies.get(c.reference) != c.coefficient.body else "method", [])
         if c.reference not in names:
             names.append(c.reference)
-    differ = {"body": "the bodies differ", "method": "the methods differ"}
     each = [
-        f"No verdict on {listed(names)}: {differ[what]}, so a difference proves no error in either."
+        f"No verdict on {listed(names)}: {'its' if len(names) == 1 else 'their'} {what} is not that of our data, so a difference proves no error."
         for what, names in by.items()
     ]
     return " ".join(each)

@@ -96,9 +96,7 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         if f.beyond
     ]
     headers = ("force", "table", "points", "largest", "rms", "where", "allowed", "verdict")
-    return Table(
-        f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}), ("where", "rms")
-    )
+    return Table(f"{whose} against its points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}), ("where", "rms"))
 
 
 def at_points_verdict(f: LawAtPoints) -> str:
