@@ -104,8 +104,9 @@ def new(
 ) -> None:
     """Write a parameter file of your own numbers.
 
-    Works out the SI values, m' and the covariance. Nothing is assumed: what is not stated is not in the file. An added mass is
-    an acceleration derivative, "Yvdot'=-0.029". A file that exists is not written over.
+    Works out the SI values, m' and the covariance. Nothing is assumed: what is not stated is not in the file. Values are
+    totals: Nv' holds the Munk moment. An added mass is an acceleration derivative, "Yvdot'=-0.029". A file that exists is not
+    written over.
     """
     import shlex
 

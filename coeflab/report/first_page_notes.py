@@ -16,6 +16,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
 from coeflab.report.tables.results import lost_by_move
+from coeflab.report.tables.sources import halves
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
@@ -66,7 +67,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}.{by}{'.' * bool(by)}")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
-    out += lost_by_move(study)
+    out += [*halves(study), *lost_by_move(study)]
     own = [r for r in rows if r.source in towed_rows]
     if own:
         body = next((t.body for t in study.tables if t.campaign == own[0].source), "")

@@ -155,6 +155,7 @@ STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
+HALF = "half model"
 ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
 
 
@@ -199,7 +200,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if (cut := cut_of(half)) is not None:
         _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
+        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)

@@ -11,7 +11,9 @@ from coeflab.cli import as_json
 from coeflab.core.provenance import work
 from coeflab.report.content import core, document
 from coeflab.report.document import Document, Section
+from coeflab.report.first_page import answer
 from coeflab.report.tables import sources
+from coeflab.report.tables.results import primed_about
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.workbench import run
@@ -95,3 +97,19 @@ def test_json_has_it_too(study: Study) -> None:
 
 def test_the_sources_are_named_with_their_places(study: Study) -> None:
     assert sources.sources(study) == (f"Source: {work('roddy1990')} p. 19",)
+
+
+def test_forces_of_half_of_a_body_are_said_to_be_doubled_where_the_values_stand(study: Study, tmp_path: Path) -> None:
+    """A factor of two belongs beside the answer; a whole body says nothing."""
+    half = TOML.replace('body = "model_B"', 'body = "model_B"\nhalf_model = "upper"\nsymmetry = ["up-down"]')
+    (tmp_path / "campaign.toml").write_text(half)
+    rows = [f"{k},{b},{0.5 * b},{10.0 * b + 0.2 * b * abs(b)},{4.0 * b}" for k, b in enumerate(range(-12, 13, 2))]
+    (tmp_path / "table.csv").write_text("point,beta [deg],X [N],Y [N],N [N*m]\n" + "\n".join(rows) + "\n")
+    halved = run(read_plan(tmp_path / "campaign.toml"))
+    (said,) = sources.halves(halved)
+    assert said.endswith("table.csv: half model (upper): X, Y, N doubled.")
+    assert said in primed_about(halved)
+    assert said in answer(halved, drawn=False).notes
+    assert sources.halves(study) == ()
+    (whole, doubled) = (s.coefficients[0].value for s in (study, halved))
+    assert doubled == pytest.approx(2.0 * whole, rel=1e-9)

@@ -30,6 +30,7 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
+from coeflab.report.tables.sources import halves
 from coeflab.study.study import Study
 from coeflab.study.towed import STATES
 from coeflab.study.validation import WIDE
@@ -190,7 +191,7 @@ def primed_about(study: Study) -> str:
         point = point_in_words(c.reference_point, c.datum)
         by[f"{c.scaling.length_name} = {c.scaling.length:.5g} m, about {point}"] = None
     lines = [f"Primed by {'; by '.join(by)}."] if by else []
-    return " ".join([*lines, *drift_assumed(study)])
+    return " ".join([*lines, *halves(study), *drift_assumed(study)])
 
 
 def drift_assumed(study: Study) -> tuple[str, ...]:

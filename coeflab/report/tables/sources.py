@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
 from coeflab.core.table import Table
+from coeflab.core.wording import listed
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.to_frd import HALF
 
 
 def declared(tables: Sequence[ForceTable]) -> Table:
@@ -70,3 +72,12 @@ def sources(study: Study) -> tuple[str, ...]:
     ]:
         places.setdefault(key, {}).update({place: None} if place else {})
     return tuple(f"Source: {work(key)} {'; '.join(where)}".strip() for key, where in places.items())
+
+
+def halves(study: Study) -> tuple[str, ...]:
+    """Tables that hold forces of half of a body, and what of them is doubled; a sentence a kind."""
+    by: dict[str, list[str]] = {}
+    for t in study.tables:
+        for note in (n for n in t.notes if n.startswith(HALF)):
+            by.setdefault(note, []).append(t.name)
+    return tuple(f"{listed(names)}: {note}." for note, names in by.items())
