@@ -99,6 +99,7 @@ how_obtained = {quoted(f"{mesh.name}, a mesh")}
 # name = "dry vehicle"
 # mass = "MASS kg"
 # centre = {_point(body.reference_point, nothing)}  # m; here the centre of buoyancy, which rights nothing: z is larger below it
+# inertia = ["IX kg m^2", "IY kg m^2", "IZ kg m^2"]  # about its own centre; a mass without it is a point, and points on one axis have no roll inertia
 # [[mass]]
 # name = "water in the hull"  # or lead: what is missing to the displaced water
 # ballast = true

@@ -98,12 +98,16 @@ def test_the_other_command_and_the_masses_of_its_comments_are_read(tmp_path: Pat
     other, _, masses = file.read_text().partition("# Or by another command")[2].partition("\n\n")
     lines = [line.removeprefix("# ") for line in other.splitlines()[1:]]
     weights = [line.removeprefix("# ") for line in masses.splitlines()[1:]]
-    file.write_text("\n".join([head, *lines, *weights]).replace("MASS", "5"))
+    text = "\n".join([head, *lines, *weights]).replace("MASS", "5")
+    for name, own in (("IX", "0.02"), ("IY", "0.8"), ("IZ", "0.8")):
+        text = text.replace(f'"{name} kg m^2"', f'"{own} kg m^2"')
+    file.write_text(text)
     found = read_body(file)
     (thruster,) = found.thrusters
     assert (thruster.command, thruster.unit) == ("throttle", "%")
     assert thruster.curve.tolist() == [[0.0, 0.0], [100.0, 40.0]]
     assert found.mass_model is not None
+    assert np.linalg.eigvalsh(found.mass_model.inertia)[0] > 0.0
     assert found.mass_model.mass == pytest.approx(found.mass_model.density * found.mass_model.volume)
     assert rest
 
