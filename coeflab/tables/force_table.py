@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 AT_REST = float(np.sin(np.radians(0.05)))
 ROUNDING = 1e-12
+FEWEST_SPEEDS = 3  # of straight runs that give X0'
 COARSER = "coarser grid"
 STUDIES = {
     "domain": "domain size",

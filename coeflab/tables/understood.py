@@ -17,6 +17,7 @@ from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
+from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.mapping import (
     NO_FORCE,
     Assigned,
@@ -37,7 +38,6 @@ from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 MOST_IDLE = 5  # columns that a warning names
-FEWEST_SPEEDS = 3  # of straight runs that give X0'
 LOST = "of half of the body"  # why a column of it is left out
 
 

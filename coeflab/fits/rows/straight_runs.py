@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,9 +11,8 @@ from coeflab.core.types import Array
 from coeflab.fits.results.straight_runs import SYMBOL, StraightRuns
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import FEWEST_SPEEDS, ForceTable
 
-FEWEST = 3  # speeds
 SAME_SPEED = 1e-3  # of the largest
 ROUNDING = 1e-9  # of the value: scatter below it is that of the arithmetic
 
@@ -39,7 +39,7 @@ def straight_runs(table: ForceTable, length: float) -> StraightRuns | None:
         return None
     used = table.usable["X"] & (table.motion["u"] > 0.0)
     speed = np.asarray(table.speed[used])
-    if _speeds(speed) < FEWEST:
+    if _speeds(speed) < FEWEST_SPEEDS:
         return None
     primes = np.asarray(table.primed_force("X", length)[used])
     over = np.log(speed) - float(np.mean(np.log(speed)))
@@ -57,9 +57,7 @@ def straight_runs(table: ForceTable, length: float) -> StraightRuns | None:
     )  # fmt: skip
     if not made.has_trend:
         return made
-    return StraightRuns(
-        **{n: getattr(made, n) for n in StraightRuns.__dataclass_fields__} | {"random": float(sloped.half_width[0])}
-    )
+    return replace(made, random=float(sloped.half_width[0]))
 
 
 def resistance(

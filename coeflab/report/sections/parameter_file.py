@@ -110,7 +110,7 @@ TEXT = (
 )
 
 
-def in_words(study: Study, *, with_values: bool = True) -> list[str]:
+def in_words(study: Study) -> list[str]:
     """Which parameter files are unstable, and which are not, plane by plane; none where no index can be given."""
     said: dict[str, dict[str, dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
     for parameters in study.parameter_files.values():
@@ -122,7 +122,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
         each = [
             said
             for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
-            for said in _of_one_sense(index, v, senses[v], lacking, with_values)
+            for said in _of_one_sense(index, v, senses[v], lacking)
         ]
         if each:
             start = (
@@ -154,10 +154,10 @@ def _one_body(study: Study) -> list[str]:
 
 
 def _of_one_sense(
-    index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float], with_values: bool
+    index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float]
 ) -> list[str]:
     """The parameter files that one verdict holds for, so many at a time; at high speed also what is open at their own."""
-    each = [f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items()]
+    each = [f"{name} ({', '.join(values)})" for name, values in places.items()]
     open_at = ""
     if FAST in verdict:
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])

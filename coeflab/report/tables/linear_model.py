@@ -10,16 +10,13 @@ from coeflab.core.table import Table, folded, number
 from coeflab.core.wording import one_line
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
+from coeflab.vehicle.expected_signs import TURNS
 
 PART = 0.1  # a state with a smaller share is not named in a mode
 FUNCTION = "linear"
 ABOUT = "x_dot = A x + B d for small departures x of the states and d of the commands"
 AXES = "SI, angles in rad; x forward, y starboard, z down"
-SENSES = {
-    "dr": ("r", "turns to starboard", "turns to port"),
-    "ds": ("q", "bow up", "bow down"),
-    "db": ("q", "bow up", "bow down"),
-}
+SENSES = {"dr": ("r", "N"), "ds": ("q", "M"), "db": ("q", "M")}
 
 
 def matrix_tables(model: LinearModel) -> tuple[Table, Table]:
@@ -72,10 +69,10 @@ def senses(model: LinearModel) -> tuple[str, ...]:
     for i, command in enumerate(model.commands):
         if command.name not in CONTROLS or SENSES[command.name][0] not in names:
             continue
-        row, up, down = SENSES[command.name]
+        row, moment = SENSES[command.name]
         value = float(model.b.matrix[names.index(row), i])
         if value:
-            out.append(f"{command.name} > 0: {up if value > 0.0 else down}")
+            out.append(f"{command.name} > 0: {'turns ' * (moment == 'N')}{TURNS[moment][value > 0.0]}")
     return tuple(out)
 
 
