@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from enum import StrEnum
 from html import escape
 from importlib import import_module
 from math import isfinite, isnan
 from textwrap import wrap
 from typing import NamedTuple
 
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import words
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import Verbatim
 
@@ -300,15 +301,6 @@ def probability(value: float) -> str:
     return ABSENT if isnan(value) else "<0.001" if value < 1e-3 else f"{value:.3f}"
 
 
-class Severity(StrEnum):
-    """How much a finding matters; only `FAIL` makes the exit code 1."""
-
-    PASS = "pass"
-    NOTE = "note"
-    WARN = "warn"
-    FAIL = "fail"
-
-
 @dataclass(frozen=True, slots=True)
 class Check:
     """One finding.
@@ -341,6 +333,19 @@ class Check:
     def _repr_html_(self) -> str:
         """What was found and what it means, for notebooks."""
         return html_by("finding", self)
+
+
+def as_check(name: str, found: Finding) -> Check:
+    """A finding as a row of the table of checks, its words from the templates.
+
+    Parameters
+    ----------
+    name : str
+        Plugin that made it.
+    found : Finding
+    """
+    text = words(found)
+    return Check(name, found.subject, found.severity, text.statement, text.rule, text.advice)
 
 
 def html_by(renderer: str, noun: object) -> str:

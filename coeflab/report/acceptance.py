@@ -207,7 +207,7 @@ class Acceptance:
     @property
     def file_notes(self) -> tuple[str, ...]:
         """What the parameter files say of themselves, and of what they do not hold; each once."""
-        return tuple(dict.fromkeys(note for p in self.parameter_files for note in p.provenance.notes))
+        return tuple(dict.fromkeys(note for p in self.parameter_files for note in p.remarks))
 
     @property
     def numbers(self) -> tuple[Compared, ...]:

@@ -504,7 +504,7 @@ def parameters(found: ParameterFile) -> tuple[Part, ...]:
     ordered = sorted(found.coefficients, key=lambda c: c.value is None)
     return (_heading(heading, about, f"With {listed(held)}." if held else ""),
             _parts(_picture(law_figure(found, DRAWN)), f"<div>{_coefficient_grid(ordered) if ordered else ''}{_models(found)}</div>"),
-            _notes(found.provenance.notes[:MOST_NOTES]))  # fmt: skip
+            _notes(found.remarks[:MOST_NOTES]))  # fmt: skip
 
 
 def _models(found: ParameterFile) -> Part:

@@ -243,6 +243,7 @@ def _written(
         "measured": (*base.measured, *(other.measured if same else ())),
         "law_holds": (*base.law_holds, *(other.law_holds if same else ())),
         "law_at_points": (),
+        "findings": tuple(dict.fromkeys((*base.findings, *other.findings))),
         "provenance": mine.model_copy(
             update={
                 "coeflab_version": VERSION,

@@ -23,6 +23,7 @@ from pydantic import Field, ValidationError, model_validator
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import named, shipped
+from coeflab.core.finding import Finding
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, RefusedError, Words, stored_fields
@@ -30,6 +31,7 @@ from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
+from coeflab.core.texts import remark
 from coeflab.core.types import in_angles
 from coeflab.core.units import also_written, same_unit
 from coeflab.core.wording import repeated
@@ -58,6 +60,7 @@ VERSIONS = {
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
     "form_rejected.",
     "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; the origin stated: numbers of whoever wrote the file; added mass near walls.",
+    "1.6": "Findings: what is assumed, left out or not assessed, as codes and numbers.",
 }
 SAME = 1e-6  # relative: numbers of a file that follow from each other
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
@@ -207,7 +210,15 @@ class ParameterFile(Strict):
     law_at_points: Annotated[
         tuple[LawAtPoints, ...], Means("how far the law is from its points, by component and table", since="1.4")
     ] = ()
+    findings: Annotated[
+        tuple[Finding, ...], Means("what is assumed, left out or not assessed", since="1.6")
+    ] = ()
     provenance: Annotated[Provenance, Means("where it all comes from")]
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader has to know, in words: the notes, and what was found."""
+        return tuple(dict.fromkeys((*self.provenance.notes, *(remark(f) for f in self.findings))))
 
     @property
     def offered(self) -> tuple[CoveredRange, ...]:

@@ -243,7 +243,7 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
             if is_later(p.schema_version, SCHEMA_VERSION)
             else ()
         ),
-        *p.provenance.notes,
+        *p.remarks,
         *(
             ("values are totals: -C_A(nu) nu of the added mass is in them",)
             if p.added_mass is not None and kind != "coeflab"

@@ -159,7 +159,7 @@ def parameters(file: ParameterFile) -> Table:
         for c in file.coefficients
     )  # fmt: skip
     at = f"{file.conditions.speed:.5g} m/s and {file.conditions.density:.5g} kg/m^3"
-    notes = (f"primed by {file.scaling.length_name} {file.scaling.length:.5g} m; SI at {at}", *file.provenance.notes)
+    notes = (f"primed by {file.scaling.length_name} {file.scaling.length:.5g} m; SI at {at}", *file.remarks)
     headers = ("", "value", "U95", f"at {file.conditions.speed:.4g} m/s", "unit", "origin", "from")
     return Table(f"{file.name}: {file.body}", headers, rows, notes, frozenset({0, 4, 5, 6}))
 

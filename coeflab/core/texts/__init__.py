@@ -1,0 +1,87 @@
+"""The words of findings: one TOML file a subject, one table a code. Nothing else in coeflab words a finding.
+
+A table has ``statement``, and may have ``rule`` (what it was held against) and ``advice``. ``{statistic}``, ``{threshold}``, ``{advice}``,
+``{subject}`` and the names of facts stand in braces, with a format of Python where one is needed: ``{statistic:.0%}``. Numbers without
+a format have three digits; several values are listed. A sentence may differ with a fact: ``statement.upper`` is taken where the
+fact named by ``by`` has the value ``upper``.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from string import Formatter
+from typing import Any, NamedTuple
+
+from coeflab.core.errors import PluginError
+from coeflab.core.finding import Finding
+from coeflab.core.wording import listed
+
+PARTS = ("statement", "rule", "advice")
+
+
+class Wording(NamedTuple):
+    """A finding in words; ``rule`` and ``advice`` are empty where its template has none."""
+
+    statement: str
+    rule: str
+    advice: str
+
+
+@cache
+def templates(subject: str) -> dict[str, dict[str, Any]]:
+    """The templates of a subject, by code without the subject."""
+    import tomllib
+
+    file = files(__name__).joinpath(f"{subject}.toml")
+    if not file.is_file():
+        raise PluginError(f"no words for findings of {subject!r}")
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+class _Words(Formatter):
+    """``str.format`` whose numbers have three digits unless told otherwise."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        if isinstance(value, tuple):
+            return listed([self.format_field(v, format_spec) for v in value]) if value else "none"
+        if isinstance(value, float) and not format_spec:
+            return f"{value:.3g}"
+        return str(super().format_field(value, format_spec))
+
+
+def words(finding: Finding) -> Wording:
+    """A finding in words.
+
+    Raises
+    ------
+    PluginError
+        No template has its code, or a template asks for a fact that the finding has not.
+    """
+    subject, _, what = finding.code.partition(".")
+    template = templates(subject).get(what)
+    if template is None:
+        raise PluginError(f"no words for the finding {finding.code!r}")
+    facts = {fact.name: fact.value for fact in finding.facts}
+    known = {
+        "subject": finding.subject, "statistic": finding.statistic, "threshold": finding.threshold, "advice": finding.advice, **facts,
+    }  # fmt: skip
+    out = []
+    for part in PARTS:
+        text = template.get(part, "")
+        if isinstance(text, dict):
+            text = text.get(str(facts.get(template.get("by", ""), "")), text.get("else", ""))
+        try:
+            out.append(_Words().vformat(text, (), known))
+        except (KeyError, ValueError, TypeError) as wrong:
+            raise PluginError(f"the words of {finding.code!r} do not fit its facts: {wrong!r}") from wrong
+    return Wording(*out)
+
+
+def remark(finding: Finding) -> str:
+    """Statement and advice in a line; code and subject where a file of somebody else holds a finding that is not known here."""
+    try:
+        text = words(finding)
+    except PluginError:
+        return f"{finding.code}: {finding.subject}"
+    return f"{text.statement} {text.advice}".strip()
