@@ -210,9 +210,7 @@ class ParameterFile(Strict):
     law_at_points: Annotated[
         tuple[LawAtPoints, ...], Means("how far the law is from its points, by component and table", since="1.4")
     ] = ()
-    findings: Annotated[
-        tuple[Finding, ...], Means("what is assumed, left out or not assessed", since="1.6")
-    ] = ()
+    findings: Annotated[tuple[Finding, ...], Means("what is assumed, left out or not assessed", since="1.6")] = ()
     provenance: Annotated[Provenance, Means("where it all comes from")]
 
     @property
