@@ -25,7 +25,7 @@ class Fact(NamedTuple):
     """A number or a name that a finding is about."""
 
     name: Annotated[Name, Means("which")]
-    value: Annotated[float | int | str | tuple[float | int | str, ...], Means("number, name, or several")]
+    value: Annotated[float | int | str | tuple[float | int | str, ...], Means("number, name, or several", "SI")]
 
 
 @stored("code subject severity statistic? threshold? advice? facts?")
@@ -57,8 +57,8 @@ class Finding:
     code: Annotated[Name, Means("subject.what: which finding")]
     subject: Annotated[Words, Means("what it is about: a coefficient, table, body, file or target")]
     severity: Annotated[Severity, Choice(tuple(Severity), Severity), Means("pass, note, warn or fail")]
-    statistic: Annotated[Finite | None, Means("what was computed")] = None
-    threshold: Annotated[Finite | None, Means("what it was held against")] = None
+    statistic: Annotated[Finite | None, Means("what was computed", "of its code, SI")] = None
+    threshold: Annotated[Finite | None, Means("what it was held against", "as the statistic")] = None
     advice: Annotated[str, Means("what to type to mend it")] = ""
     facts: Annotated[tuple[Fact, ...], Means("further numbers and names")] = ()
 
