@@ -21,6 +21,7 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
+from coeflab.study.secants import secant
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.validation import Validation, against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
@@ -29,6 +30,7 @@ from coeflab.vehicle.reference import Reference, Relation
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
+SECANT = "secant of one setting"
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 RUNS = {"": "straight", "v": "drift", "w": "attack", "p": "rolling", "q": "pitching", "r": "turning"}
 STATES = {"unconverged": "did not converge", "not run": "not started", "drifting": "still drifting"}
@@ -161,7 +163,12 @@ def _row(
     no_grid = "" if budget is None else without_grid(budget.unassessed)
     if own is None or own.value is None:
         missing, why = _missing(study, tow, source or symbol, own)
-        return TowedRow(symbol, None, u_grid, missing, why, published)
+        line = secant(_tables(study, tow.campaign), source or symbol, scaling) if missing == OPEN and scaling else None
+        if line is None or line.value is None:
+            return TowedRow(symbol, None, u_grid, missing, why, published)
+        if source:
+            line = replace(line, symbol=symbol, value=sign * line.value)
+        return TowedRow(symbol, line, u_grid, "", f"{SECANT}; {why}", published, why_none=SECANT, no_grid=no_grid)
     if source:
         turned = replace(own, symbol=symbol, value=sign * own.value)
         equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
