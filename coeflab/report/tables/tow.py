@@ -19,6 +19,7 @@ from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
 from coeflab.study.checks.symmetry import biases
+from coeflab.study.towed import NO_RESULT
 from coeflab.tables.conditions import named
 from coeflab.tank.campaign import TowedRun
 from coeflab.tank.jobs import Job, JobState
@@ -201,7 +202,8 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
             continue
         status = "" if r.coefficient.status is Status.OK else r.coefficient.status.replace("_", " ")
         is_open = r.value is not None and r.u95 is not None and abs(r.value) <= r.u95 and SIGN_OPEN not in status
-        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, r.why)))
+        wide = "" if r.is_result else f"no result: U95 above {NO_RESULT:.0%}"
+        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, wide, r.why)))
         cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(said, LONGEST)))
     about = ", ".join(f"{x:.4g}" for x in tank.reference_point)
     notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
