@@ -20,6 +20,7 @@ from coeflab.core.text.foam_walk import CONDITIONAL, LIST, Entry, Foam, Walk
 from coeflab.core.text.series import opened
 from coeflab.core.texts import remark
 
+__all__ = ["Entry", "Foam", "FoamCase"]
 ROOTS = {"$FOAM_CASE": "", "${FOAM_CASE}": "", "<case>": "", "<system>": "system", "<constant>": "constant"}
 _NO_CODE = "plain arithmetic is computed"
 
@@ -113,7 +114,7 @@ class FoamCase:
             return None
         return content
 
-    def _found(self, what: str, place: str, *, threshold: float | None = None, **facts: str) -> None:
+    def _found(self, what: str, place: str, *, threshold: float | None = None, **facts: Any) -> None:
         subject = place.partition(":")[0]
         self.note(Finding.of(f"foam.{what}", subject, Severity.WARN, threshold=threshold, place=place, **facts))
 

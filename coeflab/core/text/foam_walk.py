@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
@@ -175,7 +175,7 @@ class Walk:
         for close, line in zip(self.closes[1:], self.opened[1:], strict=True):
             self._found("unclosed", line, mark="{" if close == "}" else "(")
 
-    def _found(self, what: str, line: int, **facts: str) -> None:
+    def _found(self, what: str, line: int, **facts: Any) -> None:
         place = f"{self.case.relative(self.file)}:{line}"
         self.case.note(Finding.of(f"foam.{what}", self.file.name, Severity.WARN, place=place, **facts))
 
