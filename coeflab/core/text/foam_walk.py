@@ -102,10 +102,28 @@ class Reader(Protocol):
         """Keep what was found."""
 
     def include(self, file: Path, line: int, named: str, into: Foam, depth: int, *, needed: bool) -> None:
-        """Read another file into a dictionary."""
+        """Read another file into a dictionary.
+
+        Parameters
+        ----------
+        file, line : Path, int
+            Where it is included.
+        named : str
+        into : Foam
+        depth : int
+            How many files include one another by now.
+        needed : bool
+            Whether a missing one is noted.
+        """
 
     def include_function(self, file: Path, line: int, named: str, into: Foam, depth: int) -> None:
-        """Read a file of ``system`` that holds a function object."""
+        """Read a file of ``system`` that holds a function object.
+
+        Parameters
+        ----------
+        file, line, named, into, depth
+            As of `include`.
+        """
 
 
 class Walk:
