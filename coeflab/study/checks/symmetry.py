@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.finding import Finding
-from coeflab.core.table import Check, Severity, as_check, plus_minus
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
