@@ -481,8 +481,8 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     Returns
     -------
     tuple of Finding
-        ``budget.grid_not_converging`` and ``budget.grid_run_left_out``, warnings, once a study; ``budget.not_assessed``, a note,
-        once a campaign.
+        ``budget.grid_not_converging`` and ``budget.grid_run_left_out``, warnings, once a study, the first a note where no
+        value is told from zero anyway; ``budget.not_assessed``, a note, once a campaign.
     """
     out = []
     studies: dict[tuple[str, str, str], list[Budget]] = {}
@@ -494,9 +494,10 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
         about = f"{campaign} {', '.join(primed(b.symbol) for b in those)}"
         judged, where = study.convergence, {"component": component, "setting": setting, "table": study.table}
         if not judged.convergence.converges:
+            level = Severity.WARN if any(_is_told(b) for b in those) else Severity.NOTE
             out.append(
                 Finding.of(
-                    "budget.grid_not_converging", about, Severity.WARN, statistic=judged.relative, how=judged.convergence.value,
+                    "budget.grid_not_converging", about, level, statistic=judged.relative, how=judged.convergence.value,
                     cells=study.cells, values=judged.values, **where,
                 )
             )  # fmt: skip
@@ -518,6 +519,11 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
                 )
             )  # fmt: skip
     return tuple(out)
+
+
+def _is_told(b: Budget) -> bool:
+    """Whether a value is told from zero but for its grid study."""
+    return abs(b.value) > b.joined(*(p.name for p in b.parts if p.name != "grid"))
 
 
 def as_estimates(fit: FitResult) -> FitResult:
