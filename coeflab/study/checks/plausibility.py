@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from coeflab.core.finding import Finding
-from coeflab.core.table import Check, Severity, as_check
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import LAW, plausibility
@@ -34,4 +34,6 @@ def _of_file(name: str, p: ParameterFile) -> Iterator[Check]:
                        advice=f"coeflab params check {name}.parameters.json", subjects=warned),
         )  # fmt: skip
     elif not failed:
-        yield as_check("plausibility", Finding.of("parameter_file.passes", name, Severity.PASS, statistic=float(len(found))))
+        yield as_check(
+            "plausibility", Finding.of("parameter_file.passes", name, Severity.PASS, statistic=float(len(found)))
+        )
