@@ -19,6 +19,7 @@ from coeflab.study.table_sweeps import Sweep, setting_in_words, sweeps_of
 from coeflab.tables.force_table import ForceTable
 
 APART, NEARER = 0.05, 3.0  # of the largest reading; how much nearer another row is
+NOTHING = 0.01  # of the largest primed force or moment: a component below it is next to nothing
 
 
 class Slope(NamedTuple):
@@ -110,12 +111,12 @@ def grid_rows_elsewhere(table: ForceTable) -> Iterator[Finding]:
     setting = table.setting
     for sweep in sweeps_of(table, used):
         rows = sweep.rows
-        forces = np.array([table.forces[c] for c in table.usable])
+        forces = np.array([table.primed_force(c, table.scaling.length) for c in table.usable])
         size = np.abs(forces[:, rows]).max(1)
-        forces = forces[size > 0.0] / size[size > 0.0][:, None]
-        telling = np.ptp(forces[:, rows], axis=1) > APART
+        telling = (size > NOTHING * size.max()) & (np.ptp(forces[:, rows], axis=1) > APART * size)
         if not telling.any():
             continue
+        forces = forces[telling] / size[telling][:, None]
         for row in map(int, rows):
             grids = [
                 int(i) for i in np.flatnonzero((setting == setting[row]) & ~used)
@@ -124,7 +125,7 @@ def grid_rows_elsewhere(table: ForceTable) -> Iterator[Finding]:
             ]  # fmt: skip
             if not grids:
                 continue
-            apart = np.abs(forces[telling][:, grids][:, :, None] - forces[telling][:, None, rows]).max(0).min(0)
+            apart = np.abs(forces[:, grids][:, :, None] - forces[:, None, rows]).max(0).min(0)
             own, nearest = float(apart[rows == row][0]), int(np.argmin(apart))
             if own > APART and apart[nearest] * NEARER < own:
                 place = int(np.flatnonzero(rows == row)[0])
