@@ -58,7 +58,7 @@ def unseen_columns(study: Study) -> tuple[Finding, ...]:
         for c in p.coefficients
         if c.campaign
     }
-    told = {
+    sure = {
         (c.campaign, c.symbol.removesuffix("'")) for c in study.coefficients
         if c.origin == "fit" and c.value is not None and c.u95 is not None and abs(c.value) > c.u95
     }  # fmt: skip
