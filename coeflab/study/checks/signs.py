@@ -65,7 +65,7 @@ def unseen_columns(study: Study) -> tuple[Finding, ...]:
     unseen: dict[str, list[str]] = {}
     for t in study.tables:
         for component in t.forces:
-            symbols = [f"{component}{v}" for v in t.varies if v in MOTIONS and (t.campaign, f"{component}{v}") in told]
+            symbols = [f"{component}{v}" for v in t.varies if v in MOTIONS and (t.campaign, f"{component}{v}") in sure]
             seen = any(s in NEGATIVE or (s in BY_PLACE and t.campaign in with_hull) for s in symbols)
             if symbols and not seen:
                 unseen.setdefault(t.campaign, []).append(f"{component} of {t.name} ({', '.join(map(primed, symbols))})")
