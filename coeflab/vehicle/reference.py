@@ -277,7 +277,7 @@ class ReferenceKeys(takes.Declaration):
     relation : {"re-analysis", "cross-body", "quoted"}
         What it is to ours: the authors' own evaluation of the tables in campaigns, with a verdict; another body or another method; quoted from another column. The latter two have no verdict.
     campaigns : tuple of str
-        Whose tables a re-analysis evaluates.
+        Whose tables a re-analysis evaluates; it needs them.
     length : float
         Of its primes.
     length_name : str
@@ -330,6 +330,11 @@ class ReferenceKeys(takes.Declaration):
                 raise InputError("nothing", f"what goes with {key}", column=other, advice=f"Add {other}.")
         if self.other_length_name is not None and self.other_length is None:
             raise InputError("a name without a length", "other_length", column="other_length_name")
+        if self.relation == Relation.RE_ANALYSIS and not self.campaigns:
+            raise InputError(
+                "a re-analysis without campaigns", 'campaigns = ["NAME"], the campaigns whose tables it evaluates', column="campaigns",
+                advice='Add campaigns, or say relation = "cross-body" for another body or method.',
+            )  # fmt: skip
         _ = self.made
 
     @property

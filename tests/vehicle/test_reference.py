@@ -17,6 +17,7 @@ name = "r"
 citation = "synthetic"
 body = "b"
 relation = "re-analysis"
+campaigns = ["c"]
 length = 2.0
 length_name = "L"
 values = { Yv = "-0.03" }
@@ -118,3 +119,16 @@ def test_a_column_may_have_values_for_the_parameter_file_alone(tmp_path: Path) -
     (column,) = read_references(path)
     assert column.values == ()
     assert [v.symbol for kind in column.literature for v in kind.values] == ["Yr"]
+
+
+def test_a_re_analysis_names_its_campaigns(tmp_path: Path) -> None:
+    """Before: the column was read, and the report said that there is no published evaluation."""
+    path = tmp_path / "published.toml"
+    path.write_text(SYNTHETIC.replace('campaigns = ["c"]\n', ""), encoding="utf-8")
+    with pytest.raises(InputError, match="a re-analysis without campaigns") as caught:
+        read_references(path)
+    assert "campaigns" in caught.value.expected
+    assert "published.toml" in str(caught.value)
+    assert "line 1" in str(caught.value)
+    path.write_text(SYNTHETIC.replace('campaigns = ["c"]\n', "").replace("re-analysis", "cross-body"), encoding="utf-8")
+    assert read_references(path)[0].campaigns == ()
