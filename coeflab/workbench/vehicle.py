@@ -26,9 +26,10 @@ from coeflab.core.units import positive_typed, three_typed
 from coeflab.formats.export import PlannedExport
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.approach import along, linear_growth, mirrored, yaw_acceleration
+from coeflab.motion.approach import along, mirrored, yaw_acceleration
 from coeflab.motion.manoeuvre import UPRIGHT, Simulation
 from coeflab.motion.simulation import manoeuvres_of, moved, simulate
+from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.report.document import Document, Section, digest_of
 from coeflab.report.formats import REPORTERS

@@ -60,7 +60,12 @@ def test_a_published_vehicle() -> None:
     assert file.mass.mass == 13.5
     np.testing.assert_allclose(file.mass.inertia_matrix, np.diag([0.26, 0.23, 0.37]))
     notes = " ".join(file.remarks)
-    for said in ("Left out, weight and buoyancy: gravity", "1 m: the file states none", "no C_A(nu) nu", "initial speed is zero"):
+    for said in (
+        "Left out, weight and buoyancy: gravity",
+        "1 m: the file states none",
+        "no C_A(nu) nu",
+        "initial speed is zero",
+    ):
         assert said in notes
 
 
