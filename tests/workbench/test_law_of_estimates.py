@@ -13,6 +13,7 @@ from scipy.optimize import fsolve
 from coeflab.core.finding import Severity
 from coeflab.estimates import STEERED, _derived, _steered
 from coeflab.estimates.fins import FoilForce
+from coeflab.report.sections.parameter_file import without_u95
 from coeflab.study.study import Study
 from coeflab.vehicle.held_to_model import law_u95
 from coeflab.vehicle.merge import findings_of_merged
@@ -140,9 +141,20 @@ def test_the_part_along_x_of_a_turned_fin() -> None:
     slope = 0.5 * density * speed * turned * (1.0 - 2.0 * induced * own / lifting)
     unit = 0.5 * density * speed**2 * length**2
     drift = np.array([0.1, 0.2, 0.3])
-    ahead = float(drift**2 @ np.sqrt(1.0 - drift**2) / (drift @ drift))  # u over U of the grid, as least squares weighs it
+    ahead = float(
+        drift**2 @ np.sqrt(1.0 - drift**2) / (drift @ drift)
+    )  # u over U of the grid, as least squares weighs it
     expected = {"v": ahead * slope * speed / unit, "r": slope * x * speed / length / unit}
     for motion, value in expected.items():
         found, _ = _derived((_steered(length, speed, motion, "dr"),), fin, np.array([unit]))
         assert found[0] == pytest.approx(value, rel=1e-9), motion
     assert replace(fin, turned=0.0)(np.array([[speed, *none[:2], 0.0, 0.0, 0.0]]), {"dr": np.ones(1)})[0, 0] == 0.0
+
+
+def test_the_report_says_of_one_turn_what_its_first_page_says(study: Study) -> None:
+    """Before: a 95 % range of the tactical diameter on page 1, and "No U95: each manoeuvre is computed once"."""
+    said = without_u95(study)
+    assert "turning circle 100" in said
+    assert "zigzag is computed once" in said
+    bare = replace(study, shape=replace(study.shape, carried=()))
+    assert without_u95(bare).startswith("No U95")
