@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.texts import remark
 from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
@@ -199,6 +200,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         if loss.lossless
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
+    lines += [f"Of the parameter file, {f.severity}: {remark(f)}" for f in parameters.findings]
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
     own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
