@@ -52,19 +52,19 @@ def doubt(body: Body) -> Finding | None:
     if spread[widest] > (FAR_LONGER if hulls else LONGER) * spread[0]:
         turn = _laid_along(shape, widest)
         ratio = float(spread[widest] / spread[0])
-        return _finding("across", body, axes, turn, ratio, LONGER, along=DIRECTIONS[widest])
+        return _finding("orientation.across", body, axes, turn, ratio, LONGER, along=DIRECTIONS[widest])
     if outline is None:
         return None
     off, limit = _aside(shape, outline)
     side = int(np.argmax(np.abs(off)))
     tail = _tail_aft(outline)
     if side == 1 and off[1] > limit:
-        return _finding("upside_down", body, axes, tail @ _upright(off, limit), float(off[1]), limit)
+        return _finding("orientation.upside_down", body, axes, tail @ _upright(off, limit), float(off[1]), limit)
     if side == 0 and abs(off[0]) > max(limit, SIDEWAYS * abs(off[1])):
         way, turn = "starboard" if off[0] > 0.0 else "port", tail @ _upright(off, limit)
-        return _finding("on_its_side", body, axes, turn, float(abs(off[0])), limit, towards=way)
+        return _finding("orientation.on_its_side", body, axes, turn, float(abs(off[0])), limit, towards=way)
     if tail[0, 0] < 0.0:
-        return _finding("astern", body, axes, tail, None, None)
+        return _finding("orientation.astern", body, axes, tail, None, None)
     return None
 
 
@@ -90,12 +90,12 @@ def require_orientation(body: Body) -> None:
 
 
 def _finding(
-    what: str, body: Body, axes: Axes, turn: Array, statistic: float | None, threshold: float | None, **facts: str
+    code: str, body: Body, axes: Axes, turn: Array, statistic: float | None, threshold: float | None, **facts: str
 ) -> Finding:
     better = axes_of(turn @ axes.rotation)
-    severity = Severity.NOTE if axes.spelled and what != "across" else Severity.WARN
+    severity = Severity.NOTE if axes.spelled and code != "orientation.across" else Severity.WARN
     return Finding.of(
-        f"orientation.{what}", body.name, severity, statistic=statistic, threshold=threshold,
+        code, body.name, severity, statistic=statistic, threshold=threshold,
         advice=f"--axes {better.typed}", stated=axes.name, own=axes.typed, **facts,
     )  # fmt: skip
 

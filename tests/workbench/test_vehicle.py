@@ -109,7 +109,7 @@ def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_pa
     path.write_bytes(made.to_json())
     back = read_parameter_file(path)
     assert back == made
-    assert back.schema_version == "1.5"
+    assert back.schema_version == "1.6"
     assert {(c.status, c.origin) for c in back.coefficients} == {(Status.ESTIMATE, "estimate")}
     assert {c.symbol.removesuffix("'"): c.u95 for c in back.coefficients} == pytest.approx(
         {s: SHARE * abs(v) for s, v in (VALUES | RUDDER).items()}
