@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import ABSENT, Table, in_digits_of, with_u95
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
@@ -414,7 +415,7 @@ def _of_models(study: Study) -> Answer:
 
 
 def _of_publication(found: Acceptance) -> Answer:
-    good, count, valid = _held(found)
+    good, count, _, valid = _held(found)
     some = f"{count - good} of {count} numbers outside the tolerance"
     said = f"all {count} numbers within the tolerance" if good == count else some
     others = [b for b, (_, n) in held(found).items() if n and not b.validates]
@@ -428,11 +429,12 @@ def _of_publication(found: Acceptance) -> Answer:
     return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=by_basis(found))
 
 
-def _held(found: Acceptance) -> tuple[int, int, int]:
-    """How many numbers hold, how many there are, how many of them validate."""
+def _held(found: Acceptance) -> tuple[int, int, int, int]:
+    """How many numbers hold, how many there are; the same of those that validate."""
     numbers = held(found)
     good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    return good, count, sum(pair[1] for b, pair in numbers.items() if b.validates)
+    holding, valid = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
+    return good, count, holding, valid
 
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
@@ -445,12 +447,13 @@ def _narrow(whole: Table, names: Sequence[str]) -> Table:
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
-    good, count, valid = _held(found)
+    good, count, holding, valid = _held(found)
     worst = Severity.PASS if good == count else Severity.FAIL
+    validated = Severity.NOTE if not valid else Severity.PASS if holding == valid else Severity.FAIL
     errata = len(found.errata)
     return (
         Chip("Numbers", f"{good} of {count} pass", worst, "compared"),
-        Chip("Validation", f"{valid} of {count} numbers" if valid else "none", Severity.PASS if valid else Severity.NOTE, "verdict"),
+        Chip("Validation", f"{holding} of {valid} pass" if valid else "none", validated, "verdict"),
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip

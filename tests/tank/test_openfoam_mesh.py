@@ -17,6 +17,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.core.text.foam import FoamCase
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam.mesh import (
@@ -157,15 +158,18 @@ def test_keys_that_cannot_be(given: Mapping[str, object], said: str) -> None:
         validated(MeshKeys, given)
 
 
-def test_the_dictionaries_are_read_by_others_and_say_what_was_chosen(body: TowedBody, tmp_path: Path) -> None:
-    from foamlib import FoamFile
-
+def test_the_dictionaries_are_read_and_say_what_was_chosen(body: TowedBody, tmp_path: Path) -> None:
     made = job(body, tmp_path, MeshKeys(wall="resolved"), cores=2)
+    case = FoamCase(made.folder)
     for file in (made.folder / "system").iterdir():
-        assert FoamFile(file).as_dict(include_header=True)["FoamFile"]["object"] == file.name
-    snappy = FoamFile(made.folder / "system" / "snappyHexMeshDict").as_dict()
-    assert list(snappy["geometry"]["body.stl"]["regions"]) == list(body.patches)
-    assert snappy["addLayersControls"]["layers"]["hull"]["expansionRatio"] == 1.3
+        assert case.word(case.read(f"system/{file.name}"), "FoamFile", "object") == file.name
+    snappy = case.read("system/snappyHexMeshDict")
+    assert snappy is not None
+    regions = snappy.part("geometry", "body.stl", "regions")
+    assert regions is not None
+    assert list(regions.entries) == list(body.patches)
+    assert case.value(snappy, "addLayersControls", "layers", "hull", "expansionRatio")[0] == 1.3  # type: ignore[index]
+    assert not case.notes
     block = (made.folder / "system" / "blockMeshDict").read_text()
     assert re.search(r"cut\s*\{\s*type symmetryPlane;\s*faces \(\(4 5 6 7\)\);", block)
     surface = (made.folder / "constant" / "triSurface" / "body.stl").read_text()

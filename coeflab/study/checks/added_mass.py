@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity, as_check
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, as_check
 from coeflab.study.study import Study
 
 summary = "added mass that is a rough guide, or not by the panel method"

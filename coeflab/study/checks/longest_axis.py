@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.orientation import doubt
-from coeflab.core.table import Check, Severity, as_check
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, as_check
 from coeflab.study.study import Study
 
 summary = "whether a vehicle's mesh lies as its axes say: longest ahead, sail up, tail aft"

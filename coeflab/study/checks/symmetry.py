@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
