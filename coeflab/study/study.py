@@ -81,6 +81,31 @@ class PlannedTow:
 
 
 @brief
+@dataclass(frozen=True, slots=True)
+class PlannedConversion:
+    """One ``[[conversion]]``: a campaign that holds the numbers of another in other units, axes or about another point.
+
+    Attributes
+    ----------
+    campaign : Path
+    of : str
+        Name of the other, among the campaigns of the plan's tables.
+    """
+
+    campaign: Path
+    of: str
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Conversion:
+    """A table and the one that it is a copy of, both about the plan's reference point."""
+
+    copy: ForceTable
+    original: ForceTable
+
+
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -110,9 +135,10 @@ class Plan:
         Use cells that their source marks as doubtful.
     file : InputFile or None
     tows : tuple of PlannedTow
+        Their campaigns are among the tables.
     command : str
         What was typed, of a plan that no file holds; paths by their last name.
-        Their campaigns are among the tables.
+    conversions : tuple of PlannedConversion
     """
 
     name: str
@@ -135,6 +161,7 @@ class Plan:
     manoeuvres: tuple[PlannedManoeuvre, ...] = ()
     tows: tuple[PlannedTow, ...] = ()
     command: str = ""
+    conversions: tuple[PlannedConversion, ...] = ()
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
@@ -177,7 +204,7 @@ class Study:
     """Everything that a run found; export and report are two leaves of this one object.
 
     ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
-    planned exports that were not made; all else stands. ``unfitted`` says of the campaign of a tow why a fit of it could not
+    planned exports that were not made; all else stands. ``conversions`` are read to be compared, never fitted. ``unfitted`` says of the campaign of a tow why a fit of it could not
     be made. ``shape`` is there where no table is: then the fit is that of the estimates.
 
     Nouns of one kind are `Several` and `ByName`, whatever tuple or mapping they were given as: a tuple and a mapping that
@@ -201,6 +228,7 @@ class Study:
     manoeuvres: tuple[Simulation, ...] = ()
     unfitted: Mapping[str, str] = field(default_factory=dict)
     shape: FromShape | None = None
+    conversions: tuple[Conversion, ...] = ()
 
     def __post_init__(self) -> None:
         for name in TOGETHER:

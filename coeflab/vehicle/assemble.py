@@ -424,7 +424,9 @@ def assemble(
         covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
         models=models,
         added_mass=hull,
-        findings=tuple(dict.fromkeys(found for f in chosen for found in f.findings)),
+        findings=tuple(
+            dict.fromkeys([*(f for fit in chosen for f in fit.findings), *(() if found is None else found.findings)])
+        ),
         provenance=Provenance(
             coeflab_version=VERSION,
             study=study,

@@ -5,7 +5,7 @@ What a plan names, read: tables about one reference point, bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -33,8 +33,8 @@ from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
-from coeflab.study.plan import plan_at, read_plan
-from coeflab.study.study import Plan, PlannedJoint, Study
+from coeflab.study.plan import plan_at, read_plan, table_at
+from coeflab.study.study import Conversion, Plan, PlannedConversion, PlannedJoint, Study
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import read_tables
@@ -59,6 +59,25 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
             "state the reference point from one datum. A body names its own as datum under [body] of its body.toml; that of a mesh is its origin."
         )
     return table.about(plan.reference_point)
+
+
+def conversions(planned: PlannedConversion, plan: Plan, tables: Sequence[ForceTable]) -> Iterator[Conversion]:
+    """The tables of a copy, each beside the one of the same place in its original."""
+    copies = [settled(t, plan) for t in read_tables(table_at(planned.campaign))]
+    originals = [t for t in tables if t.campaign == planned.of]
+    if len(copies) != len(originals):
+        raise InputError(
+            f"{len(copies)} tables, and {len(originals)} of {shown(planned.of)}", "as many as the campaign that it is a copy of",
+            column="conversion.of",
+        )  # fmt: skip
+    for copy, original in zip(copies, originals, strict=True):
+        if len(copy) != len(original):
+            raise InputError(
+                f"{len(copy)} rows in {copy.name}, {len(original)} in {original.name}",
+                "one row for each",
+                column="conversion.of",
+            )
+        yield Conversion(copy, original)
 
 
 def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
@@ -170,6 +189,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         refused=refused,
         manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
         unfitted=unfitted,
+        conversions=tuple(c for planned in plan.conversions for c in conversions(planned, plan, tables)),
     )
     return checked(study, progress)
 
