@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, Planes, forbidden, planes_of, planes_through
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
@@ -173,8 +174,9 @@ def estimated(body: Body, water: Water, towed: bool = False, added_mass: AddedMa
     Raises
     ------
     InputError
-        The body has no outline, or nothing in it that a method is for.
+        The body has no outline, nothing in it that a method is for, or axes that its mesh contradicts.
     """
+    require_orientation(body)
     outline = body.outline
     if outline is None:
         advice = "Give its body.toml a shape: a mesh, a hull form with fins, or parts."

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
+from coeflab.core.texts import remark
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import at_once, decisive, undetermined_at_once
@@ -160,11 +162,16 @@ def simulate(
         plan,
         trajectory,
         figures,
-        (*statements, *filter(None, (course, rolling, why)), *beyond),
+        (*statements, *filter(None, (course, rolling, why)), *beyond, *doubts(parameters)),
         until,
         works,
         nothing,
     )
+
+
+def doubts(parameters: ParameterFile) -> tuple[str, ...]:
+    """What a file was warned of, in words: it holds for whatever is computed with it."""
+    return tuple(remark(f) for f in parameters.findings if f.severity in (Severity.WARN, Severity.FAIL))
 
 
 def beyond_estimates(parameters: ParameterFile, plan: Manoeuvre, trajectory: Trajectory) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.file import SELF_DESCRIBED
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import BODY, mesh_body
 from coeflab.bodies.triangulation import Triangulation
@@ -93,6 +94,7 @@ def from_shape(
         No shape, no volume, a mass or an inertia that no body has, nothing that can be estimated.
     """
     shape = body.require_shape()
+    require_orientation(body)
     conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
     conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
     said = [*mesh_statements(body), *_assumed(plan, conditions)]

@@ -201,6 +201,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         if loss.lossless
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
+    lines += [f"Of the parameter file, {f.severity}: {remark(f)}" for f in parameters.findings]
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
     own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
