@@ -232,6 +232,7 @@ def tow(found: Towed) -> dict[str, Any]:
                 "u_grid": r.u_grid,
                 "is_result": r.is_result,
                 "one_line": r.line,
+                "model_spread": r.model,
                 "missing": r.missing or None,
                 "why": r.why or None,
                 "published": dict(zip(found.columns, r.published, strict=True)),

@@ -256,7 +256,7 @@ class TableDeclaration(takes.Declaration):
         Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
     variant : str
         Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
-        in a row of none. Rows of studies do not enter fits; how far they differ enters U95.
+        in a row of none. Rows of studies do not enter fits; how far they differ enters U95, but of turbulence models, whose spread stands beside it.
     reference_point : (3,) array or None
         Of this table's moments and rates, m, FRD, from the datum; the campaign's unless given. Moments are moved to the campaign's.
     arm_point : (3,) array or None
