@@ -72,7 +72,7 @@ def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
     return read
 
 
-__all__ = ["checked", "read_body", "read_tables", "rendered", "run"]
+__all__ = ["checked", "fitted", "read_body", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
 FEWEST = 3
@@ -118,23 +118,23 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         enough = [t for t in read if _has_points(t)] if is_ours else read
         for name in planned.fits if enough else ():
             try:
-                fitted, found = _fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+                made, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
             except InputError as why:
                 if not is_ours:
                     raise
                 unfitted.setdefault(read[0].campaign, why.found)
                 continue
             budgets += found
-            fits.append(fitted)
+            fits.append(made)
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     for joint in plan.joint:
         read = together(joint, plan)
         progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
-        fitted, found = _fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        made, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
         budgets += found
-        fits.append(fitted)
-        progress(f"fitted {fitted.campaign} by {joint.fit}")
+        fits.append(made)
+        progress(f"fitted {made.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
     body = read_body(_body_file(plan.body)) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
@@ -237,7 +237,7 @@ def _in_their_words(c: Check) -> Check:
     return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *said)
 
 
-def _fitted(
+def fitted(
     name: str,
     tables: Sequence[ForceTable],
     scaling: Scaling,

@@ -65,7 +65,34 @@ def from_shape(
     plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
     distances: Sequence[float] = (),
 ) -> Study:  # fmt: skip
-    """The study of a body without tables; checks and files are left to what takes it.
+    """The study of a body without tables, with exports, first manoeuvres and what the estimates do to these.
+
+    Parameters and errors are those of `estimated`; checks and files are left to what takes the study.
+    """
+    study = estimated(plan, body, stated, progress, wall, distances)
+    shape = study.shape
+    if shape is None:
+        return study
+    files, heavy = study.parameter_files, shape.weighed
+    exports, refused = exports_of(plan.exports, files.values(), progress)
+    vehicle = next(iter(files.values()))
+    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
+    said = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
+    said.extend(by_series(heavy.body, shape.conditions.speed))
+    planned = manoeuvres_of(plan.manoeuvres, files, progress)
+    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
+    carried, why = _carried(vehicle, moves, progress)
+    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
+    shape = replace(shape, said=tuple(said), missing=missing, carried=carried)
+    return replace(study, exports=exports, refused=refused, manoeuvres=moves, shape=shape)
+
+
+@one_thread()
+def estimated(
+    plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
+    distances: Sequence[float] = (),
+) -> Study:  # fmt: skip
+    """Added mass, estimates and parameter files of a body without tables.
 
     Parameters
     ----------
@@ -126,20 +153,9 @@ def from_shape(
                 first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
             files[group.name] = equipped(first, heavy.body, heavy.configuration)
         hulls[group.name] = found
-    exports, refused = exports_of(plan.exports, files.values(), progress)
-    vehicle = next(iter(files.values()))
-    said.extend(_drift_limit(vehicle))
-    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
-    said.extend([standing.words] if standing is not None else [])
-    said.extend(by_series(heavy.body, conditions.speed))
-    planned = manoeuvres_of(plan.manoeuvres, files, progress)
-    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
-    carried, why = _carried(vehicle, moves, progress)
-    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
     return Study(
         plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
-        parameter_files=files, hulls=hulls, inputs=inputs, exports=exports, refused=refused, manoeuvres=moves,
-        shape=FromShape(heavy, made, conditions, (*heavy.said, *said), missing, carried),
+        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, made, conditions, (*heavy.said, *said)),
     )  # fmt: skip
 
 

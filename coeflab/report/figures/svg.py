@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from html import escape, unescape
@@ -45,6 +45,14 @@ COLOURS = {
     "c": "#007a58",
     "d": "#a3437f",
 }
+NAMED = {colour: name for name, colour in COLOURS.items()}
+
+
+def recoloured(colour: str, palette: Mapping[str, str]) -> str:
+    """A colour of `COLOURS` as another palette has it; any other as it is."""
+    return palette[NAMED[colour]] if colour in NAMED else colour
+
+
 _FONT = "DejaVu Sans"
 _SETTINGS: dict[Any, object] = {
     "svg.fonttype": "none",

@@ -59,7 +59,7 @@ def three_views(body: Body) -> dict[str, bytes]:
     return {"svg": sheet([[Figure("views", svg, title, said, said)]], said), "png": png.getvalue()}
 
 
-def _surfaces(body: Body) -> Iterator[tuple[str, Surface]]:
+def surfaces_of(body: Body) -> Iterator[tuple[str, Surface]]:
     """Every piece with its name; plates are facets."""
     shape = body.require_shape()
     if isinstance(shape, Parts):
@@ -83,7 +83,7 @@ def _surfaces(body: Body) -> Iterator[tuple[str, Surface]]:
 
 
 def _drawn(body: Body) -> Drawing:
-    surfaces = list(_surfaces(body))
+    surfaces = list(surfaces_of(body))
     points = np.concatenate([vertices for _, (vertices, _) in surfaces])
     if not len(points):
         raise InputError(f"{body.name}, which shows nothing", "a shape")
