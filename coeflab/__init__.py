@@ -24,7 +24,7 @@ from coeflab.core.cards import drawn_by
 from coeflab.core.version import VERSION
 
 if TYPE_CHECKING:
-    from coeflab.api.body import Body, read_body
+    from coeflab.api.body import AddedMass, Body, read_body
     from coeflab.api.comparing import Comparison, compare
     from coeflab.api.estimating import estimate
     from coeflab.api.exporting import export
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.results.fitted_model import FittedModel
     from coeflab.formats.export import Export
-    from coeflab.law.added_mass import AddedMass
     from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.motion.trim.linear_model import LinearModel
@@ -112,7 +111,6 @@ _HOMES = {
         "CoefficientSet",
         "Status",
     ),
-    "law.added_mass": ("AddedMass",),
     "law.scaling": (
         "Conditions",
         "Scaling",
@@ -208,7 +206,7 @@ drawn_by(_card)
 
 
 class _FrontDoor(ModuleType):
-    """This module, of which ``vehicle`` is the verb, although a folder has that name too, whose import would set it."""
+    """The package, of which ``vehicle`` is the verb, although a folder has that name too, whose import would set it."""
 
     @property
     def vehicle(self) -> Any:

@@ -15,7 +15,7 @@ from coeflab.bodies.mesh.particulars import computed
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
-from coeflab.law.added_mass import AddedMass
+from coeflab.law import added_mass as law
 from coeflab.workbench.hulls import added_masses, methods
 from coeflab.workbench.vehicle import subject
 
@@ -25,6 +25,49 @@ if TYPE_CHECKING:
 FRESH = 998.2
 NOSE = "nose"
 KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class AddedMass(law.AddedMass):
+    """The added-mass matrix of a body; see `Body.added_mass`.
+
+    Attributes
+    ----------
+    matrix : (6, 6) array
+        Symmetric, kg, kg m, kg m^2: what the water adds in surge, sway, heave, roll, pitch, yaw; Xudot = -matrix[0, 0].
+    reference_point : (3,) array
+        That it is about, m, FRD, from the body's datum.
+    method, body : str
+    density : float
+        kg/m^3.
+    error : (6, 6) array or None
+        What the method says of itself.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> added = cf.read_body("remus100").added_mass("ellipsoid")
+    >>> bool(added.matrix[1, 1] > 10 * added.matrix[0, 0])
+    True
+    """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The matrix, each entry the darker the larger it is beside its two diagonal ones.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            To draw into; by default that of a new figure.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_body("remus100").added_mass("ellipsoid").plot().get_title()
+        'remus100 by ellipsoid'
+        """
+        from coeflab.report.plots.matrix import plot_added_mass
+
+        return plot_added_mass(self, ax)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -83,8 +126,8 @@ class Body(plain.Body):
         """
         if method != "all" and method not in methods():
             raise InputError(f"the method {shown(method)}", f"all, or one of {', '.join(methods())}", column="method")
-        found = added_masses(self, si(density, "density", "density"), method, options or None)
-        return found.recommended
+        found = added_masses(self, si(density, "density", "density"), method, options or None).recommended
+        return AddedMass(**{f.name: getattr(found, f.name) for f in fields(law.AddedMass)})
 
     def plot(self, view: str = "side", ax: Axes | None = None) -> Axes:
         """The outline, m, FRD, from the datum.

@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.api.parameters import parameters_of
+from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.vehicle import comparison as plain
 from coeflab.vehicle.parameter_file import ParameterFile
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-
-    from coeflab.api.vehicle import Vehicle
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -73,7 +71,9 @@ class Comparison(plain.Comparison):
         return plot_forest([(r.symbol, [(r.a, r.u95_a), (r.b, r.u95_b)]) for r in both], (self.a, self.b), ax)
 
 
-def compare(first: Vehicle | ParameterFile | str | Path, second: Vehicle | ParameterFile | str | Path) -> Comparison:
+def compare(
+    first: HasParameters | ParameterFile | str | Path, second: HasParameters | ParameterFile | str | Path
+) -> Comparison:
     """Hold a vehicle against another by their combined U95.
 
     Parameters

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from coeflab.api.parameters import parameters_of
+from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.formats.export import Export, Kind
@@ -13,14 +12,11 @@ from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export as rendered
 
-if TYPE_CHECKING:
-    from coeflab.api.vehicle import Vehicle
-
 WITH_MASS = "Give the vehicle a mass and an added mass."
 
 
 def export(
-    vehicle: Vehicle | ParameterFile | str | Path,
+    vehicle: HasParameters | ParameterFile | str | Path,
     to: str,
     out: str | Path | None = None,
     *,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coeflab.api.parameters import parameters_of
+from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, together
 from coeflab.core.options import described
 from coeflab.core.table import Table as Shown
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from coeflab.api.vehicle import Vehicle
 
 NAMES = ("time [s]", "north [m]", "east [m]", "down [m]", "roll [rad]", "pitch [rad]", "heading [rad]",
          "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]")  # fmt: skip
@@ -136,7 +135,7 @@ class Motion(Mapping[str, Figure]):
 
 
 def simulate(
-    vehicle: Vehicle | ParameterFile | str | Path,
+    vehicle: HasParameters | ParameterFile | str | Path,
     manoeuvre: str,
     *,
     free: Sequence[str] = (),

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from coeflab.core.errors import InputError
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_file import read_parameter_file as read
+
+
+class HasParameters(Protocol):
+    """What holds a parameter file, as a vehicle does."""
+
+    @property
+    def file(self) -> ParameterFile:
+        """All of it."""
+        ...
 
 
 def read_parameters(source: str | Path) -> ParameterFile:

@@ -124,7 +124,10 @@ def open_questions(lines: Sequence[Line], source: str, parts: Sequence[str] = ()
     parts : sequence of str
         Names of the tables, where there are several.
     """
-    return together(list(_asked([one for one in lines if one.group is Group.OPEN or one.pending], source, parts)))
+    waits = [one for one in lines if one.group is Group.OPEN or one.pending]
+    if any(one.key.endswith(KEYS["about"]) for one in waits):  # which names its datum
+        waits = [one for one in waits if one.key != KEYS["datum"]]
+    return together(list(_asked(waits, source, parts)))
 
 
 def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator[InputError]:

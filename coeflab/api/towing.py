@@ -118,7 +118,9 @@ def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solv
         place = body.place if isinstance(body, Body) else None
         if place is None:
             raise InputError(f"{body.name}, a body of no file", "one from read_body, of a body.toml", column="body")
-    else:
+    elif isinstance(body, str | Path):
         place = located(body, "geometry")
+    else:
+        raise InputError(f"a {type(body).__name__}", "a body, a path, or the name of a shipped body", column="body")
     file = None if matrix is None else located(matrix, "cfd_data")
     return Tow(*tank_room.read(place, file, solver, runner), file)

@@ -58,8 +58,8 @@ class Vehicle:
     --------
     >>> import coeflab as cf
     >>> auv = cf.read_vehicle("remus100")
-    >>> auv.name, round(auv["Nur'"].value, 5)
-    ('remus100', -0.00393)
+    >>> auv.name, round(auv["Nuv'"].value, 4)
+    ('remus100', -0.0198)
     """
 
     file: ParameterFile

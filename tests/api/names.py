@@ -6,8 +6,20 @@ from pathlib import Path
 
 import coeflab as cf
 
-VERBS = ("read_table", "read_body", "read_vehicle", "fit", "estimate", "vehicle", "simulate", "export", "compare", "tow", "run")
-HELD = ("Table", "Result", "Body", "Vehicle", "Motion", "Comparison", "Study", "Tow")
+VERBS = (
+    "read_table",
+    "read_body",
+    "read_vehicle",
+    "fit",
+    "estimate",
+    "vehicle",
+    "simulate",
+    "export",
+    "compare",
+    "tow",
+    "run",
+)
+HELD = ("AddedMass", "Table", "Result", "Body", "Vehicle", "Motion", "Comparison", "Study", "Tow")
 
 
 def homes() -> list[str]:

@@ -74,6 +74,32 @@ _LABELS = re.compile(r"(<text [^>]*>)([^<]*)(?=</text>)")
 _REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
 
 
+_OWN: dict[Any, object] = {}
+_COLOURS: dict[str, str] = {}
+
+
+@contextmanager
+def overridden(parameters: Mapping[Any, object], colours: Mapping[str, str]) -> Iterator[None]:
+    """Draw with other settings and colours, until left.
+
+    Parameters
+    ----------
+    parameters : mapping
+        Of Matplotlib, in the place of the report's.
+    colours : mapping of str to str
+        By names of `COLOURS`.
+    """
+    before = dict(_OWN), dict(_COLOURS)
+    _OWN.update(parameters)
+    _COLOURS.update(colours)
+    try:
+        yield
+    finally:
+        for held, was in zip((_OWN, _COLOURS), before, strict=True):
+            held.clear()
+            held.update(was)
+
+
 @contextmanager
 def settings() -> Iterator[None]:
     """Matplotlib's defaults with this report's settings, whatever the user's own are; restored afterwards.
@@ -85,7 +111,7 @@ def settings() -> Iterator[None]:
         return
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update(_SETTINGS)
+        mpl.rcParams.update({**_SETTINGS, **_OWN})
         yield
 
 
@@ -135,7 +161,7 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
     text = _LABELS.sub(lambda m: m[1] + drawn(unescape(m[2])), text)
     text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
     for name, colour in COLOURS.items():
-        text = text.replace(colour, f"var(--fig-{name}, {colour})")
+        text = text.replace(colour, f"var(--fig-{name}, {_COLOURS.get(name, colour)})")
     text = _styled_once(_without_bare_groups(re.sub(r"\n\s*", "\n", text)))
     box = re.search(r'viewBox="[^"]*"', text)
     head = (

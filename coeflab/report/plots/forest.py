@@ -47,6 +47,6 @@ def plot_forest(
     axes.axvline(0.0, color=colours["muted"], linewidth=0.8)
     axes.set_yticks(y, [symbol for symbol, _ in rows])
     axes.set_xlabel("value over its size, with U95")
-    if names:
+    if names and rows:
         axes.legend()
     return axes
