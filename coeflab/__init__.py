@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from coeflab.api.exporting import export
     from coeflab.api.fitting import fit
     from coeflab.api.motion import Motion, simulate
-    from coeflab.api.parameters import read_parameters
     from coeflab.api.reading import read_table, read_tables
     from coeflab.api.result import Points, Result
     from coeflab.api.studies import Study, run
@@ -52,7 +51,7 @@ if TYPE_CHECKING:
     from coeflab.tables.campaign import read_campaign
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.importers import PlannedTable
-    from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+    from coeflab.vehicle.parameter_file import ParameterFile
     from coeflab.workbench import rendered
 
 
@@ -69,6 +68,7 @@ _HOMES = {
         "Result",
     ),
     "api.body": (
+        "AddedMass",
         "Body",
         "read_body",
     ),
@@ -77,7 +77,6 @@ _HOMES = {
         "read_vehicle",
         "vehicle",
     ),
-    "api.parameters": ("read_parameters",),
     "api.motion": (
         "Motion",
         "simulate",
@@ -122,10 +121,7 @@ _HOMES = {
     "tables.force_table": ("ForceTable",),
     "tables.campaign": ("read_campaign",),
     "tables.importers": ("PlannedTable",),
-    "vehicle.parameter_file": (
-        "ParameterFile",
-        "read_parameter_file",
-    ),
+    "vehicle.parameter_file": ("ParameterFile",),
     "study.plan": ("read_plan",),
     "study.study": ("Plan",),
     "published": ("validation",),
@@ -171,8 +167,6 @@ __all__ = [
     "fit",
     "read_body",
     "read_campaign",
-    "read_parameter_file",
-    "read_parameters",
     "read_plan",
     "read_table",
     "read_tables",
@@ -187,7 +181,18 @@ __all__ = [
 ]
 
 
+_RENAMED = {
+    "read_parameter_file": ("vehicle.parameter_file", "read_vehicle", "0.4")
+}  # home, new name, release that lacks it
+
+
 def __getattr__(name: str) -> Any:
+    if name in _RENAMED:
+        home, new, gone = _RENAMED[name]
+        import warnings
+
+        warnings.warn(f"coeflab.{name} is coeflab.{new}; {name} goes in {gone}", DeprecationWarning, stacklevel=2)
+        return getattr(import_module(f"coeflab.{home}"), name)
     if name in _HOME:
         return getattr(import_module(f"coeflab.{_HOME[name]}"), name)
     raise AttributeError(f"module 'coeflab' has no attribute {name!r}")

@@ -215,7 +215,8 @@ def read_body(
 
     Examples
     --------
-    >>> read_body("suboff_bare_hull").name
+    >>> import coeflab as cf
+    >>> cf.read_body("suboff_bare_hull").name
     'suboff_bare_hull'
     """
     if isinstance(source, plain.Body):

@@ -92,7 +92,8 @@ def compare(
 
     Examples
     --------
-    >>> compare("remus100", "huuv").same_body
+    >>> import coeflab as cf
+    >>> cf.compare("remus100", "huuv").same_body
     False
     """
     a, b = parameters_of(first), parameters_of(second)

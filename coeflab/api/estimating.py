@@ -46,7 +46,8 @@ def estimate(
 
     Examples
     --------
-    >>> found = estimate("remus100")
+    >>> import coeflab as cf
+    >>> found = cf.estimate("remus100")
     >>> found["Yv'"].value < 0, str(found["Yv'"].status)
     (True, 'estimate')
     """

@@ -51,7 +51,8 @@ def export(
 
     Examples
     --------
-    >>> sorted(export("remus100", "csv").files)[0]
+    >>> import coeflab as cf
+    >>> sorted(cf.export("remus100", "csv").files)[0]
     'remus100.coefficients.csv'
     """
     parameters = parameters_of(vehicle)

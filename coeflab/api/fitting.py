@@ -43,7 +43,9 @@ def fit(
         Name of the fit; by default the recommended slopes at the origin, of each campaign by itself. One that joins campaigns,
         such as ``manoeuvring_model``, takes all tables together.
     length : float or str, optional
-        Of the primes, m; the tables' own unless given, with `length_name`, such as LOA.
+        Of the primes, m; the tables' own unless given.
+    length_name : str, optional
+        Of that length, such as LOA.
     include_uncertain : bool
         Use cells that the source marks as doubtful.
     **options

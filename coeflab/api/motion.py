@@ -183,7 +183,7 @@ def simulate(
     Examples
     --------
     >>> import coeflab as cf
-    >>> run = simulate("remus100", "zigzag", rudder="20 deg")
+    >>> run = cf.simulate("remus100", "zigzag", rudder="20 deg")
     >>> round(run["reach"].value, 2)
     4.86
     """

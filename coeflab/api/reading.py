@@ -102,8 +102,13 @@ def read_table(
     arm_point : str, float or (3,) sequence, optional
         Point that runs with the speed U; ``"reference point"``.
     contains_inertia : bool, optional
-        Whether forces hold the model's own inertia; then `mass` (kg), `centre_of_gravity` (as `about`) and `inertia`
-        (Ix, Iy, Iz, kg m^2).
+        Whether forces hold the model's own inertia, which is then taken out.
+    mass : float or str, optional
+        Of the model, kg.
+    centre_of_gravity : str, float or (3,) sequence, optional
+        Of the model, as `about`.
+    inertia : (3,) sequence of float, optional
+        Ix, Iy, Iz about it, kg m^2.
     area, moment_length : float or str, optional
         What makes coefficients of the forces, m^2 and m; ``"prime"``: the length.
     units : {"SI"}, optional
@@ -132,9 +137,10 @@ def read_table(
 
     Examples
     --------
+    >>> import coeflab as cf
     >>> import numpy as np
     >>> v = np.linspace(-0.3, 0.3, 9)
-    >>> drift = read_table(
+    >>> drift = cf.read_table(
     ...     {"v [m/s]": v, "Y [N]": -120.0 * v, "N [N m]": -60.0 * v}, name="drift",
     ...     frame="FRD", length=2.0, density=1000, speed=2.0, about="nose, 1.0 m aft",
     ... )
@@ -192,7 +198,8 @@ def read_tables(
 
     Examples
     --------
-    >>> [t.name for t in read_tables("suboff_roddy_2")]
+    >>> import coeflab as cf
+    >>> [t.name for t in cf.read_tables("suboff_roddy_2")]
     ['suboff_roddy_2/table.csv']
     """
     return tables_from(source, said, columns or {}, name, importer, options or {}, accept)

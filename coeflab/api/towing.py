@@ -111,7 +111,8 @@ def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solv
 
     Examples
     --------
-    >>> len(tow("suboff_bare_hull").frame()) > 6
+    >>> import coeflab as cf
+    >>> len(cf.tow("suboff_bare_hull").frame()) > 6
     True
     """
     if isinstance(body, plain.Body):

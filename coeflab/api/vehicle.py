@@ -233,7 +233,8 @@ def read_vehicle(source: str | Path | ParameterFile | Vehicle) -> Vehicle:
 
     Examples
     --------
-    >>> read_vehicle("remus100").name
+    >>> import coeflab as cf
+    >>> cf.read_vehicle("remus100").name
     'remus100'
     """
     return Vehicle(parameters_of(source))
@@ -287,7 +288,7 @@ def vehicle(
     Examples
     --------
     >>> import coeflab as cf
-    >>> auv = vehicle("remus100", mass=30.5)
+    >>> auv = cf.vehicle("remus100", mass=30.5)
     >>> auv["Nr'"].value < 0, str(auv["Nr'"].status)
     (True, 'estimate')
     """

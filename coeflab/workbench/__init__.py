@@ -244,7 +244,21 @@ def fitted(
     options: Mapping[str, Any],
     earlier: Sequence[FitResult] = (),
 ) -> tuple[FitResult, tuple[Budget, ...]]:
-    """One fit with its budgets in it, and these; one that completes another is given that, budgets and all."""
+    """One fit with its budgets in it, and these; one that completes another is given that, budgets and all.
+
+    Parameters
+    ----------
+    name : str
+        Of the fit.
+    tables : sequence of ForceTable
+        Of one campaign, or of several where the fit joins them.
+    scaling : Scaling
+        Length of the primes.
+    options : mapping of str to value
+        Of the fit.
+    earlier : sequence of FitResult
+        That it may complete.
+    """
     _refuse_several(name, tables)
     _refuse_unsuited(name, tables)
 

@@ -67,7 +67,22 @@ def from_shape(
 ) -> Study:  # fmt: skip
     """The study of a body without tables, with exports, first manoeuvres and what the estimates do to these.
 
-    Parameters and errors are those of `estimated`; checks and files are left to what takes the study.
+    Checks and files are left to what takes the study.
+
+    Parameters
+    ----------
+    plan : Plan
+        Without tables: name, exports, manoeuvres, conditions, scaling.
+    body : Body
+        With a shape.
+    stated : Stated
+        What is known of its mass beside the body's file.
+    progress : callable
+        Takes what is being done, in words.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``; none where empty.
+    distances : sequence of float
+        From the reference point to the wall, m: added mass there, by the panel method, goes into the parameter files.
     """
     study = estimated(plan, body, stated, progress, wall, distances)
     shape = study.shape
