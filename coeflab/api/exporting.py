@@ -65,7 +65,17 @@ def export(
 
 
 def refusal(made: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS) -> InputError:
-    """The error about a target that loses part of a file and nobody accepted that."""
+    """The error about a target that loses part of a file and nobody accepted that.
+
+    Parameters
+    ----------
+    made : Export
+    parameters : ParameterFile
+    expected : str
+        What would do.
+    advice : str
+        Where the target lacks a mass.
+    """
     loss = made.loss
     lost = () if loss is None else loss.lost
     missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost)

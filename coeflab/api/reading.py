@@ -209,7 +209,15 @@ def tables_from(
     source: Any, said: Mapping[str, Any], columns: Mapping[str, str], name: str | None, importer: str,
     options: Mapping[str, Any], accept: bool,
 ) -> tuple[Table, ...]:  # fmt: skip
-    """The tables of anything that is one."""
+    """The tables of anything that is one.
+
+    Parameters
+    ----------
+    source, columns, name, importer, options, accept
+        As of `read_table`.
+    said : mapping of str to object
+        Its other keywords; None says nothing.
+    """
     stated = {k: v for k, v in said.items() if v is not None}
     if isinstance(source, ForceTable | PlannedTable):
         _require_nothing(stated, columns, "a table that was read")

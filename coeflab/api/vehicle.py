@@ -202,7 +202,17 @@ class Vehicle:
         return simulated(self, manoeuvre, **options)
 
     def export(self, to: str, out: str | Path, **options: Any) -> Export:
-        """Files for a simulator; see `coeflab.export`."""
+        """Files for a simulator; see `coeflab.export`.
+
+        Parameters
+        ----------
+        to : str
+            Target.
+        out : str or Path
+            Folder to write into.
+        **options
+            accept_loss, accelerations.
+        """
         return exported(self, to, out, **options)
 
     def compare(self, other: Vehicle | ParameterFile | str | Path) -> Comparison:
