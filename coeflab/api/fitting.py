@@ -15,10 +15,10 @@ from coeflab.core.options import described
 from coeflab.fits import FITS
 from coeflab.fits.joint.rows import one_length
 from coeflab.law.scaling import Scaling
+from coeflab.study.fitting import fitted
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
 from coeflab.tables.reading import suited_fit
-from coeflab.workbench import fitted
 
 USUAL = Importer.fit
 MODEL = "manoeuvring_model"

@@ -12,7 +12,6 @@ from coeflab.api.table import Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.wording import identifier
-from coeflab.study.plan import table_at
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
 from coeflab.tables.column_map import ColumnMap, read_column_map
@@ -235,7 +234,7 @@ def tables_from(
     path = located(source, "cfd_data")
     if _is_campaign(path) and not importer:
         _require_nothing(stated, columns, f"{path}, whose {FILE} says everything")
-        return tuple(map(table_of, reading.read_tables(table_at(path))))
+        return tuple(map(table_of, reading.read_tables(reading.table_at(path))))
     parts, chosen = read_parts(path, importer, options)
     parts = with_shared_words(parts)
     return _filled_in(parts, chosen, said, columns, identifier(name or path.resolve().stem), accept)

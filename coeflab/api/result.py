@@ -15,7 +15,6 @@ from coeflab.core.types import Array, in_angles
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
-from coeflab.study.study import Plan, Study
 from coeflab.tables.force_table import ForceTable
 
 if TYPE_CHECKING:
@@ -245,7 +244,8 @@ class Result(Mapping[str, Coefficient]):
         True
         """
         if not self._found:
-            from coeflab.workbench import checked
+            from coeflab.study.checking import checked
+            from coeflab.study.study import Plan, Study
 
             name = self.fits[0].campaign
             study = Study(

@@ -230,6 +230,8 @@ def tow(found: Towed) -> dict[str, Any]:
                 "value": r.value,
                 "u95": r.u95,
                 "u_grid": r.u_grid,
+                "is_result": r.is_result,
+                "one_line": r.line,
                 "missing": r.missing or None,
                 "why": r.why or None,
                 "published": dict(zip(found.columns, r.published, strict=True)),

@@ -46,7 +46,7 @@ def check(
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
             "coefficients": [c.symbol for c in p.coefficients], "passed": found.passed,
             "by_added_mass": [row[0] for row in model_file_tables.by_added_mass(p).rows],
-            "findings": findings_json(found.findings),
+            "findings": findings_json(found.findings), "remarks": list(p.remarks),
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))

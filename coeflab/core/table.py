@@ -13,8 +13,9 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from coeflab.core.cards import html_by
+from coeflab.core.errors import PluginError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.texts import words
+from coeflab.core.texts import Wording, remark, words
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import Verbatim
 
@@ -347,5 +348,8 @@ def as_check(name: str, found: Finding) -> Check:
         Plugin that made it.
     found : Finding
     """
-    text = words(found)
+    try:
+        text = words(found)
+    except PluginError:  # of a file by somebody else's plugin
+        text = Wording(remark(found), "", "")
     return Check(name, found.subject, found.severity, text.statement, text.rule, text.advice)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
@@ -80,11 +80,7 @@ def _sign(name: str) -> Callable[[Any], Any]:
 
 
 def _frame(said: Any) -> Any:
-    if isinstance(said, str) and said not in FRAMES:
-        listed = [word.strip(" \"'[]") for word in said.split(",")]
-        said = said.upper() if said.upper() in FRAMES else listed if len(listed) == 3 else said
-    parse_axes(said)
-    return said
+    return parse_axes(said).declared
 
 
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:

@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.readers import read_body
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
@@ -153,6 +154,7 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     said = takes.declared(TankFile, file)
     where = _where(file, said.tank.body, body_file)
     own = read_body(where) if body is None else body.body
+    require_orientation(own)
     scaling = said.scaling or _scaling(own)
     if scaling is None and body is not None:
         scaling = Scaling(body.length, "LOA")
@@ -215,6 +217,7 @@ def _sweeps(said: MatrixKeys, body: TowedBody | None, length: float) -> Sweeps:
         combined=tuple((c.drift, c.attack, c.yaw, c.pitch) for c in said.combined),
         controls=controls,
         speeds=said.speeds,
+        pairs=said.pairs,
     )
 
 

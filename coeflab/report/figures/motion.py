@@ -129,7 +129,7 @@ def history_figures(trajectory: Trajectory, anchor: str, after: str = "") -> tup
     turns = {"roll": angles[:, 0], "pitch": angles[:, 1], "heading": np.degrees(trajectory.heading)}
     rates = {name: np.degrees(nu[:, 3 + i]) for i, name in enumerate(("roll rate p", "pitch rate q", "yaw rate r"))}
     ordered = {
-        ANGLE_NAMES.get(n, n.replace(".tilt", ", tilt")): np.degrees(c)
+        f"{ANGLE_NAMES[n]} {n}, sign of the file" if n in CONTROLS else n.replace(".tilt", ", tilt"): np.degrees(c)
         for n, c in trajectory.controls.items()
         if n in CONTROLS or n.endswith(".tilt")
     }

@@ -32,8 +32,8 @@ INDENT = 16.0
 HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "markeredgewidth": 0.9}
 FILLED: dict[str, Any] = {"markeredgewidth": 0.0}
 MARKS: dict[Basis, dict[str, Any]] = {
-    Basis.PREDICTED: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
-    Basis.PRINTED: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
+    Basis.VALIDATION: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
+    Basis.VERIFICATION: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
     Basis.CALIBRATION: {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
     Basis.CONSISTENCY: {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
 }  # fmt: skip
