@@ -22,8 +22,6 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.motion.simulation import manoeuvres_of
-from coeflab.report.content import document
-from coeflab.report.formats import REPORTERS
 from coeflab.study.checking import checked
 from coeflab.study.fitting import FEWEST, fitted
 from coeflab.study.plan import plan_at, read_plan
@@ -269,6 +267,9 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
 @one_thread()
 def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
+    from coeflab.report.content import document
+    from coeflab.report.formats import REPORTERS
+
     files: dict[str, bytes] = {}
     report = document(study, full=False)
     for name in formats:

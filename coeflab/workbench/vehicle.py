@@ -34,9 +34,6 @@ from coeflab.motion.simulation import manoeuvres_of, moved, simulate
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
-from coeflab.report.document import Document, Section, digest_of
-from coeflab.report.formats import REPORTERS
-from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tables.reading import table_at
@@ -483,6 +480,10 @@ def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[
     carried : sequence of Carried
         Of `replaced`.
     """
+    from coeflab.report.document import Document, Section, digest_of
+    from coeflab.report.formats import REPORTERS
+    from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
+
     p = made.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
     page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,

@@ -12,7 +12,7 @@ import pytest
 import coeflab as cf
 from coeflab.report.figures import estimator, sweep
 from coeflab.report.figures.files import drawing, files_of, styled
-from coeflab.report.figures.svg import COLOURS
+from coeflab.report.figures.palette import COLOURS
 
 mpl.use("agg")
 

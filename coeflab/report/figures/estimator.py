@@ -17,6 +17,7 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
 from coeflab.report.figures.series import (
     Style,
@@ -29,7 +30,7 @@ from coeflab.report.figures.series import (
     styles,
     tagged,
 )
-from coeflab.report.figures.svg import COLOURS, power_of_ten, recoloured, settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.vehicle.reference import Comparison
 

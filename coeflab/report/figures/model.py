@@ -24,10 +24,11 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.report.document import Figure, Panel, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.surface import curve_figure, is_surface, surface_figure
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,

@@ -21,7 +21,8 @@ from coeflab.core.types import Array
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import FRONT, SIDE, TOP, Sheet, rulers
 from coeflab.report.figures.body_scene import part_facets, picture_surface
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, sheet, svg_text
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS, settings, sheet, svg_text
 
 WIDTH, MARGIN, GAP = 720.0, 16.0, 26.0
 LEFT, BELOW, CAPTION, SIZES, KEY = 36.0, 26.0, 20.0, 24.0, 40.0
