@@ -12,7 +12,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by, number
+from coeflab.core.cards import html_by
+from coeflab.core.table import number
 from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.force_law import SLOWEST
 from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, LINEAR, MOTIONS

@@ -538,6 +538,20 @@ def read_campaign(path: Path) -> Campaign:
     """
     toml = read_toml(path)
     file = takes.declared(CampaignFile, toml)
+    return campaign_of(file, path, tuple(toml.line(("table", i)) for i in range(len(file.table))))
+
+
+def campaign_of(file: CampaignFile, path: Path, lines: tuple[int | None, ...] = ()) -> Campaign:
+    """A campaign of what is declared, by a campaign.toml or by a program.
+
+    Parameters
+    ----------
+    file : CampaignFile
+    path : Path
+        Of its campaign.toml; a path that does not exist where there is none.
+    lines : tuple of int or None
+        See `Campaign`.
+    """
     head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
     signs = {"alpha": axes.alpha, "beta": axes.beta}
     return Campaign(
@@ -559,7 +573,7 @@ def read_campaign(path: Path) -> Campaign:
         uncertainty=file.uncertainty,
         columns=file.columns,
         options=file.importer,
-        lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
+        lines=lines,
         planar_motion=file.planar_motion,
         symmetry=head.symmetry,
         assumed=axes.assumed,

@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, in_angles
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
