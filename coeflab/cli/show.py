@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from coeflab.core.table import Check, Line, Table
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 SLOW = 2.0
@@ -368,6 +369,15 @@ def file_findings(name: str, found: Sequence[Check]) -> None:
         text(f"Checks of the file {name} (coeflab params check):")
         findings(found)
         text()
+
+
+def not_used(parameters: ParameterFile, tables: bool = False) -> None:
+    """First lines of a command: what of the file's sources of force it does not use; nothing where it uses all."""
+    from coeflab.core.texts import remark
+    from coeflab.vehicle.force_law import not_used as found
+
+    for line in map(remark, found(parameters, tables)):
+        text(line)
 
 
 def failed(found: Sequence[Check]) -> bool:

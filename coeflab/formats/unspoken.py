@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from coeflab.core.wording import listed
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.force_law import force_law, sources_of
 from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def without_law(parameters: ParameterFile) -> tuple[str, ...]:
-    """The force components that no coefficient speaks of, and which motions are left, in one sentence; none where all have one.
+    """The force components that no source speaks of, and which motions are left, in one sentence; none where all have one.
 
-    A fitted table speaks of its component; one of drag, side force or lift of all.
+    A fitted table speaks of its component; drag, side force and lift of X, Y and Z.
     """
     spoken = {t.component for t in force_law(parameters).terms if not t.variables or set(t.variables) & set(MOTIONS)}
-    for model in parameters.models:
-        component = model.response.removesuffix("'")
-        spoken |= {component} if component in COMPONENTS else set(COMPONENTS)
+    sources = sources_of(parameters)
+    spoken |= {c for s in sources.tables for c in sources.components(s)}
     silent = [c for c in COMPONENTS if c not in spoken]
     if not silent:
         return ()

@@ -11,7 +11,6 @@ from coeflab.formats import EXPORTERS, InertialExporter, PartialExporter, Simula
 from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
 from coeflab.formats.unspoken import without_law
 from coeflab.report.tables.formats import as_text, in_short
-from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -59,7 +58,7 @@ def export(
         *_renamed(files, parameters),
     )
     found = loss_of(
-        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
+        target, parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
         plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip

@@ -11,6 +11,7 @@ import io
 import json
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, distribution
 from importlib.resources import files as resources
 from typing import Any
@@ -32,7 +33,7 @@ from coeflab.formats.exported_law import (
     written_changes,
     written_terms,
 )
-from coeflab.law.force_law import ForceLaw, ForceTerm
+from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.terms import Factor, Term
@@ -137,7 +138,8 @@ def _model(parameters: ParameterFile) -> dict[str, Any]:
                 "force": COMPONENTS.index(t.component),
                 "length_power": t.length_power,
                 "speed_power": t.speed_power,
-                "factors": [[_MOVING.index(v), n, absolute] for v, n, absolute in t.term.factors],
+                "course": AHEAD.prime if t.ahead else 0.0,
+                "factors": [[_MOVING.index(v), n, absolute] for v, n, absolute in t.product.factors],
             }
             for t in terms
         ],
@@ -251,7 +253,11 @@ def steered_force(
         k = t["length_power"]
         value = values[t["value"]] * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
         term = Term(tuple(Factor(_MOVING[index], power, absolute) for index, power, absolute in t["factors"]))
-        terms.append(ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0))
+        made = ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0)
+        if t["course"]:
+            reading = AHEAD._replace(prime=t["course"])
+            made = replace(made, term=Term((Factor("u", 1),)), readings=(("u", reading),))
+        terms.append(made)
     return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu, controls)
 
 

@@ -17,7 +17,10 @@ from coeflab.core.arithmetic import evaluate
 from coeflab.core.wording import identifier, matlab, one_line
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     propulsion,
     spelt,
@@ -40,7 +43,7 @@ adds_coriolis = False
 holds = frozenset({"hydrostatics"})
 not_held, missing = not_written, missing_water
 
-OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", *MOTIONS, *COMPONENTS, *CONTROLS})
+OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS})
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -163,6 +166,7 @@ def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> 
     lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
     lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
     lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
+    lines += [f"course = {COURSE};  % {COURSE_MEANS}"] * has_course(terms)
     lines += [f"r{k} = h.rho*h.L^{k}/2;" for k in sorted(scales) if k]
     for component in COMPONENTS:
         parts = [expression(t, _place, "^") for t in terms if t.component == component] or ["0"]

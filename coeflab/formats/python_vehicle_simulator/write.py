@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 from coeflab.core.wording import identifier, one_line, python
 from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     spelt,
     written_accelerations,
@@ -212,6 +215,7 @@ def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
         *(f"        {name} = nu[{k}]" for k, name in enumerate(MOTIONS)),
         *(f"        {name} = delta[{CONTROLS.index(name)}]" for name in written_controls(terms)),
         "        U = max((u**2 + v**2 + w**2) ** 0.5, 1e-9)",
+        *[f"        course = {COURSE}  # {COURSE_MEANS}"] * has_course(terms),
         *_scales({t.length_power for t in terms}),
     ]
     for component in COMPONENTS:
@@ -286,6 +290,8 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
             return np.abs(_value(first, names))
         case ast.BinOp(left=left, op=sign, right=right):
             a, b = _value(left, names), _value(right, names)
+            if isinstance(sign, ast.Sub):
+                return a - b
             return a + b if isinstance(sign, ast.Add) else a * b if isinstance(sign, ast.Mult) else (
                 a / b if isinstance(sign, ast.Div) else a**b
             )  # fmt: skip

@@ -18,7 +18,10 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     propulsion,
     spelt,
@@ -209,6 +212,7 @@ def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Seq
         *(f"{n}_P: {float(v)!r}" for n, v in zip("xyz", offset, strict=True) if offset.any()),
         *(f"{m}: {text}" for m, text in velocities.items()),
         "U: sqrt(u^2 + v^2 + w^2 + 1e-18)",
+        *[f"course: {COURSE}  # {COURSE_MEANS}"] * has_course(kept),
         f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
         *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
         *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in kept),
