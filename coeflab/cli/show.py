@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from coeflab.core.finding import Finding
     from coeflab.core.table import Check, Line, Table
     from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -373,10 +374,16 @@ def file_findings(name: str, found: Sequence[Check]) -> None:
 
 def not_used(parameters: ParameterFile, tables: bool = False) -> None:
     """First lines of a command: what of the file's sources of force it does not use; nothing where it uses all."""
-    from coeflab.core.texts import remark
-    from coeflab.vehicle.force_law import not_used as found
+    from coeflab.vehicle.force_law import not_used as by_law
 
-    for line in map(remark, found(parameters, tables)):
+    found(by_law(parameters, tables))
+
+
+def found(findings: Sequence[Finding]) -> None:
+    """Findings in words, a line each."""
+    from coeflab.core.texts import remark
+
+    for line in map(remark, findings):
         text(line)
 
 

@@ -380,10 +380,7 @@ def rare_states(parameters: ParameterFile) -> Array:
     across = [k for k in (1, 2) if np.any(grid[:, k])]
     ways = [-np.eye(6)[0], *(way * np.eye(6)[k] for k in across for way in (1.0, -1.0)), np.zeros(6)]
     rows = [
-        factor * (speed * way + extreme * speed / fastest)
-        for factor in SPEEDS
-        for way in ways
-        for extreme in extremes
+        factor * (speed * way + extreme * speed / fastest) for factor in SPEEDS for way in ways for extreme in extremes
     ]
     return np.unique(np.array(rows) + 0.0, axis=0)
 

@@ -204,7 +204,9 @@ def ended_by_tables(vehicle: Vehicle, motion: Trajectory) -> Trajectory:
 
 def refusal(code: str, vehicle: Vehicle, time: float | None = None) -> Finding:
     """That the tables of a vehicle which refuse to be read beyond their data have no value."""
-    names = dict.fromkeys(t.symbol.split(" ")[0] for t in vehicle.law.terms if t.hull is not None and t.hull.rule == "refuse")
+    names = dict.fromkeys(
+        t.symbol.split(" ")[0] for t in vehicle.law.terms if t.hull is not None and t.hull.rule == "refuse"
+    )
     return Finding.of(
         code, vehicle.name, Severity.WARN, statistic=time, tables=list(names), advice='extrapolation = "clamp"'
     )

@@ -8,7 +8,7 @@ with (`coeflab.vehicle.inertia`), so that nothing is counted twice and nothing k
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,7 @@ from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
-from coeflab.vehicle.sources import Sources, acts_in, moved_by, name_of, place_of, steered, summed
+from coeflab.vehicle.sources import Sources, acts_in, beside, moved_by, name_of, place_of, steered, summed
 
 EDGE = "law.edge"  # the one finding of a law that is not about what it leaves out
 LONG = 9  # a table is more than slopes
@@ -141,6 +141,22 @@ def motion_law(parameters: ParameterFile, tables: bool = False) -> tuple[ForceLa
     return ForceLaw(terms, _ideal(parameters, sources), wind=sources.wind), (*sources.findings, *found)
 
 
+def known_beside(
+    parameters: ParameterFile, terms: Sequence[tuple[str, str, Term]]
+) -> tuple[ForceLaw, tuple[Finding, ...]]:
+    """The fitted tables of a file that stay known where terms of its force are found from data, and those that do not.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    terms : sequence of (symbol, component, Term)
+        To be found.
+    """
+    sources = beside(parameters.models, [(s, c, moved_by(v for v, _, _ in t.factors)) for s, c, t in terms])
+    fitted, found = _fitted(sources, parameters)
+    return ForceLaw(fitted, np.zeros((6, 6, 6)), wind=sources.wind), (*sources.findings, *found)
+
+
 def not_used(parameters: ParameterFile, tables: bool = False) -> tuple[Finding, ...]:
     """What of a file its law leaves out, or takes otherwise than the file was written for."""
     return tuple(f for f in motion_law(parameters, tables)[1] if f.code != EDGE)
@@ -171,8 +187,7 @@ def _fitted(sources: Sources, parameters: ParameterFile) -> tuple[tuple[ForceTer
             )
         ends.setdefault(hull.rule, []).append(m.response)
     found += [
-        Finding.of(EDGE, ", ".join(dict.fromkeys(names)), Severity.NOTE, rule=rule)
-        for rule, names in ends.items()
+        Finding.of(EDGE, ", ".join(dict.fromkeys(names)), Severity.NOTE, rule=rule) for rule, names in ends.items()
     ]
     return tuple(out), tuple(found)
 

@@ -199,6 +199,35 @@ def summed(
     return Sources(tuple(kept), tuple(standing), wind, tuple(dropped), out, tuple(found))
 
 
+def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
+    """The tables that stay known where terms are to be found from data: those that speak of nothing that a term speaks of.
+
+    Parameters
+    ----------
+    models : sequence of ParameterModel
+    terms : sequence of (symbol, component, moved variables)
+        To be found; they stand before every table.
+
+    Raises
+    ------
+    InputError
+        Two tables speak of the same products.
+    """
+    found: list[Finding] = []
+    every = [TableSource.of(m) for m in models if place_of(m)]
+    standing, silent = _among_tables(every, found), set[str]()
+    across = frozenset("vw")
+    for s in list(standing):
+        rivals = [symbol for symbol, c, moved in terms if c == s.component and s.speaks_of(moved)]
+        if rivals:
+            standing.remove(s)
+            silent.add(s.component)
+            found.append(_unused_table(s, list(map(primed, rivals))))
+    silent |= {c for _, c, moved in terms if moved <= across}
+    wind = _of_wind(standing, (), silent)
+    return Sources((), tuple(standing), wind, (), tuple(s for s in every if s not in standing), tuple(found))
+
+
 def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[TableSource]:
     """The tables that stand beside each other: of two of the same products the one over more variables."""
     out = list(every)
@@ -223,9 +252,7 @@ def _shared(a: TableSource, b: TableSource) -> str:
     return f"by {' and '.join(least)}" if least else "at rest of its own"
 
 
-def _of_wind(
-    standing: Sequence[TableSource], kept: Sequence[ForceTerm], silent: set[str]
-) -> tuple[bool, bool, bool]:
+def _of_wind(standing: Sequence[TableSource], kept: Sequence[ForceTerm], silent: set[str]) -> tuple[bool, bool, bool]:
     """For which of X, Y, Z drag, side force and lift speak: those of which body axes state nothing over incidence."""
     group = [s for s in standing if s.place in WIND]
     own = {s.component for s in group}

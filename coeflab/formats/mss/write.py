@@ -30,7 +30,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.mss.m_file import assignments
-from coeflab.formats.unspoken import unstated, without_law
+from coeflab.formats.unspoken import in_header, unstated
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -62,7 +62,7 @@ _NAMES = {
 
 def _unspoken(parameters: ParameterFile) -> tuple[str, ...]:
     """Components without a law, and members of h that a loop about the function needs and the file does not give."""
-    return *without_law(parameters), *unstated(parameters, _NAMES)
+    return *in_header(parameters), *unstated(parameters, _NAMES)
 
 
 def _quoted(text: str) -> str:

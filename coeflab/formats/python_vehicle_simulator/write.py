@@ -28,7 +28,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -142,7 +142,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {name}.py: {one_line(p.name)}, body: {one_line(p.body)}",
         f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
         f"from: {one_line(p.reference_point.datum)}",
-        *(f"# {said}" for said in without_law(p)),
+        *(f"# {said}" for said in in_header(p)),
         _HEAD.format(
             name=name,
             m=None if mass is None else mass.mass,

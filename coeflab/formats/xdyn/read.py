@@ -31,10 +31,10 @@ from coeflab.formats.exported_law import sname
 from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
+from coeflab.law.force_law import AHEAD
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
-from coeflab.law.force_law import AHEAD
 from coeflab.law.terms import parse_suffix
 from coeflab.law.transforms import force_transfer, moved
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -29,7 +29,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, XdynBody, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
@@ -135,7 +135,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
         f"# {propulsion(parameters)}",
-        *(f"# {said}" for said in without_law(parameters)),
+        *(f"# {said}" for said in in_header(parameters)),
         *(f"# {said}; rad" for said in control_signs(parameters)),
         *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",

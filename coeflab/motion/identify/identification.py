@@ -521,6 +521,8 @@ class Identified:
     terms : tuple of IdentifiedTerm
     balances : tuple of Balanced
     statements : tuple of str
+    findings : tuple of Finding
+        Fitted tables of the file that are not used, for terms that were tried speak of the same.
     """
 
     name: str
@@ -532,6 +534,7 @@ class Identified:
     terms: tuple[IdentifiedTerm, ...]
     balances: tuple[Balanced, ...]
     statements: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
 
     def __getitem__(self, symbol: str) -> IdentifiedTerm:
         wanted = symbol.removesuffix("'") + "'"

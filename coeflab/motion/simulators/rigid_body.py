@@ -14,7 +14,7 @@ from coeflab.motion.approach import in_current
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.marching import march, march_by_tolerance
 from coeflab.motion.media import through_media
-from coeflab.motion.trajectory import WITHOUT_DATA, Ended, Trajectory
+from coeflab.motion.trajectory import WITHOUT_DATA, Trajectory
 from coeflab.motion.vehicle import Vehicle
 
 summary = "six degrees of freedom (Fossen), quaternion attitude; adaptive LSODA or fixed-step RK4, plain or compiled"

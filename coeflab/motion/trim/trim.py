@@ -351,7 +351,12 @@ def trim(
     values = steady.modes(found.found.point)
     state = growth(values)
     refused = _refused(vehicle, steady, found)
-    statements = (*map(remark, refused), *_beyond(vehicle, steady, found), *_unstated(vehicle, unknowns), *vehicle.statements)
+    statements = (
+        *map(remark, refused),
+        *_beyond(vehicle, steady, found),
+        *_unstated(vehicle, unknowns),
+        *vehicle.statements,
+    )
     if found.outcome.solved:
         found = replace(found, modes=tuple(complex(v) for v in values), growth=state)
     others = tuple(
