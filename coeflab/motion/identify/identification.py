@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from coeflab.core.finding import Finding
 from coeflab.core.types import Array, brief
 from coeflab.fits.statistics.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
 from coeflab.law.force_law import AHEAD, CONTROLS, SLOWEST

@@ -46,7 +46,7 @@ from coeflab.motion.identify.identification import (
 )
 from coeflab.motion.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.motion.vehicle import Vehicle, vehicle
-from coeflab.vehicle.force_law import known_beside
+from coeflab.vehicle.force_law import EDGE, known_beside
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED, WaterInertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
