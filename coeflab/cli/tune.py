@@ -41,9 +41,12 @@ def command(
     from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench.tune import tune, write
 
+    read = read_tuning_plan(plan)
+    if not json:
+        show.not_used(read.parameters)
     with show.progress(json) as say:
         say(f"tuning {plan}")
-        tuned = tune(read_tuning_plan(plan))
+        tuned = tune(read)
     paths = write(tuned, out if out is not None else Path(REPORTS) / tuned.plan.name)
     found = plausibility(tuned.parameters)
     if json:

@@ -323,7 +323,7 @@ def validation(
         u_numerical=s.joined(*NUMERICAL),
         u_reduction=s.joined(*REDUCTION),
         u_input=s.input,
-        lacking=(*s.unassessed, *([] if s.part(MODEL) is None else [MODEL])),
+        lacking=(*s.unassessed, *([] if s.model_spread is None else [MODEL])),
         lacking_measured=d.unassessed,
         reynolds=reynolds,
     )

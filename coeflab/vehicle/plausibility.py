@@ -186,11 +186,11 @@ def _by_tables(p: ParameterFile) -> list[Check]:
 def _own_terms(p: ParameterFile) -> list[_Own]:
     out = []
     for t in force_law(p).terms:
-        variables = {v for v, _, _ in t.term.factors}
+        variables = {v for v, _, _ in t.product.factors}
         motion = MOTIONS[COMPONENTS.index(t.component)]
-        resistance = t.component == "X" and not variables and t.speed_power == 2
+        resistance = t.ahead
         if t.coefficient != 0.0 and (variables == {motion} or resistance):
-            out.append(_Own(t, motion, t.term.odd_in(motion) or resistance))
+            out.append(_Own(t, motion, t.product.odd_in(motion) or resistance))
     return out
 
 
@@ -204,7 +204,7 @@ def _outweighs(driving: _Own, own: list[_Own], p: ParameterFile) -> bool:
     unit = speed if driving.motion in LINEAR else speed / p.scaling.length
     motion = np.linspace(0.05, 1.0, 20) * (np.sin(largest) if driving.motion in "vw" else largest) * unit
     mine = [o.term for o in own if o.odd and o.term.component == driving.term.component]
-    force = sum(t.coefficient * speed**t.speed_power * motion**t.term.degree for t in mine)
+    force = sum(t.coefficient * speed**t.speed_power * motion**t.product.degree for t in mine)
     return bool(np.any(force > 0.0))
 
 
@@ -247,8 +247,8 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
             continue
         for a in own:
             for b in own:
-                n = a.term.term.degree
-                same = n == b.term.term.degree and a.term.speed_power == b.term.speed_power and a.odd and b.odd
+                n = a.term.product.degree
+                same = n == b.term.product.degree and a.term.speed_power == b.term.speed_power and a.odd and b.odd
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))

@@ -11,8 +11,9 @@ from math import isinf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, in_angles
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
@@ -184,8 +185,9 @@ ALWAYS_OPEN = {
     "estimate": ("scatter of the methods of estimates",),
     "unstated": ("whatever the source left out",),
 }
+MODEL = STUDIES["turbulence"]
 REMAINS = {
-    STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
+    MODEL: ("turbulence model", "turbulence model, its spread stated beside U95"),
     STUDIES["domain"]: ("domain and boundary conditions", "boundary conditions"),
 }  # what is open without a study, and with one
 COUPLED = "error of the drift angle in the rate sweep"
@@ -201,7 +203,7 @@ class BudgetPart:
     Attributes
     ----------
     name : str
-        ``random``, ``model form``, ``grid``, ``domain size``, ``turbulence model``, ``iterations``, or the name of an input.
+        ``random``, ``model form``, ``grid``, ``domain size``, ``iterations``, or the name of an input.
     half_width : float
         95 %, primed.
     share : float or None
@@ -271,6 +273,12 @@ class Budget:
     def part(self, name: str) -> float | None:
         """Half-width of a part; None where it was not assessed."""
         return next((p.half_width for p in self.parts if p.name == name), None)
+
+    @property
+    def model_spread(self) -> float | None:
+        """How far other turbulence models move the value, 95 % half-width; it stands beside U95, which holds no error of a model."""
+        tried = next((s for s in self.studies if s.name == MODEL), None)
+        return None if tried is None else tried.relative * abs(self.value)
 
     @property
     def input(self) -> float | None:
@@ -374,7 +382,7 @@ def budget_of(
     elif "cfd" in kinds:
         lacks.append("grid" if study is None else f"grid (study {study.convergence.convergence})")
     studies = tuple(variant_studies_of(tables, component) if variants is None else variants)
-    found.update({s.name: s.relative * abs(value) for s in studies})
+    found.update({s.name: s.relative * abs(value) for s in studies if s.name != MODEL})
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
     noisy = any(t.source.kind == "cfd" and not _has_errors(t, component) for t in tables)
     lacks += [ITERATIONS] * (noisy and ITERATIONS not in found)
