@@ -21,14 +21,14 @@ from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
-from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.secants import secant
 from coeflab.study.study import Plan, PlannedTow, Study
 from coeflab.study.towed import NOT_RUN, OPEN, SECANT, TowedRow, runs_used
 from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
-from coeflab.tables.reading import read_tables
+from coeflab.tables.reading import read_tables, table_at
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
 from coeflab.tank.earlier import earlier_run, take_over
 from coeflab.tank.folder import (

@@ -34,11 +34,9 @@ from coeflab.motion.simulation import manoeuvres_of, moved, simulate
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
-from coeflab.report.document import Document, Section, digest_of
-from coeflab.report.formats import REPORTERS
-from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
-from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.study import FromShape, Plan, Study
+from coeflab.tables.reading import table_at
 from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
@@ -71,7 +69,51 @@ def from_shape(
     plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
     distances: Sequence[float] = (),
 ) -> Study:  # fmt: skip
-    """The study of a body without tables; checks and files are left to what takes it.
+    """The study of a body without tables, with exports, first manoeuvres and what the estimates do to these.
+
+    Checks and files are left to what takes the study.
+
+    Parameters
+    ----------
+    plan : Plan
+        Without tables: name, exports, manoeuvres, conditions, scaling.
+    body : Body
+        With a shape.
+    stated : Stated
+        What is known of its mass beside the body's file.
+    progress : callable
+        Takes what is being done, in words.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``; none where empty.
+    distances : sequence of float
+        From the reference point to the wall, m: added mass there, by the panel method, goes into the parameter files.
+    """
+    study = estimated(plan, body, stated, progress, wall, distances)
+    shape = study.shape
+    if shape is None:
+        return study
+    files: dict[str, ParameterFile] = dict(study.parameter_files)
+    heavy, vehicle = shape.weighed, next(iter(files.values()))
+    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
+    said = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
+    said.extend(by_series(heavy.body, shape.conditions.speed))
+    planned = manoeuvres_of(plan.manoeuvres, files, progress)
+    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
+    files = {name: compared(p, shape.estimates, moves) for name, p in files.items()}
+    vehicle = next(iter(files.values()))
+    exports, refused = exports_of(plan.exports, files.values(), progress)
+    carried, why = _carried(vehicle, moves, progress)
+    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
+    shape = replace(shape, said=tuple(said), missing=missing, carried=carried)
+    return replace(study, parameter_files=files, exports=exports, refused=refused, manoeuvres=moves, shape=shape)
+
+
+@one_thread()
+def estimated(
+    plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
+    distances: Sequence[float] = (),
+) -> Study:  # fmt: skip
+    """Added mass, estimates and parameter files of a body without tables.
 
     Parameters
     ----------
@@ -133,22 +175,9 @@ def from_shape(
                 first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
             files[group.name] = equipped(first, heavy.body, heavy.configuration)
         hulls[group.name] = found
-    vehicle = next(iter(files.values()))
-    said.extend(_drift_limit(vehicle))
-    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
-    said.extend([standing.words] if standing is not None else [])
-    said.extend(by_series(heavy.body, conditions.speed))
-    planned = manoeuvres_of(plan.manoeuvres, files, progress)
-    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
-    files = {name: compared(p, made, moves) for name, p in files.items()}
-    vehicle = next(iter(files.values()))
-    exports, refused = exports_of(plan.exports, files.values(), progress)
-    carried, why = _carried(vehicle, moves, progress)
-    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
     return Study(
         plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
-        parameter_files=files, hulls=hulls, inputs=inputs, exports=exports, refused=refused, manoeuvres=moves,
-        shape=FromShape(heavy, made, conditions, (*heavy.said, *said), missing, carried),
+        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, made, conditions, (*heavy.said, *said)),
     )  # fmt: skip
 
 
@@ -451,6 +480,10 @@ def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[
     carried : sequence of Carried
         Of `replaced`.
     """
+    from coeflab.report.document import Document, Section, digest_of
+    from coeflab.report.formats import REPORTERS
+    from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
+
     p = made.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
     page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,

@@ -26,9 +26,10 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section, Series
 from coeflab.report.figures.motion import motion_figures
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table

@@ -18,7 +18,7 @@ from coeflab.core.finding import Severity
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.texts import known, remark
-from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
+from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -49,6 +49,8 @@ def forces(loss: Loss) -> Table:
         f"0: below {LOSSLESS:g} of the largest value.",
         *loss.controls,
     ]
+    if (rare := in_rare_states(loss)) and loss.rare is not None:
+        notes.append(rare)
     if loss.accelerations is not None:
         notes.append(
             "du/dt to dr/dt: accelerations of the file's rigid body in these states, and from rest under a force along each axis as "
@@ -69,6 +71,15 @@ def forces(loss: Loss) -> Table:
     return Table(
         f"Force law of {loss.target} against the parameter file", headers, tuple(rows), tuple(notes), frozenset({0, 1})
     )
+
+
+def in_rare_states(loss: Loss) -> str:
+    """The differences astern, broadside and at rest, in words; empty where there is none."""
+    if loss.rare is None or not loss.rare.furthest[1] > LOSSLESS:
+        return ""
+    each = zip(COMPONENTS, loss.rare.worst, loss.rare.relative, strict=True)
+    said = [f"{c} {number(w, 3)} {'N*m' if c in 'KMN' else 'N'} ({percent(s)})" for c, w, s in each if s > LOSSLESS]
+    return f"{RARE}, which the rows above do not hold, the largest differences are {', '.join(said)}"
 
 
 def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True) -> Table:
@@ -140,6 +151,9 @@ def in_short(loss: Loss) -> str:
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
+    if loss.rare is not None and loss.rare.furthest[1] > LOSSLESS and loss.furthest[1] <= LOSSLESS:
+        i, share = loss.rare.furthest
+        said.append(f"{COMPONENTS[i]} differs {RARE} by up to {percent(share)} of its largest")
     for i, share, names in found:
         if share > LOSSLESS or not said:
             by = percent(share).replace(">", "more than") if 100.0 * share > MOST_APART else f"up to {percent(share)}"
