@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.finding import Severity
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.texts import known, remark
@@ -240,9 +239,9 @@ def _aligned(table: Table) -> list[str]:
 
 
 def contents(parameters: ParameterFile, kind: str) -> Table:
-    """Every coefficient, primed and in SI; findings that warn are printed with the checks."""
+    """Every coefficient, primed and in SI; findings of the file are printed with the checks."""
     p = parameters
-    noted = tuple(remark(f) for f in p.findings if f.severity in (Severity.PASS, Severity.NOTE) or not known(f))
+    noted = tuple(remark(f) for f in p.findings if not known(f))
     remarks = tuple(dict.fromkeys((*p.provenance.notes, *noted)))
     rows = tuple(
         (c.symbol, with_u95(c.value, c.u95)[0], number(c.value_si), c.unit_si, with_u95(c.value, c.u95)[1], c.status.replace("_", " "),
