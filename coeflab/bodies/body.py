@@ -22,9 +22,9 @@ from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
 from coeflab.bodies.thrusters import Thruster
 from coeflab.core.axes import Axes, Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
-from coeflab.core.table import html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling

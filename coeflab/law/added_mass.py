@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
-from coeflab.core.table import html_by
 from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling

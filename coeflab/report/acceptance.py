@@ -11,7 +11,8 @@ from enum import StrEnum
 from math import copysign, inf, nan
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coeflab.core.table import ABSENT, Table, html_by
+from coeflab.core.cards import html_by
+from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import in_sentences, listed
 from coeflab.law.symbols import primed

@@ -20,8 +20,7 @@ from coeflab.law.symbols import derivative
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedConversion, PlannedJoint, PlannedTow
 from coeflab.tables.campaign import FILE, read_campaign
-from coeflab.tables.importers import PlannedTable
-from coeflab.tables.reading import suited_fit
+from coeflab.tables.reading import suited_fit, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
@@ -394,14 +393,6 @@ class PlanFile(takes.Declaration):
         for i, target in enumerate(targets):
             if target in targets[:i]:
                 raise InputError(f"the target {shown(target)} twice", "every target once", column=f"export[{i}].to")
-
-
-def table_at(
-    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
-) -> PlannedTable:
-    """A campaign folder, its campaign.toml, or one CSV of it."""
-    only = path.name if path.is_file() and path.suffix != ".toml" else None
-    return PlannedTable(path, fits, options or {}, only)
 
 
 def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:

@@ -217,6 +217,7 @@ def _sweeps(said: MatrixKeys, body: TowedBody | None, length: float) -> Sweeps:
         combined=tuple((c.drift, c.attack, c.yaw, c.pitch) for c in said.combined),
         controls=controls,
         speeds=said.speeds,
+        pairs=said.pairs,
     )
 
 

@@ -221,6 +221,8 @@ class MatrixKeys(Declaration):
         Motions at once.
     control : array of tables
         Straight runs with a control deflected.
+    pairs : tuple of str
+        Names of conditions whose mirror image is run as well, such as "drift+2", to see the bias of a mesh that is not its own.
     """
 
     drift: Angles | None = None
@@ -230,6 +232,7 @@ class MatrixKeys(Declaration):
     speeds: Speeds = ()
     combined: tuple[CombinedKeys, ...] = ()
     control: tuple[ControlKeys, ...] = ()
+    pairs: takes.Texts = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
