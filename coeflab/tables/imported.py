@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import toml_text, value
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
@@ -301,15 +300,11 @@ def _table(
         names = [LONG.get(one.said.name, one.said.name) for one in columns if not one.said.error]
         words = [{LONG.get(name, name) for name in doubts[row]} for row in rows]
         cells.append([" ".join(name for name in names if name in own) for own in words])
-    out = io.StringIO()
-    out.write(f"# Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file.\n")
+    comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
-        out.write("# Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".\n")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(zip(*cells, strict=True))
-    return out.getvalue().encode(), labels
+        comments.append("Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".")
+    return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 
 def _head(said: ColumnMap) -> str:

@@ -115,7 +115,7 @@ def questions(
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
         *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_halves(raw, settings), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_halves(raw, settings, shows), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -235,15 +235,16 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         )
 
 
-def _of_halves(raw: RawTable, settings: Settings) -> Iterator[Question]:
+def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> Iterator[Question]:
     """Which half of the body a domain with a symmetry plane holds, and what a body that may be cut there is."""
     half = settings.get(HALF_MODEL)
-    if HALF_MODEL in raw.stated or half is not None:
+    across = "; ".join(e.text for e in shows if e.key == HALF_MODEL)
+    if HALF_MODEL in raw.stated or across or half is not None:
         yield Question(
             HALF_MODEL, "Half of the body, whose forces are doubled: upper or lower of a cut at z = 0 (X, Y, N; Z, K, M are left out), "
             "starboard or port of one at y = 0 (X, Z, M; Y, K, N are left out). false: the forces are of the whole body, as they are "
-            "doubled already or no symmetry plane cuts the body", "upper or lower (cut at z = 0) or starboard or port (y = 0): "
-            "forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
+            "doubled already or no symmetry plane cuts the body", f"{across}{'; ' * bool(across)}upper or lower (cut at z = 0) or "
+            "starboard or port (y = 0): forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
         )  # fmt: skip
     cut = cut_of(half.value) if half is not None else None
     if cut is not None and cut.symmetry == UP_DOWN:

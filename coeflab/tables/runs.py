@@ -39,7 +39,7 @@ from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run,
 
 Progress = Callable[[str], None]
 STATE = "collected_runs.jsonl"
-STATE_KIND = "coeflab collected runs 3"
+STATE_KIND = "coeflab collected runs 4"
 DEEPEST, MOST_ENTRIES = 12, 500_000
 SHALLOW, MOST_SHALLOW = 2, 2_000  # levels of a run's folder, and their entries, that tell whether it changed
 STILL_WRITTEN = 2_000_000_000  # ns; what changed so shortly before it was read may change again unseen
@@ -482,14 +482,14 @@ def _plain(summary: RunSummary) -> dict[str, Any]:
     names = [n for n in RunSummary.__dataclass_fields__ if n not in ("conditions", "name")]
     out = {n: getattr(summary, n) for n in names}
     for name in _STATED:
-        out[name] = {k: [s.value, s.place] for k, s in out[name].items()}
+        out[name] = {k: [s.value, s.place, s.offered, s.contradicted] for k, s in out[name].items()}
     return out
 
 
 def _summary(content: Mapping[str, Any]) -> RunSummary:
     read = dict(content)
     for name in _STATED:
-        read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, place) for k, (v, place) in read[name].items()}
+        read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, *how) for k, (v, *how) in read[name].items()}
     for name in ("patches", "beside"):
         read[name] = {k: (float(v), unit) for k, (v, unit) in read[name].items()}
     for name in ("files", "remarks"):

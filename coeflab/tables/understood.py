@@ -16,7 +16,7 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
-from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
+from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.mapping import (
     NO_FORCE,
@@ -33,7 +33,16 @@ from coeflab.tables.mapping import (
 from coeflab.tables.proposals import Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, VISCOSITY, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.settings import (
+    EXTRA,
+    SYMMETRY,
+    VISCOSITY,
+    Setting,
+    Settings,
+    against_words,
+    frame_of,
+    read_setting,
+)
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -148,6 +157,7 @@ def understood(
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
+    shows += tuple(_across(columns, frame, settings))
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
@@ -193,6 +203,15 @@ def _cut_of(settings: Settings) -> Cut | None:
     """The cut of a body of which the table has one half."""
     half = settings.get("table.half_model") or settings.get(HALF_MODEL)
     return cut_of(half.value) if half is not None else None
+
+
+def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings) -> Iterator[Evidence]:
+    """Forces across a plane, while nobody has said whether the forces are of the whole body."""
+    if HALF_MODEL in settings or "table.half_model" in settings:
+        return
+    symmetry = settings[SYMMETRY].value if SYMMETRY in settings else ()
+    length = quantity(settings["scaling.length"].value, "length") if "scaling.length" in settings else 0.0
+    yield from across_planes(columns, frame, symmetry, length)
 
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:

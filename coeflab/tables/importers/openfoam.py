@@ -26,6 +26,7 @@ from coeflab.tables.openfoam_forces import (
     moved,
     oriented,
 )
+from coeflab.tables.openfoam_symmetry import mirror_patches
 from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
@@ -276,7 +277,7 @@ def _stated(
         out["conditions.density"] = Stated(*density)
     if point is not None:
         out["axes.reference_point"] = Stated(tuple(point[0]), point[1])
-    if mirrors := of.mirror_patches(case):
+    if mirrors := mirror_patches(case):
         place = mirrors.partition(": ")[0]
         out[HALF_MODEL] = Stated("symmetry plane", place, offered=True, contradicted=mirrors)
     speed = history.facts.get("magUInf")

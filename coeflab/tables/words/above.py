@@ -11,7 +11,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.tables.column_map import folded
 from coeflab.tables.dialect import Marks, Row, one_reading
-from coeflab.tables.raw_table import Stated
+from coeflab.tables.half_bodies import half_in_words
+from coeflab.tables.raw_table import HALF_MODEL, Stated
 from coeflab.tables.words.axes import BODY_AXES, along_body, frame_in_words, side_of_turns, signs
 from coeflab.tables.words.points import (
     ARM_FROM,
@@ -169,6 +170,8 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
             one = found.setdefault(key, said)
             if one.value != said.value and not one.contradicted:
                 found[key] = replace(one, contradicted=f"{one.place}, but {said.place}")
+    if half := half_in_words(texts):
+        found[HALF_MODEL] = half
     if density := density_in_words(texts, marks):
         found["conditions.density"] = density
     if frame := frame_in_words(texts):
