@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.types import brief
 from coeflab.core.wording import listed

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import ABSENT, Table, in_digits_of, with_u95
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from coeflab.bodies.body import Body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import InputFile
 from coeflab.core.several import ByName, Several
-from coeflab.core.table import Check, Severity, html_by
+from coeflab.core.table import Check, html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget

@@ -273,6 +273,9 @@ class TableDeclaration(takes.Declaration):
     forces_density : float or None
         Of the fluid that the forces were computed with, kg/m^3, where a solver's files state it. Another density of the campaign is
         refused: the primes would be wrong by their ratio.
+    assumed : tuple of str
+        Keys that an import accepted although no source states them, such as table.arm_point: every coefficient that hangs on one says
+        so. Delete a key here once the source states it.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -291,6 +294,7 @@ class TableDeclaration(takes.Declaration):
     half_model: HalfModel | None = None
     by_symmetry: takes.Words = ""
     forces_density: takes.Density | None = None
+    assumed: takes.Texts = ()
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:

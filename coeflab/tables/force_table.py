@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.finding import Finding
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
@@ -159,6 +160,8 @@ class ForceTable:
         Angles whose sign was inferred from the sign of the slope, alpha or beta.
     declared : Declared or None
         What its campaign.toml says of it, before it was turned and moved; None for a table made by a program.
+    findings : tuple of Finding
+        What is assumed of it or left out; they travel with every number that comes of it.
     """
 
     name: str
@@ -192,6 +195,7 @@ class ForceTable:
     primed: frozenset[str] = frozenset()
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):

@@ -32,6 +32,7 @@ from coeflab.tables.settings import (
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 
+UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
@@ -74,6 +75,8 @@ class Question:
         The file gives the default, or no number hangs on it: nobody has to accept it.
     grave : bool
         Axes, signs, points, inertia: a wrong one makes wrong slopes that look right.
+    assumed : bool
+        Neither words nor numbers of the file give the default: once accepted, what hangs on it says so.
     """
 
     key: str
@@ -85,6 +88,7 @@ class Question:
     shown: str = ""
     harmless: bool = False
     grave: bool = False
+    assumed: bool = False
 
     @property
     def open(self) -> bool:
@@ -139,7 +143,7 @@ def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator
         length = settings.get("scaling.length")
         yield Question(
             LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
-            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length",
+            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length", assumed=True,
         )  # fmt: skip
     if any(map(without_unit, offers)):
         yield Question(
@@ -199,7 +203,7 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
     words = raw.stated.get(POINT_FROM)
     by_words = words is not None and (datum is None or of_datum(str(datum.value), point))
     if words is not None and own is None:
-        unsaid = "; from where it does not say: taken aft of the nose" * words.value.endswith(UNSAID)  # type: ignore[union-attr]
+        unsaid = UNSAID_IN_WORDS * words.value.endswith(UNSAID)  # type: ignore[union-attr]
         if words.contradicted or not by_words:
             choices = f"{words.contradicted or words.place}; {choices}"
         elif x is None:
@@ -219,7 +223,8 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         choices = f"{said.contradicted or said.place}; {choices}"
     elif datum is not None or said is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
-    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True)
+    unsaid = why == "the datum itself" or why.endswith(UNSAID_IN_WORDS)
+    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True, assumed=unsaid)
     asks = "Point of the body that places count from: nose, cg, midship ..."
     if own is not None:
         origin = f"origin_{identifier(raw.path.resolve().stem)}"[:40]
@@ -266,6 +271,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Quest
     yield Question(
         "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
         f"{beyond}; m, with its name: 4.3 LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+        assumed=bool(length),
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
                    "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
@@ -310,12 +316,12 @@ def _of_rotation(
     if arm:
         side, why, shown = centre_of(columns, frame_of(settings))
         yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
-                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True)  # fmt: skip
+                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True, assumed=True)  # fmt: skip
         at, later, line = arm_by_words(raw, settings) or (same, "the reference point", "")
         yield Question(
             "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}",
             f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
-            line or "the reference point, unless said", later, grave=True,
+            line or "the reference point, unless said", later, grave=True, assumed=not line,
         )  # fmt: skip
     elif {"q", "r"} & set(likely) or any(np.any(rates[m]) for m in ("q", "r") if m in rates):
         yield _where_still(raw, settings)
@@ -356,7 +362,9 @@ def _where_still(raw: RawTable, settings: Settings) -> Question:
     choices = f"{line}; {choices}".removeprefix("; ")
     if at or later:
         return Question(ARM_POINT, about, choices, at, line, line, later if not at else "", grave=True)
-    return Question(ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True)
+    return Question(
+        ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True, assumed=True
+    )
 
 
 def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
@@ -427,7 +435,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         return q
     value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
     value = value.casefold() if isinstance(said.value, bool) else value
-    return replace(q, default=value, why=said.place, short=said.place, shown="")
+    return replace(q, default=value, why=said.place, short=said.place, shown="", assumed=False)
 
 
 def _point(value: Any) -> str:

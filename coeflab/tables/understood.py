@@ -41,6 +41,7 @@ from coeflab.tables.settings import (
     Settings,
     against_words,
     frame_of,
+    overruled,
     read_setting,
 )
 from coeflab.tables.to_frd import columns_of
@@ -173,7 +174,7 @@ def understood(
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
-    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns))
+    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings))
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns

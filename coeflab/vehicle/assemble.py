@@ -423,6 +423,7 @@ def assemble(
         covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
         models=models,
         added_mass=hull,
+        findings=tuple(dict.fromkeys(found for f in chosen for found in f.findings)),
         provenance=Provenance(
             coeflab_version=VERSION,
             study=study,

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm

@@ -16,9 +16,10 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
 from coeflab.core.errors import CoeflabError, InputError, ScalingMismatchError, shown
 from coeflab.core.files import stem
+from coeflab.core.finding import Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check
 from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name, one_length

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics import origin_slope

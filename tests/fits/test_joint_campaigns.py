@@ -12,7 +12,7 @@ import pytest
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import shipped
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Pooling
 from coeflab.law.coefficient import Status

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import write as mss_exporter
 from tests.formats import of_second_order as second

@@ -28,7 +28,8 @@ import numpy as np
 import coeflab.workbench as workbench
 from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from coeflab.cli.show import plain_lines
-from coeflab.core.table import Severity, in_digits_of, percent
+from coeflab.core.finding import Severity
+from coeflab.core.table import in_digits_of, percent
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import first_page
 from coeflab.report.content import document

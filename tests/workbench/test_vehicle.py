@@ -21,7 +21,7 @@ from coeflab.bodies.thrusters import Thruster
 from coeflab.cli.vehicle import typed
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.formats.export import Loss

@@ -10,9 +10,10 @@ import numpy as np
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Severity
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.formats.mss.m_file import (
     DENSITIES,

@@ -7,8 +7,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from coeflab.core.finding import Severity
 from coeflab.core.limits import XML_BYTES
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.formats.stated_file import LinkModel, link_file

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import ABSENT, Table, number, percent, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import Check, Severity, number
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, number
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.rows.straight_runs import straight_runs

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.study import Study
 
 summary = "along which axis the volume of a vehicle's mesh is longest"

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.study.study import Study

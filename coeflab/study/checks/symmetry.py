@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, as_check, plus_minus
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, as_check, plus_minus
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.study.study import Study
 from coeflab.tables.campaign import CUTS, Cut
