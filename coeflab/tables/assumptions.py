@@ -62,7 +62,13 @@ def assumed(key: str, table: str, value: Any, severity: Severity = Severity.WARN
     severity : Severity
     """
     motions, components = moved_by(key)
-    return Finding.of(CODE, table, severity, advice=key, key=key, value=str(value), motions=motions, components=components)
+    of = " or ".join(
+        [*([f"in {', '.join(motions)}"] * bool(motions)), *([f"of {', '.join(components)}"] * bool(components))]
+    )
+    return Finding.of(
+        CODE, table, severity, advice=key, key=key, value=str(value), motions=motions, components=components,
+        symbols=(f"every coefficient {of}".strip(),),
+    )  # fmt: skip
 
 
 def depends(found: Finding, symbol: str, table: str | None = None) -> bool:

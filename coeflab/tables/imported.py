@@ -56,6 +56,8 @@ class Filled:
         Every key, as it holds for this table.
     asked : frozenset of str
         Keys that this table raises.
+    assumed : tuple of str
+        Keys that were accepted and that no source states.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Filled:
     mapping: Mapping[str, ColumnMap]
     settings: Settings
     asked: frozenset[str]
+    assumed: tuple[str, ...] = ()
 
     @property
     def file(self) -> str:
@@ -131,6 +134,8 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
                 at_reference = key == ARM_POINT and one.value == REFERENCE
                 own[name] = t.settings[POINT_OF].value if at_reference else one.value
                 said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+        if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
+            own["assumed"], said["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
         made_with = t.raw.stated.get("conditions.density")
         if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
             own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"

@@ -119,6 +119,8 @@ class Proposal:
         What a person should read beside it.
     unread : str
         The unit that the file writes, where it is none that the column can have.
+    assumed : bool
+        The unit is a guess.
     """
 
     text: str
@@ -126,6 +128,7 @@ class Proposal:
     certain: bool = False
     note: str = ""
     unread: str = ""
+    assumed: bool = False
 
     @property
     def whole(self) -> bool:
@@ -323,7 +326,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     if said.dimension == "angle" and _whole_degrees(column.values):
-        return Proposal(f"{name} [deg]", f"{why}; whole numbers")
+        return Proposal(f"{name} [deg]", f"{why}; whole numbers", assumed=True)
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
 
 

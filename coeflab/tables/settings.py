@@ -352,7 +352,11 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
         if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
             continue
         if not _same(key, one.value, stated.value, settings):
-            value = f"({', '.join(f'{x:g}' for x in stated.value)})" if isinstance(stated.value, tuple) else str(stated.value)
+            value = (
+                f"({', '.join(f'{x:g}' for x in stated.value)})"
+                if isinstance(stated.value, tuple)
+                else str(stated.value)
+            )
             said = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
             out.append(InputError(
                 f"{key} = {said}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
@@ -364,7 +368,7 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
 _JUDGED_BY_THEIR_OWN = (POINT_OF, "conditions.density", VISCOSITY)  # complained of with what each makes wrong
 ADVICE = {
     "table.arm_point": "Leave it out: the velocities of the source already hold there, and another point would count the drift of the arm twice.",
-    "scaling.length": "Leave it out; primes by another length are those of `coeflab fit --length \"4.3 m\" --length-name LOA`, or of a plan.",
+    "scaling.length": 'Leave it out; primes by another length are those of `coeflab fit --length "4.3 m" --length-name LOA`, or of a plan.',
 }
 
 

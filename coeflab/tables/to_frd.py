@@ -158,7 +158,6 @@ SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 HALF = "half model"
-ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -229,7 +228,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
             InputFile(f"{campaign.name}/{table.file}", digest),
         ),
-        notes=(*notes, *([ASSUMED_POINT] if _assumes_a_point(table, motion) else [])),
+        notes=tuple(notes),
         findings=tuple(_assumed(columns, campaign, table, motion)),
         lines=columns.lines,
         density=columns.density,
@@ -263,20 +262,13 @@ def _assumed(
     said |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
     said["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
     keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
-    keys += ["table.arm_point"] * _assumes_a_point(table, motion)
+    keys += ["table.arm_point"] * (table.arm_point is None and bool(np.any(motion["q"]) or np.any(motion["r"])))
     for key in dict.fromkeys(keys):
         section, _, plain = key.partition(".")
         value = said.get(key) or getattr(of.get(section), plain, "")
         if section == "columns":
             value = columns.headers.get(plain, plain)
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
-
-
-def _assumes_a_point(table: TableDeclaration, motion: Mapping[str, Array]) -> bool:
-    """Whether the point of no drift is assumed: rows turn without drifting, and nothing states the point."""
-    turning = (motion["q"] != 0.0) | (motion["r"] != 0.0)
-    drifting = np.any(motion["v"][turning]) or np.any(motion["w"][turning])
-    return table.arm_point is None and bool(np.any(turning)) and not drifting
 
 
 def _place(point: Array) -> str:

@@ -35,6 +35,7 @@ from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import (
     EXTRA,
+    OF_ARMS,
     SYMMETRY,
     VISCOSITY,
     Setting,
@@ -158,7 +159,8 @@ def understood(
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
-    shows += tuple(_across(columns, frame, settings))
+    if not any(e.instead for e in shows):  # a doubtful axis comes first
+        shows += tuple(_across(columns, frame, settings))
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
@@ -187,6 +189,16 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def accepted_without_source(found: Understood, settings: Settings) -> tuple[str, ...]:
+    """Keys, and columns with a guessed unit, that were accepted although neither a person nor the file states them."""
+    keys = [k for k, one in settings.items() if one.assumed and (k not in OF_ARMS or k in found.about)]
+    units = {o.text for o in found.proposals if o.assumed}
+    columns = [
+        f"columns.{one.name}" for name, one in found.mapping.items() if name in found.accepted and str(one) in units
+    ]
+    return (*keys, *columns)
 
 
 def _another_water(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> Iterator[InputError]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
@@ -334,7 +334,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice, what the file itself says of its numbers; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -351,6 +351,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *sign_findings(parameters),
         *law_findings(parameters),
         *twice_findings(parameters),
+        *(as_check(f.code.partition(".")[0], f) for f in parameters.findings),
     )
 
 

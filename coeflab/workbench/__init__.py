@@ -35,6 +35,7 @@ from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
 from coeflab.study.plan import plan_at, read_plan
 from coeflab.study.study import Plan, PlannedJoint, Study
+from coeflab.tables.assumptions import carried
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import read_tables
@@ -261,6 +262,8 @@ def _fitted(
     _refuse_starved(fit, tables)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    assumed = carried([f for t in tables for f in t.findings], fit.coefficients.coefficients)
+    fit = replace(fit, findings=(*fit.findings, *assumed))
     if all(t.source.kind == "estimate" for t in tables):
         return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)

@@ -285,6 +285,8 @@ def _stated(
         out["conditions.speed"] = conditions["U"]
     elif speed is not None and of.is_number(speed[0]):
         out["conditions.speed"] = Stated(float(speed[0]), speed[1])
+    if "u" in conditions and any(rate in conditions for rate in "pqr"):
+        out["table.arm_point"] = Stated("reference point", conditions["u"].place)
     if (length := history.facts.get("lRef")) is not None and of.is_number(length[0]):
         out["scaling.length"] = Stated(float(length[0]), length[1])
     for name in ("transportProperties", "physicalProperties"):

@@ -354,12 +354,16 @@ def _stated(config: _Config | None, monitor: Monitor) -> tuple[dict[str, Stated]
         "REF_ORIGIN_MOMENT_X",
         "MACH_NUMBER",
     )
-    _add_velocity(conditions, [float(v) for v in own], config.at(*keys), stated)
+    _add_velocity(conditions, [float(v) for v in own], config.at(*keys), stated, turns=rate is not None)
     return conditions, stated, remarks
 
 
-def _add_velocity(conditions: dict[str, Stated], own: Sequence[float], place: str, stated: dict[str, Stated]) -> None:
-    """Velocity of the body through the water, axes of the mesh."""
+def _add_velocity(
+    conditions: dict[str, Stated], own: Sequence[float], place: str, stated: dict[str, Stated], turns: bool = False
+) -> None:
+    """Velocity of the body through the water, axes of the mesh; of one that turns at the point of its moments."""
+    if turns:
+        stated["table.arm_point"] = Stated("reference point", place)
     speed = math.hypot(*own)
     conditions["U"] = stated["conditions.speed"] = Stated(speed, place)
     conditions |= {n: Stated(v + 0.0, place) for n, v in zip("uvw", own, strict=True)}
