@@ -179,6 +179,8 @@ class Run:
         What shows it, with file and line; empty for a whole run.
     length : float
         Of the body, m: the arm that makes a scale of moments of a force; 0 where nobody says.
+    is_final : bool
+        Its files hold results without a history, such as a report of the last iteration: the last row is the value.
     """
 
     path: Path
@@ -189,6 +191,7 @@ class Run:
     ended: Ended = Ended.WHOLE
     why: str = ""
     length: float = 0.0
+    is_final: bool = False
 
     def __post_init__(self) -> None:
         for name in ("conditions", "patches"):

@@ -33,7 +33,7 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
-from coeflab.tables.histories import Convergence, is_cycle, plateau
+from coeflab.tables.histories import LEAST_ROWS, Convergence, is_cycle, plateau
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
@@ -262,6 +262,8 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
     columns, by_name = deciding(history)
     if not columns:
         return replace(common, status=Convergence.EMPTY, why="no column of a force or moment")
+    if is_final_value(run, at):
+        return _of_last_row(common, run, columns, by_name, at)
     times = at.values if at is not None and at.means == "time" else None
     groups = {name: column.unit for name, column in columns.items()} if by_name else None
     found = plateau(
@@ -293,6 +295,33 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
         window=found.rows,
         patches=_patches(run, start),
     )
+
+
+def is_final_value(run: Run, at: RawColumn | None) -> bool:
+    """Whether a run has a result and no history: by its importer, or as its one row is of an iteration that many came before."""
+    n = len(run.history)
+    counted = at is not None and at.means == "iteration" and n == 1 and float(at.values[0]) >= LEAST_ROWS
+    return 0 < n < LEAST_ROWS and (run.is_final or counted)
+
+
+def _of_last_row(
+    common: RunSummary, run: Run, columns: Mapping[str, RawColumn], by_name: bool, at: RawColumn | None
+) -> RunSummary:
+    """The last row as it stands: no standard error follows from it."""
+    values = {c: float(k.values[-1]) for c, k in columns.items()}
+    if not all(map(math.isfinite, values.values())):
+        return replace(common, status=Convergence.DIVERGED, why="a force that is no number")
+    used = set(map(id, columns.values()))
+    others = [
+        c for c in run.history.columns if id(c) not in used and not c.is_text and c.means not in ("time", "iteration")
+    ]
+    last = float(at.values[-1]) if at is not None else len(run.history) - 1.0
+    return replace(
+        common, status=Convergence.FINAL, means=values, errors=dict.fromkeys(values, math.nan),
+        units={c: k.unit for c, k in columns.items()}, headers={c: k.name for c, k in columns.items()}, by_name=by_name,
+        beside={c.name: (float(c.values[-1]), c.unit) for c in others if not _RESIDUAL.search(c.name)},
+        averaged="the last row", window=1, patches=_patches(run, last),
+    )  # fmt: skip
 
 
 def _averaged(at: RawColumn | None, first: int, rows: int) -> str:

@@ -292,7 +292,7 @@ def _force_report(path: Path) -> Run:
     ended, why = (Ended.CRASHED, cut) if cut else (Ended.WHOLE, "")
     if not np.isfinite(last).all():
         ended, why = Ended.DIVERGED, f"{path.name}:{lines[-1]}: a force that is no number"
-    return Run(path, path.stem, history, patches=made, ended=ended, why=why)
+    return Run(path, path.stem, history, patches=made, ended=ended, why=why, is_final=True)
 
 
 def _shown(direction: tuple[float, ...] | None) -> str:
