@@ -254,6 +254,13 @@ def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None
     return data[own] * float(row[group.index(own)]) if own in data else None
 
 
+def frd_column(columns: Sequence[Assigned], component: str, frame: Axes) -> Assigned | None:
+    """The column that holds a force or velocity of the body, whatever its sign there; no standard error."""
+    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
+    own = group[int(np.argmax(np.abs(frame.rotation[group.index(component)])))]
+    return next((c for c in columns if c.said.name == own and not c.said.error), None)
+
+
 def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:
     """The column along the body's length if in FRD u is below zero in every row."""
     data = {one.said.name: one.values for one in columns if one.said.role == "velocity"}

@@ -10,6 +10,7 @@ import numpy as np
 
 from coeflab.core.axes import ANGLE_SIGNS, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
+from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
@@ -31,6 +32,7 @@ from coeflab.tables.settings import (
 )
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
+from coeflab.tables.words.primes import BASIS, SIZES, area_of
 
 UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
@@ -98,7 +100,7 @@ class Question:
 
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
-    likely: Sequence[str] = (), offers: Sequence[Proposal] = (),
+    likely: Sequence[str] = (), offers: Sequence[Proposal] = (), primes: bool = False,
 ) -> tuple[Question, ...]:  # fmt: skip
     """Every key that makes the file a campaign, said or not.
 
@@ -115,10 +117,12 @@ def questions(
         What columns are by name whose unit is still open.
     offers : sequence of Proposal
         Of the columns that nobody has confirmed.
+    primes : bool
+        Whether a force is a prime by its name alone, so that somebody has to confirm what it was divided by.
     """
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
-        *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
+        *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
         *_of_halves(raw, settings, shows), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
@@ -131,14 +135,11 @@ def without_unit(offer: Proposal) -> bool:
     return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
 
 
-def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator[Question]:
+def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:
     """Sizes and units that several columns share."""
     texts = [one.text for one in offers]
-    if any(f"A={OPEN}" in text for text in texts):
-        yield Question(
-            AREA, "Area of the coefficients, which are by 1/2 rho U^2 A (moments: A L), such as 0.2 m^2; or prime, where they "
-            "are primes by the campaign's length", "their area, such as 0.2 m^2; or prime: by the length",
-        )  # fmt: skip
+    if any(f"A={OPEN}" in text for text in texts) or primes:
+        yield _of_basis(raw, settings, primes)
     if any(f"L={OPEN}" in text for text in texts):
         length = settings.get("scaling.length")
         yield Question(
@@ -150,6 +151,55 @@ def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator
             UNITS_OF, "Unit of the columns that state none: SI is N, N m, m/s, rad/s and m; another one column by column, such as "
             "Fy=Y [kN], and Fy=Y' [-] for a prime", "SI (N, N m, m/s, rad/s) for all; or Fy=Y [kN]",
         )  # fmt: skip
+
+
+def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
+    """What coefficients and primes were divided by: by words over the table, else by the names of primes; always to be confirmed."""
+    asks = (
+        "Area that the source divided by, beside 1/2 rho U^2 (moments: area and length), such as 0.2 m^2; or prime: L^2 by "
+        "scaling.length, moments L^3"
+    )
+    choices = "area that they were divided by, such as 0.2 m^2; or prime: L^2 by scaling.length"
+    said = raw.stated.get(BASIS)
+    sizes, places = known_sizes(raw, settings)
+    if said is not None and not said.contradicted:
+        basis = str(said.value)
+        area = area_of(basis, sizes)
+        if basis == "L L":
+            return Question(AREA, asks, choices, "prime", said.place, said.place, grave=True)
+        if area is not None:
+            sources = dict.fromkeys([said.place, *(places[f] for f in basis.split() if f in places)])
+            why = "; ".join(sources)
+            return Question(AREA, asks, choices, f"{area:.12g} m^2", why, f"{basis}: {why}", grave=True)
+        if "L" in basis.split() and "L" not in sizes and area_of(basis, {**sizes, "L": 1.0}) is not None:
+            return Question(
+                AREA, asks, choices, "", said.place, f"{basis}: {said.place}", f"{basis}, once L is said", grave=True
+            )
+        return Question(AREA, asks, f"{said.place}: {basis}, in m^2; {choices}", grave=True)
+    areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral")]
+    if said is not None or (primes and areas):
+        named = said.contradicted if said is not None else "; ".join(areas)
+        return Question(AREA, asks, f"{named}; {choices}", grave=True)
+    if not primes:
+        return Question(AREA, asks, choices)
+    return Question(
+        AREA, asks, choices, "prime", "its name alone: 1/2 rho U^2 L^2 (moments L^3), which no word of the source says",
+        "by its name: L^2 (moments L^3); no word says so", grave=True, assumed=True,
+    )  # fmt: skip
+
+
+def known_sizes(raw: RawTable, settings: Settings) -> tuple[dict[str, float], dict[str, str]]:
+    """Sizes of the body by their letters, L T B D V, and areas by their names, m, m^3 and m^2; and what words say each."""
+    sizes, places = dict[str, float](), dict[str, str]()
+    for name, key in SIZES.items():
+        if (one := raw.stated.get(key)) is not None and isinstance(one.value, float):
+            sizes[name], places[name] = one.value, one.place
+    length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    if length is not None and not getattr(length, "contradicted", ""):
+        sizes["L"] = quantity(length.value, "length")
+    if (area := raw.stated.get(AREA)) is not None and area.offered and isinstance(area.value, float):
+        sizes["area"], places["area"] = area.value, area.place
+    return sizes, places
 
 
 def _of_axes(

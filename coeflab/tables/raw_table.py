@@ -32,12 +32,15 @@ class Stated:
         Words over a table say it, which may be about something else: to be confirmed.
     contradicted : str
         What contradicts it, so that a person has to say it; empty where nothing does.
+    convention : bool
+        The format fixes it for every file, this one does not say it: a person may know better.
     """
 
     value: str | float | bool | tuple[float, ...]
     place: str
     offered: bool = False
     contradicted: str = ""
+    convention: bool = False
 
 
 @brief

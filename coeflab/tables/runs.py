@@ -511,7 +511,7 @@ def _plain(summary: RunSummary) -> dict[str, Any]:
     names = [n for n in RunSummary.__dataclass_fields__ if n not in ("conditions", "name")]
     out = {n: getattr(summary, n) for n in names}
     for name in _STATED:
-        out[name] = {k: [s.value, s.place, s.offered, s.contradicted] for k, s in out[name].items()}
+        out[name] = {k: [s.value, s.place, s.offered, s.contradicted, s.convention] for k, s in out[name].items()}
     return out
 
 

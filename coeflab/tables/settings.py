@@ -347,7 +347,13 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
     for key, stated in raw.stated.items():
         one = settings.get(key)
         section, _, name = key.partition(".")
-        if one is None or stated.offered or not one.origin.startswith(CONFIRMED) or key in _JUDGED_BY_THEIR_OWN:
+        if (
+            one is None
+            or stated.offered
+            or stated.convention
+            or not one.origin.startswith(CONFIRMED)
+            or key in _JUDGED_BY_THEIR_OWN
+        ):
             continue
         if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
             continue
@@ -392,7 +398,12 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
     out = []
     for key, words in raw.stated.items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
-        if one is None or not words.offered or words.contradicted or key.startswith(("source.", "coefficients.")):
+        if (
+            one is None
+            or not (words.offered or words.convention)
+            or words.contradicted
+            or key.startswith(("source.", "coefficients."))
+        ):
             continue
         if isinstance(words.value, float) and key in _SIZES:
             same = abs(quantity(one.value, _SIZES[key]) / words.value - 1.0) <= SAME_SIZE

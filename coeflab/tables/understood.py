@@ -18,6 +18,7 @@ from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
+from coeflab.tables.low_aspect import above_low_aspect
 from coeflab.tables.mapping import (
     NO_FORCE,
     Assigned,
@@ -30,8 +31,8 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import Proposal, proposals, taken_as
-from coeflab.tables.questions import Question, questions
+from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
+from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import (
     EXTRA,
@@ -131,7 +132,7 @@ def understood(
     judged : collection of str, optional
         Columns whose sign a person has settled, by default all of ``said``.
     """
-    offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
+    offers = proposals(raw, {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings})
     cut = _cut_of(settings)
     offers = tuple(_of_half(one, cut, frame_of(_with_frame(raw, settings))) for one in offers) if cut else offers
     mapping: dict[str, ColumnMap] = {}
@@ -171,9 +172,14 @@ def understood(
             f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(lost)} left out" * bool(lost)
         ),)  # fmt: skip
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
+    shows += tuple(above_low_aspect(columns, frame, *known_sizes(raw, settings), settings))
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
+    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}
+    primes = any(
+        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name for c in columns
+    )
+    asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
     complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings))

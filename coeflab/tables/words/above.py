@@ -23,6 +23,7 @@ from coeflab.tables.words.points import (
     datum_in_words,
     moments_point,
 )
+from coeflab.tables.words.primes import prime_basis
 from coeflab.tables.words.water import APART, density_in_words, states_density, with_words_before
 
 _NAMES = {
@@ -134,6 +135,7 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         length = found.get("scaling.length", Stated("", volume, offered=True))
         found["scaling.length"] = replace(length, contradicted=against)
     told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
+    told |= prime_basis(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)
     if own and not (water and states_density(water.place)):  # a number without a unit, or in another one
