@@ -143,11 +143,14 @@ class TableKeys(takes.Declaration):
         Names of fits, slope_at_origin and tied_law unless given; ``coeflab formats`` lists them.
     options : mapping
         A table of options for each fit, by its name.
+    speed : float or None
+        m/s; only rows of this speed, within 2 %, enter the fits: where a slope depends on the speed, one fit a speed.
     """
 
     campaign: CampaignPath
     fits: takes.Texts = ()
     options: Options = field(default_factory=dict)
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO] | None = None
 
     def check(self) -> None:
         """Options are those of the fits."""
@@ -378,11 +381,14 @@ class PlanFile(takes.Declaration):
 
 
 def table_at(
-    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
+    path: Path,
+    fits: tuple[str, ...] = (),
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    speed: float | None = None,
 ) -> PlannedTable:
     """A campaign folder, its campaign.toml, or one CSV of it."""
     only = path.name if path.is_file() and path.suffix != ".toml" else None
-    return PlannedTable(path, fits, options or {}, only)
+    return PlannedTable(path, fits, options or {}, only, speed)
 
 
 def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
@@ -466,7 +472,7 @@ def read_plan(path: Path) -> Plan:
         name=study.name,
         title=study.name if study.title is None else study.title,
         tables=(
-            *(table_at(t.campaign, t.used, t.options) for t in file.table),
+            *(table_at(t.campaign, t.used, t.options, t.speed) for t in file.table),
             *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
         ),
         tows=tows,

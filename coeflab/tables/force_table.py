@@ -90,6 +90,8 @@ class Declared:
         Of the campaign, for people.
     source_sha256 : str
         Of the file that the table was made from.
+    constant : tuple of (str, float)
+        What the source held at one number throughout, such as a propeller rate.
     """
 
     frame: str
@@ -97,6 +99,7 @@ class Declared:
     reference_point: tuple[float, ...]
     notes: str = ""
     source_sha256: str = ""
+    constant: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -286,6 +289,16 @@ class ForceTable:
         if np.ptp(used) > 0.0:
             note += f"; grids in use have {int(used.min())} to {int(used.max())} cells"
         return replace(self, usable=usable, exclusions=(*self.exclusions, *found), notes=(*self.notes, note))
+
+    def at_speed(self, speed: float) -> ForceTable:
+        """The rows of one speed in use, m/s, as measured; the others are left out."""
+        rows = np.abs(self.speed - speed) > SAME_SIZE * abs(speed)
+        used = [int(i) for i in np.flatnonzero(rows) if any(mask[i] for mask in self.usable.values())]
+        usable = {c: mask & ~rows for c, mask in self.usable.items()}
+        found = [
+            Exclusion(i, self.lines[i] if self.lines else 0, "", f"another speed than {speed:g} m/s") for i in used
+        ]
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
 
     def without_studies(self) -> ForceTable:
         """Rows in which a study changed something are left to that study."""

@@ -26,6 +26,7 @@ from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
+from coeflab.tables.levels import levels_of
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
@@ -136,6 +137,8 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
                 said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
         if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
             own["assumed"], said["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
+        if held := _held(t):
+            own["constant"], said["constant"] = held, "one number throughout, while the speed varied"
         made_with = t.raw.stated.get("conditions.density")
         if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
             own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"
@@ -196,6 +199,20 @@ def _constants(table: Filled, common: Settings) -> dict[str, float]:
         if own != quantity(common[key].value, role) and role not in roles and (role == "density" or primed):
             out[head] = own
     return out
+
+
+def _held(table: Filled) -> dict[str, float]:
+    """Columns of no use with one number throughout, of a table of several speeds: what the test held while the speed varied."""
+    speeds = next((c.values for c in table.columns if c.said.role == "speed"), np.empty(0))
+    if np.unique(levels_of(speeds[np.isfinite(speeds)])).size < 2:
+        return {}
+    used = {c.column.name for c in table.columns}
+    idle = [
+        c
+        for c in table.raw.columns
+        if c.name not in used and not c.means and np.all(np.isfinite(c.values)) and len(c.values)
+    ]
+    return {_label(c.name, ()): float(c.values[0]) for c in idle if not np.ptp(c.values) and c.values[0] != 0.0}
 
 
 def _saved(tables: Sequence[Filled], settings: Settings) -> str:

@@ -242,6 +242,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             tuple(map(float, point)),
             campaign.notes,
             "" if table.source_sha256 is None else str(table.source_sha256),
+            tuple((name, float(value)) for name, value in table.constant.items()),
         ),
         primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
