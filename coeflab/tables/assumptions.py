@@ -90,7 +90,7 @@ def depends(found: Finding, symbol: str, table: str | None = None) -> bool:
     """
     if table and found.subject not in table:
         return False
-    facts = dict(found.facts)
+    facts: dict[str, Any] = dict(found.facts)
     motions, components = facts.get("motions", ()), facts.get("components", ())
     of = derivative(symbol.removesuffix("'"))
     return (

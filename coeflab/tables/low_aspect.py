@@ -15,6 +15,7 @@ from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import words
+from coeflab.core.types import Array
 from coeflab.core.units import quantity
 from coeflab.tables.evidence import Evidence, frd_column
 from coeflab.tables.mapping import Assigned
@@ -83,9 +84,10 @@ def _slope(columns: Sequence[Assigned], frame: Axes, settings: Settings) -> floa
         return None
     try:
         length = quantity(settings["scaling.length"].value, "length")
-        y, unit = side.values, np.ones(len(side.values))
+        y = side.values
+        unit: Array | float = 1.0
         if side.said.area:
-            unit = np.full(len(y), length**2 / side.said.area)
+            unit = length**2 / side.said.area
         elif not side.said.pure:
             unit = (
                 0.5
@@ -105,7 +107,7 @@ def _slope(columns: Sequence[Assigned], frame: Axes, settings: Settings) -> floa
     return float(np.polyfit(x[rows], y[rows], 1)[0])
 
 
-def _of(columns: Sequence[Assigned], name: str, key: str, settings: Settings) -> np.ndarray | float:
+def _of(columns: Sequence[Assigned], name: str, key: str, settings: Settings) -> Array | float:
     """A column in SI, else the number of the campaign."""
     column = next((c for c in columns if c.said.name == name), None)
     return column.values if column is not None else quantity(settings[key].value, {"U": "speed"}.get(name, name))

@@ -18,6 +18,7 @@ from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
+from coeflab.tables.level_columns import slopes_by_idle_columns
 from coeflab.tables.low_aspect import above_low_aspect
 from coeflab.tables.mapping import (
     NO_FORCE,
@@ -172,7 +173,10 @@ def understood(
             f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(lost)} left out" * bool(lost)
         ),)  # fmt: skip
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
-    shows += tuple(above_low_aspect(columns, frame, *known_sizes(raw, settings), settings))
+    shows += (
+        *slopes_by_idle_columns(raw, columns),
+        *above_low_aspect(columns, frame, *known_sizes(raw, settings), settings),
+    )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
     by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}

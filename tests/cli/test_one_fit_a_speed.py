@@ -36,3 +36,19 @@ def test_a_fit_names_the_dependence_the_constant_column_and_takes_one_speed(
         (slope,) = [c for c in one["coefficients"] if c["symbol"] == "Ydr'"]
         assert slope["value"] == pytest.approx(-0.0031 * (1.3 / speed) ** 1.65, rel=1e-3)
     assert coeflab("fit", "made", "--speed", "3").returncode == 2  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("name", "prime"), [("rps", True), ("J", False)])
+def test_a_column_that_no_fit_uses_and_a_slope_hangs_on_is_named(tmp_path: Path, name: str, prime: bool) -> None:
+    """A rudder at one speed and three propeller rates: its slope goes with the rate."""
+    x, y, level = pooled(lambda s: -0.004 * s)
+    heads = "rudder angle (deg),speed (m/s),{},Y',N'" if prime else "rudder angle (deg),speed (m/s),{},Y (N),N (N m)"
+    size = 1.0 if prime else 0.5 * 1000 * 1.5**2 * 9.0
+    rows = [
+        f"{np.degrees(a):.6g},1.5,{s:g},{size * b:.8g},{-size * b:.8g}" for a, b, s in zip(x, y, level, strict=True)
+    ]
+    (tmp_path / "t.csv").write_text("\n".join([heads.format(name), *rows]) + "\n")
+    said = " ".join(
+        invoke("import", tmp_path / "t.csv", "--out", tmp_path / "made", "--map", f"{name}=ignore").output.split()
+    )
+    assert f"at {name} 0.45, 0.7, 1 and 1.3" in said
