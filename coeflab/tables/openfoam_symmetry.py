@@ -54,7 +54,7 @@ def mirror_patches(case: FoamCase) -> str:
         holder = file.part("boundaryField") or file if file is not None else None
         found = [
             (patch, *kind) for patch, part in (holder.parts() if holder is not None else ())
-            if (kind := case.value(part, "type")) is not None and kind[0] in MIRRORS
+            if (kind := case.value(part, "type")) is not None and str(kind[0]).strip('"') in MIRRORS
         ]  # fmt: skip
         if found:
             return "; ".join(f"{place}: patch {patch} is of type {kind}" for patch, kind, place in found)
