@@ -260,11 +260,14 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
 
 
 def table_at(
-    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
+    path: Path,
+    fits: tuple[str, ...] = (),
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    speed: float | None = None,
 ) -> PlannedTable:
     """A campaign folder, its campaign.toml, or one CSV of it."""
     only = path.name if path.is_file() and path.suffix != ".toml" else None
-    return PlannedTable(path, fits, options or {}, only)
+    return PlannedTable(path, fits, options or {}, only, speed)
 
 
 def _declaration(path: Path) -> Path:
@@ -279,6 +282,27 @@ def suited_fit(path: Path) -> str:
 
 
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
+    """The tables of a planned campaign, rows of other speeds than the one that is wanted left out.
+
+    Raises
+    ------
+    InputError
+        By file, line and column; no row of the wanted speed.
+    """
+    tables = _every_speed(planned)
+    if planned.speed is None:
+        return tables
+    found = tuple(t.at_speed(planned.speed) for t in tables)
+    if not any(mask.any() for t in found for mask in t.usable.values()):
+        have = sorted({round(float(u), 6) for t in tables for u in t.speed})
+        raise InputError(
+            f"no row at {planned.speed:g} m/s", f"one of the speeds {', '.join(f'{u:g}' for u in have[:10])} m/s",
+            file=planned.campaign, column="speed",
+        )  # fmt: skip
+    return found
+
+
+def _every_speed(planned: PlannedTable) -> tuple[ForceTable, ...]:
     """The tables of a planned campaign: a folder, its campaign.toml, or one table beside it.
 
     Raises

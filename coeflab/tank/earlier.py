@@ -9,13 +9,14 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.csv_rows import plain
 from coeflab.core.text.toml import read_toml
 from coeflab.tables.campaign import FILE
 from coeflab.tables.histories import Convergence
@@ -130,7 +131,7 @@ def _ended(campaign: Path) -> dict[str, dict[str, str]]:
     path = campaign / RUNS
     try:
         with path.open(encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+            rows = _read(stream)
         kept = {r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]}
     except OSError:
         raise InputError(f"no {RUNS}", _OURS, file=campaign, column="--finished") from None
@@ -151,9 +152,13 @@ def _rows(campaign: Path) -> dict[str, Mapping[str, str]]:
             raise file.fail(f"table[{i}].sha256", f"not the sha256 of {path.name}", "the table as the tow wrote it",
                             "Rows that were edited by hand cannot be taken over.")  # fmt: skip
         with path.open(encoding="utf-8", newline="") as stream:
-            rows = csv.DictReader(line for line in stream if not line.startswith("#"))
-            out |= {r["point"]: r for r in rows}
+            out |= {r["point"]: r for r in _read(line for line in stream if not line.startswith("#"))}
     return out
+
+
+def _read(lines: Iterable[str]) -> list[dict[str, str]]:
+    """Rows of a table of ours by their heads, texts as they were before they were written."""
+    return [{plain(k): plain(v) if isinstance(v, str) else v for k, v in r.items() if k} for r in csv.DictReader(lines)]
 
 
 def _content(said: Mapping[str, str], row: Mapping[str, str]) -> dict[str, Any]:
