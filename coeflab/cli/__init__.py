@@ -113,6 +113,17 @@ class Commands(TyperGroup):
         super().__init__(**settings)
         self.commands = {name: TyperCommand(name) for name in ORDER}
 
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """Refuse a blank value of any option or argument: it is no way to leave one out."""
+        from coeflab.core.errors import InputError
+
+        for before, text in zip(["", *args], args, strict=False):
+            flag, sign, value = text.partition("=") if text.startswith("--") else (before, "=", text)
+            if sign and not value.strip() and not ctx.resilient_parsing:
+                name = flag if flag.startswith("-") else "an argument"
+                raise InputError("a blank value", "a value, or the option left out", column=name)
+        return super().parse_args(ctx, args)
+
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of a name, with its options; None where there is none."""
         found = super().get_command(ctx, cmd_name)

@@ -15,6 +15,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import file_stem
 from coeflab.motion.steady_state import differences, level_forces, steady_motions, wrenches
 from coeflab.motion.tune.output_error import Estimate, Problem, by_likelihood, estimate, problem
 from coeflab.motion.tune.plan import SteadyCases, TuningPlan, moved
@@ -54,7 +55,7 @@ class Tuned:
 
     def files(self) -> dict[str, bytes]:
         """Everything to write, by file name."""
-        name = self.plan.name
+        name = file_stem(self.plan.name)
         figure = agreement_figure(self.tuning, f"{name}-agreement")
         return {
             f"{name}.parameters.json": self.parameters.to_json(),
