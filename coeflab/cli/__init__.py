@@ -162,10 +162,26 @@ def _built(name: str) -> Any:
         one.command(name=name, cls=kind, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
     out = typer.main.get_command(one)
     out.name = name
+    for command in getattr(out, "commands", {"": out}).values():
+        for option in command.params:
+            option.callback = _finite(option.callback)
     if name not in WITHOUT_TABLES:
         for command in getattr(out, "commands", {"": out}).values():
             command.params.append(_wide())
     return out
+
+
+def _finite(before: Any) -> Any:
+    """What an option does with its value, after a number that is none was refused."""
+
+    def checked(ctx: Any, param: Any, value: Any) -> Any:
+        if isinstance(value, float) and not abs(value) < float("inf"):
+            from coeflab.core.errors import InputError
+
+            raise InputError(str(value), "a finite number", column=param.opts[0])
+        return value if before is None else before(ctx, param, value)
+
+    return checked
 
 
 def _wide() -> Any:

@@ -26,7 +26,7 @@ class OrNone(NamedTuple):
 
 
 def read_record(
-    path: Path, shape: Mapping[str, Shape], expected: str, *, kind: str = "", advice: str = "", largest: int = RECORD_BYTES
+    path: Path, shape: Mapping[Any, Shape], expected: str, *, kind: str = "", advice: str = "", largest: int = RECORD_BYTES
 ) -> dict[str, Any]:  # fmt: skip
     """The content of a record, every place of which holds what it should; other keys are left as they stand.
 
