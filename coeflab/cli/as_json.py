@@ -186,6 +186,7 @@ def export(made: Export) -> dict[str, Any]:
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
+        "astern_broadside_rest": None if loss is None or loss.rare is None else loss.rare.worst.tolist(),
         "accelerations_compared": None if loss is None else accelerations_compared(loss),
         "law_at_points": [] if loss is None else [f.model_dump(mode="json") for f in loss.at_points],
     }
@@ -230,6 +231,9 @@ def tow(found: Towed) -> dict[str, Any]:
                 "value": r.value,
                 "u95": r.u95,
                 "u_grid": r.u_grid,
+                "is_result": r.is_result,
+                "one_line": r.line,
+                "model_spread": r.model,
                 "missing": r.missing or None,
                 "why": r.why or None,
                 "published": dict(zip(found.columns, r.published, strict=True)),

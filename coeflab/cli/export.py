@@ -65,6 +65,8 @@ def command(
     for target in targets:
         EXPORTERS.load(target)
     parameters = read_parameter_file(file)
+    if not json:
+        show.not_used(parameters)
     made, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = plausibility(parameters)
     if not json:

@@ -47,7 +47,7 @@ def command(
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
@@ -79,7 +79,10 @@ def command(
     orders = _named(commands, "--commands")
     upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
     chosen = plane or ("vertical" if upright else "horizontal")
-    craft = vehicle(read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
+    parameters = read_parameter_file(file)
+    if not json:
+        show.not_used(parameters, tables)
+    craft = vehicle(parameters, tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
     found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
     solved = found.point.outcome.solved
     model = linear_model(found) if solved and (linear or out is not None) else None
@@ -98,7 +101,7 @@ def command(
                 show.table(one)
         for name in names:
             show.path(folder / name)
-    if not solved:
+    if not solved or found.refused:
         raise typer.Exit(1)
 
 

@@ -373,7 +373,12 @@ class Suboff:
         """The plan on copies with edited texts: names under cfd_data, what is replaced by what (every time it occurs)."""
         place = Path(mkdtemp(dir=self.folder))
         data = Path(str(shipped("cfd_data")))
-        for name in ("suboff", *(f"suboff_roddy_{i}" for i in (1, 2, 3)), "suboff_cfd_barehull"):
+        for name in (
+            "suboff",
+            *(f"suboff_roddy_{i}" for i in (1, 2, 3)),
+            "suboff_cfd_barehull",
+            "suboff_roddy_2_dimensional",
+        ):
             shutil.copytree(data / name, place / "cfd_data" / name)
         shutil.copytree(data.parent / "geometry" / "suboff", place / "geometry" / "suboff")
         for name, changes in edits.items():
