@@ -79,3 +79,26 @@ def test_of_slopes_alone_at_the_points(suboff: Study) -> None:
         assert number(100.0 * f.worst / f.largest, 2) == worst, (body, component)
     y, n = (printed["appended", c, "v"] for c in "YN")
     assert f"by {y} % of the largest Y and {n} % of the largest N" in page("law_and_points.md")
+
+
+def test_of_the_law_at_the_points(suboff: Study) -> None:
+    """The column *Law*: worst of what the report prints, points beyond the range of the law among them."""
+    line = r"^\| ([a-z ,]+) \| ([XYZKMN]) over ([vwr])[^|]* \| [\d.]+ \| ([\d.]+) \|"
+    printed = rows("law_and_points.md", line)
+    assert len(printed) == 14
+    for body, component, variable, worst in printed:
+        place = {"v": "asin(v/U)", "w": "asin(w/U)", "r": "r'"}[variable]
+        (f,) = (
+            f
+            for f in suboff.parameter_files[BODIES[body]].law_at_points
+            if f.component == component and f"({place} " in f.worst_at
+        )
+        inside_only = component == "X"  # X holds to 16 degrees, which its row says
+        found = f.worst if inside_only else max(f.worst, f.worst_beyond)
+        places = len(worst.partition(".")[2])
+        assert f"{100.0 * found / f.largest:.{places}f}" == worst, (body, component)
+
+
+def test_of_the_ratio_of_two_lengths() -> None:
+    ratio = 4.356 / (13.9792 * 0.3048)
+    assert f"The square of their ratio is {ratio**2:.3f}, its cube {ratio**3:.3f}." in page("theory.md")

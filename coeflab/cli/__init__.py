@@ -15,36 +15,15 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-ORDER = [
-    "validate",
-    "run",
-    "report",
-    "serve",
-    "import",
-    "tow",
-    "fit",
-    "inspect",
-    "new",
-    "formats",
-    "schema",
-    "table",
-    "compare",
-    "added-mass",
-    "simplify",
-    "draw",
-    "mass",
-    "vehicle",
-    "merge",
-    "export",
-    "simulate",
-    "trim",
-    "tune",
-    "identify",
-    "uncertainty",
-    "glide",
-    "derive",
-    "params",
-]
+GROUPS = {
+    "Data": ("new", "import", "inspect", "tow"),
+    "Fit and report": ("fit", "run", "validate", "report", "serve"),
+    "Body": ("added-mass", "simplify", "draw", "mass"),
+    "Vehicle": ("vehicle", "params", "merge", "compare", "table"),
+    "Motion": ("simulate", "trim", "uncertainty", "tune", "identify", "glide", "derive"),
+    "Files": ("export", "formats", "schema"),
+}
+ORDER = [name for names in GROUPS.values() for name in names]
 WITHOUT_TABLES = {
     "new",
     "report",
@@ -118,11 +97,12 @@ class Commands(TyperGroup):
         found = super().get_command(ctx, cmd_name)
         return found if found is None or found.help else _built(cmd_name)
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the list of commands without importing them."""
-        said = {name: _summary(name) for name in ORDER}
-        self.commands = {n: TyperCommand(n, help=text, short_help=_sentence(text)) for n, text in said.items()}
-        super().format_commands(ctx, formatter)
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 - click's own
+        """Write the commands in groups without importing them."""
+        widest = max(map(len, ORDER))
+        for title, names in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(f"{name:<{widest}}", _sentence(_summary(name))) for name in names])
 
 
 def _module(name: str) -> str:

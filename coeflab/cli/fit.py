@@ -68,7 +68,7 @@ def command(
     diagnostics: bool = typer.Option(
         False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
     ),
-    figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
+    figure: Path = typer.Option(None, metavar="FILE", help="Draw the fits into this file: .svg, .pdf or .png."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
     include_uncertain: bool = typer.Option(
         False, "--include-uncertain", help="Use cells that the source marks as doubtful."
@@ -85,9 +85,8 @@ def command(
     from coeflab.core.units import quantity
     from coeflab.core.wording import Verbatim
     from coeflab.law.scaling import Scaling
-    from coeflab.study.plan import table_at
     from coeflab.study.study import Plan, PlannedJoint
-    from coeflab.tables.reading import suited_fit
+    from coeflab.tables.reading import suited_fit, table_at
     from coeflab.workbench import run
 
     if help_options:
@@ -99,8 +98,8 @@ def command(
     names, options = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
-    if figure is not None and figure.suffix != ".svg":
-        raise InputError(shown(figure.name), "a file name that ends in .svg", column="--figure")
+    if figure is not None and figure.suffix not in (".svg", ".pdf", ".png"):
+        raise InputError(shown(figure.name), "a file name that ends in .svg, .pdf or .png", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
     fit = fit or suited_fit(paths[0])
     if next_runs and fit != DEFAULT:
@@ -206,6 +205,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     """All figures of the fits in one file; of sweeps those of the wanted symbols, where any are."""
     from coeflab.core.files import write_atomically
     from coeflab.report.figures.estimator import estimator_figure
+    from coeflab.report.figures.files import as_kind
     from coeflab.report.figures.model import distinct, model_figures
     from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.sweep import sweep_figure
@@ -221,7 +221,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     rows = [row for row in rows if row]
     if not rows:
         raise InputError("nothing to draw", "a fit with a curve or a surface", column="--figure")
-    write_atomically(file, sheet(rows))
+    write_atomically(file, as_kind(sheet(rows), file.suffix[1:]))
 
 
 def _diagnose(study: Study) -> None:

@@ -164,13 +164,13 @@ def _first_slopes(folder: Path) -> bool:
     `coeflab fit` says it; true where one fails.
     """
     from coeflab.cli.fit import DEFAULT, MAIN
-    from coeflab.core.table import Severity
+    from coeflab.core.finding import Severity
     from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
-    from coeflab.study.plan import DEFAULT_FITS, table_at
+    from coeflab.study.plan import DEFAULT_FITS
     from coeflab.study.study import Plan
     from coeflab.tables.campaign import FILE
-    from coeflab.tables.reading import suited_fit
+    from coeflab.tables.reading import suited_fit, table_at
     from coeflab.workbench import run
 
     suited = suited_fit(folder)

@@ -226,7 +226,7 @@ def _body(body: Body, density: float, json: bool) -> None:
 def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.cli.as_json import finding
     from coeflab.core.files import located
-    from coeflab.core.table import Severity
+    from coeflab.core.finding import Severity
     from coeflab.study.checks import data_gate
     from coeflab.tables.importers import PlannedTable
     from coeflab.workbench import read_tables

@@ -31,6 +31,12 @@ def command(
     ),
     full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),
     summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
+    style: str = typer.Option(
+        "",
+        metavar="FILE.mplstyle",
+        help="Draw the figures in a style of Matplotlib: a file, or a name.",
+        show_default=False,
+    ),
     open_: bool = typer.Option(False, "--open", help="Show the first file in the browser."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
@@ -42,6 +48,7 @@ def command(
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.published.documents import only, report_of, studied, written
+    from coeflab.report.figures.files import styled
     from coeflab.report.formats import REPORTERS
 
     formats = [name.strip() for name in to.split(",") if name.strip()]
@@ -57,7 +64,8 @@ def command(
         found = studied(study, say)
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the figures", json)
-    made = report_of(found, short=summary, full=full or bool(section))
+    with styled(style or None):
+        made = report_of(found, short=summary, full=full or bool(section))
     document = only(made.document, section)
     files: dict[str, bytes] = {}
     with show.progress(json) as say:
@@ -79,8 +87,8 @@ def command(
         )  # fmt: skip
     else:
         show.text(document.title)
-        for path in paths:
-            show.text(f"  {path}  {len(files[path.name]) / 1e6:.2f} MB")
+        for path, content in zip(paths, files.values(), strict=True):
+            show.text(f"  {path}  {len(content) / 1e6:.2f} MB")
         if not (full or summary or section):
             show.command_line("Appendix", f"coeflab report {shlex.quote(study)} --full")
     if open_:

@@ -319,7 +319,7 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
 
     With ``most`` no finding begins below that many lines, failures first; what is left out is counted.
     """
-    from coeflab.core.table import Severity
+    from coeflab.core.finding import Severity
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
@@ -364,7 +364,7 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
 
 def file_findings(name: str, found: Sequence[Check]) -> None:
     """What `coeflab params check` finds wrong in a file that a command uses; nothing where all passes."""
-    from coeflab.core.table import Severity
+    from coeflab.core.finding import Severity
 
     if any(c.severity in (Severity.FAIL, Severity.WARN) for c in found):
         text(f"Checks of the file {name} (coeflab params check):")
@@ -389,7 +389,7 @@ def found(findings: Sequence[Finding]) -> None:
 
 def failed(found: Sequence[Check]) -> bool:
     """Whether a finding is a failure."""
-    from coeflab.core.table import Severity
+    from coeflab.core.finding import Severity
 
     return any(c.severity is Severity.FAIL for c in found)
 

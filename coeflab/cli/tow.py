@@ -472,7 +472,7 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = F
     else:
         show.table(tables.six(tow.tank, made.six, made.unfitted))
         estimated = tables.is_estimated(made.six)
-        checks = () if estimated else tables.symmetry_checks(tow.tank, made.runs)
+        checks = () if estimated else tables.symmetry_checks(made.study)
         for said in (tables.covers(made.six), *checks):
             show.sentence(said)
         show.sentence(tables.outcome(made.runs, estimated))

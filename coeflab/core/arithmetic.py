@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from operator import truediv
 from typing import Any
 
 from coeflab.core.limits import ARITHMETIC_DEEPEST
@@ -24,6 +25,9 @@ def evaluate(
     text: str,
     names: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]] | None = None,
+    *,
+    number: Callable[[str], Any] | None = None,
+    divide: Callable[[Any, Any], Any] = truediv,
 ) -> Any:
     """The value of an expression in MATLAB's precedence: ``^`` from the left, then signs, ``* /``, ``+ -``.
 
@@ -34,6 +38,10 @@ def evaluate(
         Names may have dots.
     functions : mapping of name to callable, optional
         What a name followed by brackets calls; nothing else is callable.
+    number : callable, optional
+        What a number's letters mean; a float without it.
+    divide : callable, optional
+        What ``/`` does.
 
     Raises
     ------
@@ -41,7 +49,7 @@ def evaluate(
         Anything else than numbers, known names and the signs ``+ - * / ^ ( )``; division by zero, overflow, a root of
         a negative number; brackets deeper than 60.
     """
-    reading = _Reading(_tokens(text), names, functions or {})
+    reading = _Reading(_tokens(text), names, functions or {}, number or _decimal, divide)
     try:
         value = reading.sum(0)
     except ZeroDivisionError:
@@ -70,11 +78,18 @@ def _tokens(text: str) -> list[tuple[str, str]]:
     return out
 
 
+def _decimal(text: str) -> float:
+    """A number; the exponent may be that of Fortran."""
+    return float(re.sub("[dD]", "e", text))
+
+
 class _Reading:
     def __init__(
-        self, tokens: list[tuple[str, str]], names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]]
-    ) -> None:
+        self, tokens: list[tuple[str, str]], names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]],
+        number: Callable[[str], Any], divide: Callable[[Any, Any], Any],
+    ) -> None:  # fmt: skip
         self.tokens, self.names, self.functions, self.at = tokens, names, functions, 0
+        self.number, self.divide = number, divide
 
     def _take(self, *signs: str) -> str:
         """The next sign if it is one of these, else nothing."""
@@ -95,7 +110,7 @@ class _Reading:
         value = self._signed(depth)
         while sign := self._take("*", "/"):
             other = self._signed(depth)
-            value = value * other if sign == "*" else value / other
+            value = value * other if sign == "*" else self.divide(value, other)
         return value
 
     def _signed(self, depth: int) -> Any:
@@ -121,7 +136,7 @@ class _Reading:
             raise ArithmeticProblem(f"{text} where a number was expected")
         self.at += 1
         if kind == "number":
-            return float(re.sub("[dD]", "e", text))
+            return self.number(text)
         if self._take("("):
             if text not in self.functions:
                 raise ArithmeticProblem(f"{text}(...), which is not computed here")

@@ -55,12 +55,17 @@ SHEET_BYTES = 64 << 20
 SHEET_UNPACKED = 256 << 20
 SHEET_CELLS = 3_000_000
 
-# Cases of OpenFOAM. foamlib takes 0.4 ms an entry, and gets one value at a time; a dictionary of a case has 10 kB.
-FOAM_BYTES = 1 << 18  # besides the long lists of fields, which are cut out unread
+# Cases of OpenFOAM; a dictionary of a case has 10 kB.
+FOAM_BYTES = 1 << 18  # besides the long lists of fields, which are passed over unread
 FOAM_FIELD_BYTES = 64 << 20
-FOAM_FILES = 60  # that one case includes
+FOAM_FILES = 200  # that one case includes, one file as often as it is included
 FOAM_DEEPEST = 12
 FOAM_VALUE = 4096
+FOAM_ENTRIES = 100_000  # that dictionaries take over from one another
+# Patterns of names: 300 steps on the 256 KiB of a list of patches.
+PATTERN_STATES = 300
+PATTERN_DEEPEST = 20
+PATTERN_WORK = 3_000_000  # steps times letters of all names and patterns of one case; a second
 # A history of forces: 12 components and a time take 100 bytes a row, at most 500 MB with 2 million rows.
 HISTORY_ROWS = 5_000_000
 # Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.

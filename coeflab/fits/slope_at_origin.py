@@ -41,6 +41,8 @@ citations = ("wahba1990", "kimeldorf1970", "grunwald2017", "mackinnon1985", "bel
 ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM", "db": "ZM"}
 SIDEWAYS = {**dict.fromkeys(("v", "p", "r", "dr"), PORT_STARBOARD), **dict.fromkeys(("w", "q", "ds", "db"), UP_DOWN)}
 MIRRORED = "mirror image of another row: counts once"
+COMPUTED = "cfd"
+PAIRED = "the other side of {}: half the difference of both counts"
 AT_REST_BY_SYMMETRY = "at rest, where it is zero by declared symmetry"
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
@@ -78,25 +80,50 @@ def _kept(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _
     return x[keep], y[keep], None if se is None else se[keep], named, left
 
 
-def _on_one_side(rows: SweepRows, variable: str, parity: str, points: _Points) -> tuple[str, _Points]:
-    """The declared symmetry that gives the other side of a sweep, and the points that count by it.
+def _on_one_side(
+    rows: SweepRows, variable: str, parity: str, points: _Points
+) -> tuple[str, _Points, float]:  # fmt: skip
+    """The declared symmetry that gives the other side of a sweep, the points that count by it, and the bias at rest.
 
     A row and its mirror image are one reading. An odd force at rest is zero by declaration: a row there says nothing of the slope,
-    and what little noise it has is not that of the others.
+    and what little noise it has is not that of the others; what it has is a bias. A pair of computed rows at both signs of one
+    setting counts once, by half its difference, which is free of that bias.
     """
     plane = SIDEWAYS[variable]
     if plane not in rows.table.symmetry:
-        return "", points
+        return "", points, 0.0
     again = images(points[0], points[1], -1.0 if parity == "odd" else 1.0)
     if np.any(again):
         points = _kept(points, ~again, dict.fromkeys(np.flatnonzero(again).tolist(), MIRRORED))
+    if parity == "odd" and rows.table.source.kind == COMPUTED:
+        points = _paired(points)
     x = points[0]
     if not slopes.is_one_sided(x):
-        return "", points
-    resting = np.abs(x) <= AT_REST
+        return "", points, 0.0
+    resting, bias = np.abs(x) <= AT_REST, 0.0
     if parity == "odd" and np.any(resting):
+        bias = float(points[1][resting].mean())
         points = _kept(points, ~resting, dict.fromkeys(np.flatnonzero(resting).tolist(), AT_REST_BY_SYMMETRY))
-    return plane, points
+    return plane, points, bias
+
+
+def _paired(points: _Points) -> _Points:
+    """The points with those at the other side of a setting taken into its own: half their difference, with its error."""
+    x, y, se, labels, _ = points
+    mine = np.flatnonzero(x * np.sign(x[np.argmax(np.abs(x))]) > AT_REST) if len(x) else np.zeros(0, dtype=np.int64)
+    y, se, taken = y.copy(), None if se is None else se.copy(), {}
+    for i in np.setdiff1d(np.flatnonzero(np.abs(x) > AT_REST), mine):
+        own = mine[np.abs(x[mine] + x[i]) <= AT_REST]
+        if len(own) != 1:
+            continue
+        j = int(own[0])
+        y[j] = (y[j] - y[i]) / 2.0
+        if se is not None:
+            se[j] = np.hypot(se[j], se[i]) / 2.0
+        taken[int(i)] = PAIRED.format(labels[j])
+    keep = np.ones(len(x), dtype=bool)
+    keep[list(taken)] = False
+    return _kept((x, y, se, labels, points[4]), keep, taken) if taken else points
 
 
 def _sweep(
@@ -118,7 +145,7 @@ def _sweep(
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
-    plane, (x, y, se, labels, far) = _on_one_side(
+    plane, (x, y, se, labels, far), bias = _on_one_side(
         rows, variable, parity, _within(limit, collect_points(rows, component, length, taken_out))
     )
     odd = bool(plane) and parity == "odd"
@@ -151,6 +178,8 @@ def _sweep(
         value, u95, moved = None, None, np.zeros_like(moved)
     by_row = np.zeros(len(x))
     by_row[origin.used] = moved
+    if u95 is not None and bias:
+        u95 = float(np.hypot(u95, bias * moved.sum()))
     random = None
     if u95 is not None and origin.design is not None:
         random = min(2.0 * origin.noise * float(np.linalg.norm(moved * np.sqrt(origin.design.variance))), u95)
@@ -207,6 +236,7 @@ def _sweep(
         one_size=bool(single),
         symmetry=plane,
         by_symmetry=rows.table.by_symmetry,
+        bias=bias,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return made, origin

@@ -12,8 +12,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import html_by, number
+from coeflab.core.table import number
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.force_law import SLOWEST

@@ -11,7 +11,8 @@ from enum import StrEnum
 from math import copysign, inf, nan
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coeflab.core.table import ABSENT, Table, html_by
+from coeflab.core.cards import html_by
+from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import in_sentences, listed
 from coeflab.law.symbols import primed
@@ -23,23 +24,23 @@ if TYPE_CHECKING:
 
 
 class Basis(StrEnum):
-    """Where the number comes from that ours is compared with; only the first two validate anything."""
+    """Where the number comes from that ours is compared with, in the terms of ASME V&V 20: only measurements validate."""
 
-    PREDICTED = "predicted"
-    PRINTED = "printed and recomputed"
+    VALIDATION = "validation"
+    VERIFICATION = "verification"
     REVISED = "revised"
     CALIBRATION = "calibration"
     CONSISTENCY = "consistency"
 
     @property
     def validates(self) -> bool:
-        """Whether agreement says anything about the model that was not put into it."""
-        return self in (Basis.PREDICTED, Basis.PRINTED)
+        """Whether agreement says anything about nature: a measurement that nothing of ours has used."""
+        return self is Basis.VALIDATION
 
 
 BASES: dict[Basis, str] = {
-    Basis.PREDICTED: "published, and not used to make our model",
-    Basis.PRINTED: "published, and computed here from other published numbers",
+    Basis.VALIDATION: "a measurement that was not used",
+    Basis.VERIFICATION: "published: computed by its authors from the same equations or data",
     Basis.REVISED: "published, not used in a constant, but our methods were revised after a comparison with them",
     Basis.CALIBRATION: "our model was fitted to these numbers, so agreement proves nothing",
     Basis.CONSISTENCY: "not published: computed here in a second way, or by theory",
@@ -242,7 +243,7 @@ def held_of_study(study: Study) -> Held:
     predicted = _predicted(study)
     printed = [c.passed for c in study.comparisons if c.passed is not None]
     printed += [i.holds for i in printed_indices(study)]
-    found = {Basis.PREDICTED: predicted, Basis.PRINTED: printed}
+    found = {Basis.VALIDATION: predicted, Basis.VERIFICATION: printed}
     return {b: (sum(found.get(b, ())), len(found.get(b, ()))) for b in Basis}
 
 
@@ -323,13 +324,13 @@ def headline(numbers: Held) -> tuple[str, ...]:
     if not count:
         return (
             first,
-            "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed.",
+            "Nothing here is validation: nothing is compared with a measurement that was not used.",
         )
     if count == every[1]:
         return (first,)
     return (
         first,
-        f"Only predicted numbers, and printed numbers that we recompute, are validation: {good} of {count} lie within.",
+        f"Only measurements that were not used validate: {good} of {count} lie within.",
     )
 
 

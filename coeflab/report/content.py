@@ -20,8 +20,8 @@ from functools import partial
 from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
+from coeflab.core.finding import Severity
 from coeflab.core.machine import cores, end_with_parent
-from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS

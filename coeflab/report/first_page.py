@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Severity, Table, in_digits_of, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import ABSENT, Table, as_printed, in_digits_of, with_u95
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
@@ -35,6 +36,9 @@ from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.sections.parameter_file import from_literature
 from coeflab.report.tables.models import quality
+from coeflab.report.tables.own_cfd import NO_RESULT
+from coeflab.study.lines import MEANING as MEANING_OF_LINE
+from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.reference import Comparison, Reference, Relation
@@ -42,6 +46,7 @@ from coeflab.vehicle.stability import ALONE, INDICES, Derived, sense, stability
 
 LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
+PLACES = 4  # of a line, which has no U95 to say how many count
 BAR = 6  # letters of a difference that is as large as U95
 HALF_WIDTH = "U95: half-width of the 95 % interval."
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
@@ -80,9 +85,25 @@ def _of_study(study: Study) -> Answer:
         if not others:
             return _of_models(study)
         rows = others
-    return Answer(
-        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=notes(study, beside, rows)
-    )
+    said, chips, below = _sentence(study, beside, rows), _chips(study, rows), notes(study, beside, rows)
+    lines = [_line(study, r) for r in rows] if study.plan.tows and names else []
+    if any(x is not None for x in lines):
+        names, below = (*names, NAME), (*below, MEANING_OF_LINE)
+        rows = tuple(
+            replace(
+                r, published=(*r.published, x),
+                printed=(*(r.printed or map(as_printed, r.published)), "" if x is None else f"{x:.{PLACES}f}"),
+            )
+            for r, x in zip(rows, lines, strict=True)
+        )  # fmt: skip
+    return Answer(said, names, compared, rows, chips, notes=below)
+
+
+def _line(study: Study, row: AnswerRow) -> float | None:
+    """What the estimator of the steady-CFD study gives of the points behind a value."""
+    tables = tuple(t for t in study.tables if t.campaign == row.source)
+    among = _set(study, row.source)
+    return line(tables, row.symbol, among.scaling.length) if tables and among is not None else None
 
 
 def _columns(study: Study) -> Beside:
@@ -165,6 +186,8 @@ def _towed_row(
     """From an own tow that the plan sets beside these columns; else why there is no value."""
     for tow in _tows(study, beside):
         own = next((r for r in tow.rows if r.symbol == symbol and r.value is not None), None)
+        if own is not None and not own.is_result:
+            return AnswerRow(symbol, None, None, NO_RESULT, tow.tow.campaign, published)
         if own is not None:
             row = AnswerRow(symbol, own.value, own.u95, "" if own.u95 else "no U95", tow.tow.campaign, published)
             return _judged(row, None)
@@ -414,7 +437,7 @@ def _of_models(study: Study) -> Answer:
 
 
 def _of_publication(found: Acceptance) -> Answer:
-    good, count, valid = _held(found)
+    good, count, _, valid = _held(found)
     some = f"{count - good} of {count} numbers outside the tolerance"
     said = f"all {count} numbers within the tolerance" if good == count else some
     others = [b for b, (_, n) in held(found).items() if n and not b.validates]
@@ -428,11 +451,12 @@ def _of_publication(found: Acceptance) -> Answer:
     return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=by_basis(found))
 
 
-def _held(found: Acceptance) -> tuple[int, int, int]:
-    """How many numbers hold, how many there are, how many of them validate."""
+def _held(found: Acceptance) -> tuple[int, int, int, int]:
+    """How many numbers hold, how many there are; the same of those that validate."""
     numbers = held(found)
     good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    return good, count, sum(pair[1] for b, pair in numbers.items() if b.validates)
+    holding, valid = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
+    return good, count, holding, valid
 
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
@@ -445,12 +469,13 @@ def _narrow(whole: Table, names: Sequence[str]) -> Table:
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
-    good, count, valid = _held(found)
+    good, count, holding, valid = _held(found)
     worst = Severity.PASS if good == count else Severity.FAIL
+    validated = Severity.NOTE if not valid else Severity.PASS if holding == valid else Severity.FAIL
     errata = len(found.errata)
     return (
         Chip("Numbers", f"{good} of {count} pass", worst, "compared"),
-        Chip("Validation", f"{valid} of {count} numbers" if valid else "none", Severity.PASS if valid else Severity.NOTE, "verdict"),
+        Chip("Validation", f"{holding} of {valid} pass" if valid else "none", validated, "verdict"),
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip
@@ -476,7 +501,8 @@ def answer_table(found: Answer) -> Table:
     short = [n.replace("published ", "publ. ") for n in short]
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
-    rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)
+    many = len(found.columns) > MOST_COLUMNS
+    rows = tuple((primed(r.symbol), *_cells(r, many), *((_bar(r),) if is_judged else ())) for r in found.rows)
     headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     defined = (HALF_WIDTH,) if any(r.u95 for r in found.rows) else ()
@@ -500,14 +526,11 @@ def _cut(text: str) -> str:
     return text if len(text) <= WIDTH else f"{text[:WIDTH].rsplit(' ', 1)[0]} ..."
 
 
-def _cells(r: AnswerRow) -> tuple[str, ...]:
-    """Ours, and the published values with the digits of their sources."""
+def _cells(r: AnswerRow, many: bool = False) -> tuple[str, ...]:
+    """Ours, where there is room for it with U95 in per cent, and the published values with the digits of their sources."""
     value, u95 = with_u95(r.value, r.u95)
-    ours = (
-        f"{value} +- {u95} ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})"
-        if r.u95
-        else f"{value} {r.status}".strip()
-    )
+    share = "" if many else f" ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})" if r.u95 else ""
+    ours = f"{value} +- {u95}{share}" if r.u95 else f"{value} {r.status}".strip()
     return (r.status if r.value is None else ours, *(text or ABSENT for text in r.shown))
 
 

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.core.errors import CoeflabError
+from coeflab.core.finding import Severity
 from coeflab.core.several import labels
-from coeflab.core.table import ABSENT, Severity, Table, number, percent
+from coeflab.core.table import ABSENT, Table, number, percent
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet

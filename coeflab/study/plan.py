@@ -18,10 +18,9 @@ from coeflab.formats.export import PlannedExport
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
 from coeflab.motion.manoeuvre import PlannedManoeuvre
-from coeflab.study.study import Plan, PlannedJoint, PlannedTow
+from coeflab.study.study import Plan, PlannedConversion, PlannedJoint, PlannedTow
 from coeflab.tables.campaign import FILE, read_campaign
-from coeflab.tables.importers import PlannedTable
-from coeflab.tables.reading import suited_fit
+from coeflab.tables.reading import suited_fit, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
@@ -276,6 +275,22 @@ class ManoeuvreKeys(takes.Declaration):
     accelerations: Accelerations = MEASURED
 
 
+@dataclass(frozen=True, slots=True)
+class ConversionKeys(takes.Declaration):
+    """A campaign that holds the numbers of another in other units, axes or about another point: primes must agree row by row.
+
+    Attributes
+    ----------
+    campaign : Path
+        As in ``[[table]]``; its rows are compared and not fitted.
+    of : str
+        Name of the campaign that it is a copy of, one of those of ``[[table]]``.
+    """
+
+    campaign: CampaignPath
+    of: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TowKeys(takes.Declaration):
     """A body that is towed by our own computations, each wanted coefficient beside what is published of it.
@@ -338,6 +353,8 @@ class PlanFile(takes.Declaration):
         Published values to compare with.
     tow : array of tables
         Bodies towed by our own computations, whether their campaigns are there yet or not.
+    conversion : array of tables
+        Copies of campaigns in other units, axes or about other points, to check the conversion to primes.
     export : array of tables
         Files for a simulator, every target once.
     manoeuvre : array of tables
@@ -354,6 +371,7 @@ class PlanFile(takes.Declaration):
     parameter_file: tuple[ParameterFileKeys, ...] = ()
     references: tuple[ReferencesKeys, ...] = ()
     tow: tuple[TowKeys, ...] = ()
+    conversion: tuple[ConversionKeys, ...] = ()
     export: tuple[ExportKeys, ...] = ()
     manoeuvre: tuple[ManoeuvreKeys, ...] = ()
 
@@ -375,14 +393,6 @@ class PlanFile(takes.Declaration):
         for i, target in enumerate(targets):
             if target in targets[:i]:
                 raise InputError(f"the target {shown(target)} twice", "every target once", column=f"export[{i}].to")
-
-
-def table_at(
-    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
-) -> PlannedTable:
-    """A campaign folder, its campaign.toml, or one CSV of it."""
-    only = path.name if path.is_file() and path.suffix != ".toml" else None
-    return PlannedTable(path, fits, options or {}, only)
 
 
 def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
@@ -470,6 +480,7 @@ def read_plan(path: Path) -> Plan:
             *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
         ),
         tows=tows,
+        conversions=tuple(PlannedConversion(c.campaign, c.of) for c in file.conversion),
         joint=tuple(PlannedJoint(tuple(map(table_at, j.campaigns)), j.fit, j.options) for j in file.joint or ()),
         reference_point=study.reference_point,
         datum=None if study.datum is None else Datum.named(study.datum, study.datum_note or ""),

@@ -10,31 +10,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.triangulation import Triangulation
-from coeflab.core.axes import Datum
-from coeflab.core.provenance import InputFile
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Severity
 from coeflab.core.several import ByName, Several
-from coeflab.core.table import Check, Severity, html_by
+from coeflab.core.table import Check
 from coeflab.core.types import brief, in_angles, locked
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget
-from coeflab.formats.export import PlannedExport
-from coeflab.law.coefficient import Coefficient
-from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.manoeuvre import PlannedManoeuvre
-from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import PlannedTable
-from coeflab.vehicle.assemble import PlannedParameterFile
-from coeflab.vehicle.reference import Comparison, Reference
 
 if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.core.axes import Datum
+    from coeflab.core.provenance import InputFile
     from coeflab.estimates import Estimates
-    from coeflab.formats.export import Export, Refused
-    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.formats.export import Export, PlannedExport, Refused
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.law.scaling import Conditions, Scaling
+    from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
     from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.importers import PlannedTable
+    from coeflab.vehicle.assemble import PlannedParameterFile
     from coeflab.vehicle.from_shape import Weighed
     from coeflab.vehicle.parameter_file import ParameterFile
+    from coeflab.vehicle.reference import Comparison, Reference
 
 
 @brief
@@ -80,6 +80,31 @@ class PlannedTow:
 
 
 @brief
+@dataclass(frozen=True, slots=True)
+class PlannedConversion:
+    """One ``[[conversion]]``: a campaign that holds the numbers of another in other units, axes or about another point.
+
+    Attributes
+    ----------
+    campaign : Path
+    of : str
+        Name of the other, among the campaigns of the plan's tables.
+    """
+
+    campaign: Path
+    of: str
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Conversion:
+    """A table and the one that it is a copy of, both about the plan's reference point."""
+
+    copy: ForceTable
+    original: ForceTable
+
+
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -109,9 +134,10 @@ class Plan:
         Use cells that their source marks as doubtful.
     file : InputFile or None
     tows : tuple of PlannedTow
+        Their campaigns are among the tables.
     command : str
         What was typed, of a plan that no file holds; paths by their last name.
-        Their campaigns are among the tables.
+    conversions : tuple of PlannedConversion
     """
 
     name: str
@@ -134,6 +160,7 @@ class Plan:
     manoeuvres: tuple[PlannedManoeuvre, ...] = ()
     tows: tuple[PlannedTow, ...] = ()
     command: str = ""
+    conversions: tuple[PlannedConversion, ...] = ()
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
@@ -176,7 +203,7 @@ class Study:
     """Everything that a run found; export and report are two leaves of this one object.
 
     ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
-    planned exports that were not made; all else stands. ``unfitted`` says of the campaign of a tow why a fit of it could not
+    planned exports that were not made; all else stands. ``conversions`` are read to be compared, never fitted. ``unfitted`` says of the campaign of a tow why a fit of it could not
     be made. ``shape`` is there where no table is: then the fit is that of the estimates.
 
     Nouns of one kind are `Several` and `ByName`, whatever tuple or mapping they were given as: a tuple and a mapping that
@@ -200,6 +227,7 @@ class Study:
     manoeuvres: tuple[Simulation, ...] = ()
     unfitted: Mapping[str, str] = field(default_factory=dict)
     shape: FromShape | None = None
+    conversions: tuple[Conversion, ...] = ()
 
     def __post_init__(self) -> None:
         for name in TOGETHER:

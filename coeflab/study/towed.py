@@ -21,6 +21,8 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
+from coeflab.study.lines import line
+from coeflab.study.secants import secant
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.validation import Validation, against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
@@ -29,6 +31,8 @@ from coeflab.vehicle.reference import Reference, Relation
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
+SECANT = "secant of one setting"
+NO_RESULT, FORCES_OF_SIX = 0.4, "YZMN"  # U95 over the value, from which Yr' and its like are no result
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 RUNS = {"": "straight", "v": "drift", "w": "attack", "p": "rolling", "q": "pitching", "r": "turning"}
 STATES = {"unconverged": "did not converge", "not run": "not started", "drifting": "still drifting"}
@@ -60,6 +64,10 @@ class TowedRow:
         Why not.
     reasons : tuple of str
         The same as clauses of a sentence, where there is a comparison error.
+    line : float or None
+        By the estimator of the steady-CFD study, `coeflab.study.lines`.
+    model : float or None
+        How far other turbulence models move the value, 95 % half-width, beside U95; None where none was tried.
     no_grid : str
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
     """
@@ -75,6 +83,14 @@ class TowedRow:
     why_none: str = ""
     no_grid: str = ""
     reasons: tuple[str, ...] = ()
+    line: float | None = None
+    model: float | None = None
+
+    @property
+    def is_result(self) -> bool:
+        """Whether a derivative over a rate is known well enough to be one: U95 at most `NO_RESULT` of it."""
+        over_rate = self.symbol[1:] in ANGULAR and self.symbol[0] in FORCES_OF_SIX
+        return not (over_rate and self.value is not None and self.u95 and self.u95 > NO_RESULT * abs(self.value))
 
     @property
     def value(self) -> float | None:
@@ -126,7 +142,13 @@ def _towed(study: Study, tow: PlannedTow) -> Towed:
     tests = tuple(by_name[name] for name in tow.experiment if name in by_name)
     fits = tuple(f for f in study.fits if f.campaign == tow.campaign)
     body = fits[0].body if fits else tow.body
-    rows = tuple(_row(study, tow, symbol, fits, columns, tests) for symbol in study.plan.wanted)
+    rows = tuple(
+        replace(
+            _row(study, tow, symbol, fits, columns, tests), line=_line(study, tow, symbol, fits),
+            model=None if (budget := _budget(study, tow.campaign, _source(study, tow, symbol)[0])) is None else budget.model_spread,
+        )
+        for symbol in study.plan.wanted
+    )  # fmt: skip
     length = fits[0].coefficients.scaling.length if fits else None
     reynolds = None if length is None else reynolds_of(study, tow.campaign, length)
     names = tuple(f"{c.name}, as quoted" if c.relation is Relation.QUOTED else c.name for c in columns)
@@ -161,7 +183,12 @@ def _row(
     no_grid = "" if budget is None else without_grid(budget.unassessed)
     if own is None or own.value is None:
         missing, why = _missing(study, tow, source or symbol, own)
-        return TowedRow(symbol, None, u_grid, missing, why, published)
+        one = secant(_tables(study, tow.campaign), source or symbol, scaling) if missing == OPEN and scaling else None
+        if one is None or one.value is None:
+            return TowedRow(symbol, None, u_grid, missing, why, published)
+        if source:
+            one = replace(one, symbol=symbol, value=sign * one.value)
+        return TowedRow(symbol, one, u_grid, "", f"{SECANT}; {why}", published, why_none=SECANT, no_grid=no_grid)
     if source:
         turned = replace(own, symbol=symbol, value=sign * own.value)
         equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
@@ -185,6 +212,22 @@ def _row(
     verdict = None if none else found.within
     reasons = (*others.values(), *found.reasons)
     return TowedRow(symbol, own, u_grid, "", why, published, found, verdict, none, no_grid, reasons)
+
+
+def _line(study: Study, tow: PlannedTow, symbol: str, fits: tuple[FitResult, ...]) -> float | None:
+    """By one line through all points; of a body that a quarter of a turn leaves as it is from the runs that were made."""
+    tables = _tables(study, tow.campaign)
+    if not fits or not tables:
+        return None
+    source, sign = _source(study, tow, symbol)
+    found = line(tables, source, fits[0].coefficients.scaling.length)
+    return None if found is None else sign * found
+
+
+def _source(study: Study, tow: PlannedTow, symbol: str) -> tuple[str, float]:
+    """The derivative that was run, and its sign in this one."""
+    turned = tow.fourfold or any(FOURFOLD in t.symmetry for t in _tables(study, tow.campaign))
+    return TURNED.get(symbol, (symbol, 1.0)) if turned else (symbol, 1.0)
 
 
 def _coefficient(fits: tuple[FitResult, ...], symbol: str) -> Coefficient | None:

@@ -256,7 +256,7 @@ class TableDeclaration(takes.Declaration):
         Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
     variant : str
         Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
-        in a row of none. Rows of studies do not enter fits; how far they differ enters U95.
+        in a row of none. Rows of studies do not enter fits; how far they differ enters U95, but of turbulence models, whose spread stands beside it.
     reference_point : (3,) array or None
         Of this table's moments and rates, m, FRD, from the datum; the campaign's unless given. Moments are moved to the campaign's.
     arm_point : (3,) array or None
@@ -538,6 +538,20 @@ def read_campaign(path: Path) -> Campaign:
     """
     toml = read_toml(path)
     file = takes.declared(CampaignFile, toml)
+    return campaign_of(file, path, tuple(toml.line(("table", i)) for i in range(len(file.table))))
+
+
+def campaign_of(file: CampaignFile, path: Path, lines: tuple[int | None, ...] = ()) -> Campaign:
+    """A campaign of what is declared, by a campaign.toml or by a program.
+
+    Parameters
+    ----------
+    file : CampaignFile
+    path : Path
+        Of its campaign.toml; a path that does not exist where there is none.
+    lines : tuple of int or None
+        See `Campaign`.
+    """
     head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
     signs = {"alpha": axes.alpha, "beta": axes.beta}
     return Campaign(
@@ -559,7 +573,7 @@ def read_campaign(path: Path) -> Campaign:
         uncertainty=file.uncertainty,
         columns=file.columns,
         options=file.importer,
-        lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
+        lines=lines,
         planar_motion=file.planar_motion,
         symmetry=head.symmetry,
         assumed=axes.assumed,

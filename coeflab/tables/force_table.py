@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.provenance import InputFile, Source
-from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import FOAM_FIELD_BYTES, LARGEST_NUMBER
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.limits import FOAM_FIELD_BYTES, LARGEST_NUMBER, PATTERN_WORK
 from coeflab.core.text.foam import Foam, FoamCase
+from coeflab.core.text.patterns import PatternProblem, pattern
 from coeflab.core.text.series import opened
 from coeflab.core.types import Array
 from coeflab.tables.openfoam_forces import is_vector, listed, number
@@ -27,6 +29,11 @@ OPEN = {
     "fixedValue": "value", "uniformFixedValue": "uniformValue", "supersonicFreestream": "UInf",
     "SRFFreestreamVelocity": "UInf", "SRFVelocity": "inletValue",
 }  # fmt: skip
+# Types of patches of a velocity that let no water in of a speed of their own.
+CLOSED = (
+    *MIRRORS, "noSlip", "slip", "zeroGradient", "movingWallVelocity", "MRFnoSlip", "empty", "wedge", "cyclic", "processor",
+    "calculated", "fixedNormalSlip", "partialSlip",
+)  # fmt: skip
 
 
 def definitions(case: FoamCase, names: Sequence[str]) -> dict[str, Foam]:
@@ -44,22 +51,42 @@ def definitions(case: FoamCase, names: Sequence[str]) -> dict[str, Foam]:
 
 def body_patches(case: FoamCase, part: Foam | None) -> list[str]:
     """The patches of a function object, patterns with their quotation marks."""
-    found = case.value(part, "patches") or case.value(part, "patch")
-    listed = found[0] if found is not None else []
-    flat = [listed] if isinstance(listed, str) else [p for p in listed if isinstance(p, str)]
-    return [p for p in flat if not re.fullmatch(r"List<\w+>|\d+", p)]
+    key = next((k for k in ("patches", "patch") if part is not None and k in part.entries), "patches")
+    found = case.listed(part, key)
+    for patch in found:
+        try:
+            pattern(patch.strip('"') if patch.startswith('"') else "")
+        except PatternProblem as problem:
+            place = case.where(part, key)
+            case.note(
+                Finding.of("foam.pattern", patch, Severity.WARN, place=place, text=shown(patch), why=str(problem))
+            )
+    return found
 
 
 def covered(patches: Sequence[str], known: Mapping[str, set[str]]) -> set[str]:
-    """The patches that a list of names, groups and patterns takes."""
+    """The patches that a list of names, groups and patterns takes; a pattern that takes none stands for itself.
+
+    Raises
+    ------
+    InputError
+        Patterns and names that would take too long.
+    """
     out = set()
+    letters = sum(map(len, known)) + len(known)
+    spent = 0
     for patch in patches:
-        try:
-            pattern = re.compile(patch.strip('"')) if patch.startswith('"') else None
-        except re.error:
-            pattern = None
         hits = {n for n, groups in known.items() if patch.strip('"') in {n, *groups}}
-        hits |= {n for n in known if pattern is not None and pattern.fullmatch(n)}
+        if patch.startswith('"'):
+            try:
+                read = pattern(patch.strip('"'))
+            except PatternProblem:
+                out |= hits or {patch}
+                continue
+            spent += len(patch) * letters
+            if spent > PATTERN_WORK:
+                raise InputError(f"patterns of {len(known):,} patches", "fewer, or shorter ones", column="patches")
+            hits |= {n for n in known if read.matches(n)}
         out |= hits or {patch}
     return out
 
@@ -71,18 +98,14 @@ def known_patches(case: FoamCase, lists: Sequence[Sequence[str]]) -> dict[str, s
         return {p: set() for patches in lists for p in patches if not p.startswith('"')}
     out = {}
     for name, part in boundary.parts():
-        groups = case.value(part, "inGroups")
-        flat = groups[0] if groups is not None else []
-        flat = flat[1] if isinstance(flat, tuple) and len(flat) == 2 else flat
-        out[name] = {str(g) for g in flat} if isinstance(flat, list) else set()
+        out[name] = set(case.listed(part, "inGroups"))
     return out
 
 
 def walls(case: FoamCase) -> set[str]:
     """The patches of the mesh that are walls."""
     boundary = case.read("constant/polyMesh/boundary")
-    kinds = {n: case.value(part, "type") for n, part in boundary.parts()} if boundary is not None else {}
-    return {n for n, kind in kinds.items() if kind is not None and kind[0] == "wall"}
+    return {n for n, part in boundary.parts() if case.word(part, "type") == "wall"} if boundary is not None else set()
 
 
 def mirror_patches(case: FoamCase) -> str:
@@ -92,7 +115,7 @@ def mirror_patches(case: FoamCase) -> str:
         holder = file.part("boundaryField") or file if file is not None else None
         found = [
             (patch, *kind) for patch, part in (holder.parts() if holder is not None else ())
-            if (kind := case.value(part, "type")) is not None and kind[0] in MIRRORS
+            if (kind := case.value(part, "type")) is not None and str(kind[0]).strip('"') in MIRRORS
         ]  # fmt: skip
         if found:
             return "; ".join(f"{place}: patch {patch} is of type {kind}" for patch, kind, place in found)
@@ -131,23 +154,35 @@ def _inflow(case: FoamCase, name: str) -> Stated | None:
         return None
     boundary = field_.part("boundaryField")
     found: list[tuple[list[float], str, bool]] = []
+    silent: list[str] = []
     for patch, part in boundary.parts() if boundary is not None else ():
-        kind = case.value(part, "type")
-        key = OPEN.get(str(kind[0])) if kind is not None else None
-        stated = case.value(part, key) if key is not None and kind is not None else None
-        if stated is None or not is_vector(stated[0]):
+        kind = case.word(part, "type")
+        key = OPEN.get(kind)
+        if key is None:
+            if kind not in CLOSED:
+                silent.append(f"{case.where(part, 'type') or case.where(part)} ({patch} of type {kind or 'none'})")
             continue
-        if kind is not None and kind[0] == "SRFFreestreamVelocity":
+        stated = case.value(part, key)
+        if stated is None or not is_vector(stated[0]):
+            silent.append(f"{case.where(part, key) or case.where(part, 'type')} ({key} of {patch} is no vector)")
+            continue
+        if kind == "SRFFreestreamVelocity":
             relative = case.value(part, "relative")
             if relative is not None and relative[0]:
                 case.note(f"{stated[1]}: UInf of {patch} is relative to the rotating frame; no inflow is taken from it")
+                silent.append(stated[1])
                 continue
         # A wall may be of type fixedValue too: at rest it says nothing.
-        is_wall = kind is not None and kind[0] in ("fixedValue", "uniformFixedValue") and not any(stated[0])
+        is_wall = kind in ("fixedValue", "uniformFixedValue") and not any(stated[0])
         found.append(([float(v) for v in stated[0]], stated[1], is_wall))
     open_ = [f for f in found if not f[2] and any(f[0])] or [f for f in found if not f[2]]
     if not open_:
-        case.note(f"{folder}/{name}: no boundary states a velocity of the inflow; none is taken from internalField")
+        case.note(
+            Finding.of(
+                "foam.no_inflow", f"{folder}/{name}", Severity.WARN, place=f"{folder}/{name}", lines=tuple(silent[:5]),
+                stopped="somewhere" if silent else "nowhere",
+            )
+        )  # fmt: skip
         return None
     if any(f[0] != open_[0][0] for f in open_):
         case.note(f"{folder}/{name}: boundaries state different velocities ({open_[0][1]} and others); none is taken")
@@ -221,8 +256,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
     """
     srf = case.read("constant/SRFProperties")
     if srf is not None:
-        model = case.value(srf, "SRFModel")
-        speeds = srf.part(f"{model[0]}Coeffs") if model is not None else None
+        speeds = srf.part(f"{case.word(srf, 'SRFModel')}Coeffs")
         return _frame(case, srf, speeds or srf, "SRFProperties")
     zones = case.read("constant/MRFProperties")
     out = []
@@ -230,8 +264,8 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
         active = case.value(part, "active")
         if name == "FoamFile" or (active is not None and not active[0]):
             continue
-        zone = case.value(part, "cellZone") or case.value(part, "cellSet")
-        share = _share_of_mesh(case, str(zone[0])) if zone is not None else None
+        zone = next(iter(case.listed(part, "cellZone") or case.listed(part, "cellSet")), "")
+        share = _share_of_mesh(case, zone) if zone else None
         stands = body & covered(_still_patches(case, part), known)
         rotor = (
             "as the option rotation says so" if wanted == "none"
@@ -261,8 +295,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
 
 
 def _still_patches(case: FoamCase, part: Foam) -> list[str]:
-    found = case.value(part, "nonRotatingPatches")
-    return [str(p) for p in found[0]] if found is not None and isinstance(found[0], list) else []
+    return case.listed(part, "nonRotatingPatches")
 
 
 def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:
@@ -385,5 +418,4 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
 
 def word(case: FoamCase, file: str, *keys: str) -> str:
     """A word of a dictionary; empty where it is not stated."""
-    found = case.value(case.read(file), *keys)
-    return found[0] if found is not None and isinstance(found[0], str) else ""
+    return case.word(case.read(file), *keys)

@@ -15,6 +15,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.foam import Foam, FoamCase
+from coeflab.core.text.foam_values import is_finite
 from coeflab.core.text.series import read_comments, read_series
 from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
@@ -298,7 +299,7 @@ def _local_axes(case: FoamCase, part: Foam, file: Path) -> Array | None:
         return None
     if kind is not None and kind[0] == "axisAngle":
         axis, angle = case.value(turned, "axis"), case.value(turned, "angle")
-        if axis is not None and angle is not None and is_vector(axis[0]) and isinstance(angle[0], (int, float)):
+        if axis is not None and angle is not None and is_vector(axis[0]) and any(axis[0]) and is_finite(angle[0]):
             from scipy.spatial.transform import Rotation
 
             unit = np.array(axis[0], dtype=float) / np.linalg.norm(axis[0])
@@ -308,7 +309,7 @@ def _local_axes(case: FoamCase, part: Foam, file: Path) -> Array | None:
         x = np.cross(y, z)
     elif x is not None and y is None and z is not None:
         y = np.cross(z, x)
-    if x is None or y is None:
+    if x is None or y is None or not np.any(np.cross(x, y)):
         raise InputError(
             "a coordinateSystem whose axes are not two of e1, e2, e3", "axes that are read", file=file,
             advice="Give it e1 and e3, or CofR in its place: then forces are in the axes of the mesh.",

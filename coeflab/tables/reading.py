@@ -259,6 +259,14 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
     return tuple(out)
 
 
+def table_at(
+    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
+) -> PlannedTable:
+    """A campaign folder, its campaign.toml, or one CSV of it."""
+    only = path.name if path.is_file() and path.suffix != ".toml" else None
+    return PlannedTable(path, fits, options or {}, only)
+
+
 def _declaration(path: Path) -> Path:
     return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
@@ -43,6 +43,9 @@ REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 VISCOSITY = "conditions.viscosity"
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
+NO_LENGTHS = frozenset(
+    ["kg", "g", "t", "s", "N", "kN", "m/s", "kn", "deg", "rad", "m^2", "m^3", "Pa", "lb"]
+)  # a wrong unit, no name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -79,11 +82,7 @@ def _sign(name: str) -> Callable[[Any], Any]:
 
 
 def _frame(said: Any) -> Any:
-    if isinstance(said, str) and said not in FRAMES:
-        listed = [word.strip(" \"'[]") for word in said.split(",")]
-        said = said.upper() if said.upper() in FRAMES else listed if len(listed) == 3 else said
-    parse_axes(said)
-    return said
+    return parse_axes(said).declared
 
 
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
@@ -273,7 +272,12 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
     ):
         datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
-    if key == "scaling.length" and (sized := _SIZED.fullmatch(text)) and (name := sized[2].strip(" ()")):
+    if (
+        key == "scaling.length"
+        and (sized := _SIZED.fullmatch(text))
+        and (name := sized[2].strip(" ()"))
+        and name not in NO_LENGTHS
+    ):
         return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
     return {key: read_setting(key, text)}
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +99,15 @@ class Columns:
         )
 
     @property
+    def digest(self) -> str:
+        """Hexadecimal sha256 of the numbers, for columns that no file holds."""
+        out = sha256()
+        for part in (self.angles, self.velocity, self.controls, {"U": self.speed}, self.forces, self.errors):
+            for name in sorted(part):
+                out.update(name.encode() + np.ascontiguousarray(part[name], dtype="<f8").tobytes())
+        return out.hexdigest()
+
+    @property
     def settings(self) -> dict[str, Array]:
         """What the test was set to: angles, velocities, control angles."""
         return {**self.angles, **self.velocity, **self.controls}
@@ -171,7 +181,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         A cell that cannot be, or something that campaign.toml leaves open or contradicts.
     """
     columns.check()
-    digest = sha256_of(columns.file, columns.files)
+    digest = sha256_of(columns.file, columns.files) if columns.file.exists() else columns.digest
     if table.sha256 and table.sha256 != digest:
         raise InputError(
             f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
@@ -224,7 +234,11 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         scaling=campaign.scaling,
         source=campaign.source,
         files=(
-            InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
+            *(
+                [InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path))]
+                if campaign.path.exists()
+                else []
+            ),
             InputFile(f"{campaign.name}/{table.file}", digest),
         ),
         notes=(*notes, *([ASSUMED_POINT] if _assumes_a_point(table, motion) else [])),

@@ -127,6 +127,8 @@ class Sweeps:
         Angles of each control, rad, straight ahead.
     speeds : tuple of float
         Of further straight runs, m/s.
+    pairs : tuple of str
+        Conditions of which the mirror image is run as well: half the sum of both is the bias of the flow and its mesh.
     """
 
     drift: tuple[float, ...] = ()
@@ -136,6 +138,7 @@ class Sweeps:
     combined: tuple[tuple[float, float, float, float], ...] = ()
     controls: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     speeds: tuple[float, ...] = ()
+    pairs: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "controls", MappingProxyType(dict(self.controls)))
@@ -276,7 +279,27 @@ def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: flo
     more += [replace(made(f"speed{v:+.6g}", Kind.STRAIGHT, at=v), half=halves[0]) for v in sweeps.speeds]
     out = (*ahead, *swept, *more)
     _check(out, has)
-    return out
+    return (*out, *(_image(name, out, has) for name in sweeps.pairs))
+
+
+def _image(name: str, among: Sequence[TowCondition], has: Sequence[str]) -> TowCondition:
+    """The mirror image of a condition, which is run to see the bias: of what symmetry says, nothing is taken for granted."""
+    found = {c.name: c for c in among}.get(name)
+    sweep = {Kind.DRIFT: PORT_STARBOARD, Kind.ATTACK: UP_DOWN, Kind.ARM: PORT_STARBOARD}
+    if found is None or found.kind not in sweep:
+        known = ", ".join(c.name for c in among if c.kind in sweep)
+        raise InputError(shown(name), f"a condition of one motion: {known}", column="matrix.pairs")
+    plane = UP_DOWN if found.kind is Kind.ARM and found.rates[1] else sweep[found.kind]
+    if plane not in has:
+        raise InputError(
+            f"the pair of {name} of a body without {plane} symmetry", "a body with it", column="matrix.pairs",
+            advice="Name both angles: nothing is stated by symmetry.",
+        )  # fmt: skip
+    other = name.translate(str.maketrans("+-", "-+"))
+    if other in {c.name for c in among}:
+        raise InputError(f"{other} twice", "a condition that is run on one side", column="matrix.pairs")
+    velocity, rates = mirrored(found, plane)
+    return replace(found, name=other, velocity=velocity, rates=rates + 0.0)
 
 
 def _direction(drift: float, attack: float) -> Array:

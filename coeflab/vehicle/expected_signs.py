@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.force_law import CONTROLS, ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics

@@ -21,13 +21,13 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import named, shipped
 from coeflab.core.finding import Finding
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, RefusedError, Words, stored_fields
-from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.vehicle.inertia import stated_accelerations

@@ -21,13 +21,14 @@ from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
-from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.plan import DEFAULT_FITS
+from coeflab.study.secants import secant
 from coeflab.study.study import Plan, PlannedTow, Study
-from coeflab.study.towed import NOT_RUN, OPEN, TowedRow, runs_used
+from coeflab.study.towed import NOT_RUN, OPEN, SECANT, TowedRow, runs_used
 from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
-from coeflab.tables.reading import read_tables
+from coeflab.tables.reading import read_tables, table_at
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
 from coeflab.tank.earlier import earlier_run, take_over
 from coeflab.tank.folder import (
@@ -141,6 +142,8 @@ class Collected:
         Fits of the campaign; None where nothing can be fitted.
     unfitted : str
         Why there is no study.
+    tables : tuple of ForceTable
+        Of the campaign, where there is no study.
     files : tuple of Path
         That were written.
     """
@@ -148,13 +151,18 @@ class Collected:
     runs: tuple[TowedRun, ...]
     study: Study | None = None
     unfitted: str = ""
+    tables: tuple[ForceTable, ...] = ()
     files: tuple[Path, ...] = ()
 
     @property
     def six(self) -> tuple[TowedRow, ...]:
         """Every one of the six derivatives, one without a value with its reason."""
         if self.study is None:
-            return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
+            lines = {s: secant(self.tables, s, self.tables[0].scaling) if self.tables else None for s in SIX}
+            return tuple(
+                TowedRow(s, c, None, "" if c else OPEN, f"{SECANT}; {self.unfitted}" if c else self.unfitted, ())
+                for s, c in lines.items()
+            )
         tables = self.study.tables
         return tuple(_with_count(_left_out(row, self.runs), tables) for row in compared(self.study)[0].rows)
 
@@ -468,11 +476,12 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     if not fitted:
         return Collected(runs, files=written)
     if not files or not _has_a_sweep(folder):
-        return Collected(runs, files=written, unfitted=f"no sweep has {FEWEST} runs that count")
+        why = f"no sweep has {FEWEST} runs that count"
+        return Collected(runs, files=written, unfitted=why, tables=read_tables(table_at(folder)) if files else ())
     try:
         study = _study(tow, folder)
     except CoeflabError as why:  # the campaign stands, whatever a fit makes of it
-        return Collected(runs, files=written, unfitted=str(why))
+        return Collected(runs, files=written, unfitted=str(why), tables=read_tables(table_at(folder)))
     report = rendered(study)
     write_all(tow.folder / REPORT, report)
     return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))

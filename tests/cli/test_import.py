@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 from coeflab.cli import app, import_
 from coeflab.core.errors import CoeflabError, InputError
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import sha256_of
-from coeflab.core.table import Severity
 from coeflab.study.checks import conditions
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map

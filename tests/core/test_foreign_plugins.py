@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from coeflab.core.errors import PluginError
+from coeflab.core.finding import Severity
 from coeflab.core.registry import Registry as Room
-from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.fits import FITS
 from coeflab.study.checks import CHECKS

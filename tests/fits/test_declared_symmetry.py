@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics import origin_slope
@@ -214,3 +216,54 @@ def test_a_mirrored_side_adds_no_degree_of_freedom() -> None:
     at_rest, half = origin_slope.curve(one, np.zeros(1))
     assert abs(at_rest[0]) < 1e-5
     assert half[0] < 1e-3 * one.noise + 1e-9
+
+
+def as_cfd(of: tuple[ForceTable, ...]) -> tuple[ForceTable, ...]:
+    return tuple(replace(t, source=replace(t.source, kind="cfd")) for t in of)
+
+
+def shifted(text: str, by: float) -> str:
+    """The same rows with a side force of so many N more."""
+    head, *rows = text.splitlines()
+    cells = [row.split(",") for row in rows]
+    return "\n".join([head, *(",".join([*c[:3], f"{float(c[3]) + by:.9g}", c[4]]) for c in cells)]) + "\n"
+
+
+def test_what_a_straight_run_has_of_a_force_that_is_zero_by_symmetry_is_in_u95(
+    tables: Reader, one_side: FitResult
+) -> None:
+    """A bias of b moves a slope by b times the sum of what each reading moves it by: here by hand from the rows themselves."""
+    unit = 0.5 * DENSITY * SPEED**2 * LENGTH**2
+    at_rest = csv_of([0.0]).replace(csv_of([0.0]).splitlines()[1].split(",")[3], "16.0", 1)
+    biased = fitted(tables(BOTH, drift=at_rest + csv_of(ANGLES).partition("\n")[2]))
+    sweep, plain = biased.sweep("Yv"), one_side.sweep("Yv")
+    assert sweep.bias == pytest.approx(16.0 / unit, rel=1e-6)
+    assert sweep.value == pytest.approx(plain.value)
+    moved = sweep.bias * plain.by_row.sum()
+    assert sweep.u95 == pytest.approx(np.hypot(plain.u95, moved), rel=1e-6)
+    lifted, below = (
+        fitted(tables(BOTH, drift=shifted(csv_of(ANGLES), by * unit))).sweep("Yv").value or 0.0 for by in (1e-4, -1e-4)
+    )
+    assert moved == pytest.approx(
+        sweep.bias * (lifted - below) / 2e-4, rel=0.15
+    )  # the weights of the forms follow, too
+    assert biased.sweep("X0").bias == 0.0
+
+
+def test_a_computed_pair_counts_once_and_without_its_bias(tables: Reader, one_side: FitResult) -> None:
+    """Both sides of 4 deg with a bias of 20 N, the others without: half the difference of the pair is the unbiased force."""
+    unit = 0.5 * DENSITY * SPEED**2 * LENGTH**2
+    rest, pair = csv_of([0.0]), csv_of([ANGLES[1], -ANGLES[1]])
+    others = csv_of([a for a in ANGLES if a != ANGLES[1]])
+    text = rest + others.partition("\n")[2] + shifted(pair, 20.0).partition("\n")[2]
+    sweep = fitted(as_cfd(tables(BOTH, drift=text))).sweep("Yv")
+    assert sweep.symmetry == "port-starboard"
+    assert len(sweep.x) == len(ANGLES)
+    assert sum("half the difference" in p.reason for p in sweep.left_out) == 1
+    place = int(np.argmin(np.abs(sweep.x - np.sin(ANGLES[1]))))
+    there = one_side.sweep("Yv")
+    assert sweep.y[place] == pytest.approx(there.y[1], abs=1e-9)
+    assert abs(sweep.y[place] * unit) > 20.0
+    assert sweep.value == pytest.approx(there.value, rel=1e-6)
+    measured = fitted(tables(BOTH, drift=text)).sweep("Yv")
+    assert len(measured.x) == len(ANGLES) + 2

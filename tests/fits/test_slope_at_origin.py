@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits import FITS, slope_at_origin
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.statistics import slopes

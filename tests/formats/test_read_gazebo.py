@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.xml import read_xml
 from coeflab.formats.gazebo import read as gazebo
 from coeflab.formats.gazebo import write as fluid

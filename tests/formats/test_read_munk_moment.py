@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.formats.gazebo import read as gazebo
 from coeflab.formats.gazebo import write as gazebo_exporter
 from coeflab.formats.gazebo_plugin import write as gazebo_plugin

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.formats.gazebo import read as gazebo
 from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import read as mss

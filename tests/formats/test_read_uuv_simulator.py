@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.xml import read_xml
 from coeflab.formats.uuv_simulator import read as uuv_simulator
 from coeflab.formats.uuv_simulator import write as exporter

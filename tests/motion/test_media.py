@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.core.types import Array
+from coeflab.motion.dynamics import from_euler
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.motion.marching import march, march_by_tolerance
 from coeflab.motion.media import through_media
@@ -35,9 +37,10 @@ WATER, AIR = frictionless(LIGHT, "water"), frictionless(1e-6, "air")
 OUT, IN = Until("depth", False, -DEPTH), Until("depth", True, -DEPTH)
 
 
-def hop(*phases: Phase, **more: Any) -> Manoeuvre:
+def hop(*phases: Phase, velocity: Array | None = None, **more: Any) -> Manoeuvre:
     known = (Phase("up", {}, 20.0, OUT), Phase("air", {}, 20.0, IN, 1))
-    return Manoeuvre("hop", phases or known, np.zeros(6), **{"others": (AIR,), "surface": -DEPTH, **more})
+    start = np.zeros(6) if velocity is None else velocity
+    return Manoeuvre("hop", phases or known, start, **{"others": (AIR,), "surface": -DEPTH, **more})
 
 
 def through(manoeuvre: Manoeuvre, **how: Any) -> Trajectory:
@@ -163,3 +166,17 @@ def test_water_above_air_and_one_medium_twice_are_refused(first: str, into: str,
     with pytest.raises(InputError, match="times as dense as that above") as refused:
         planned(file, "medium_change", {"into": f"flyingfish_{into}", "start": start})
     assert says in str(refused.value)
+
+
+@pytest.mark.parametrize("angles", [(0.0, 0.6, 0.0), (0.4, 0.3, -0.7)], ids=["pitched", "rolled, pitched and yawed"])
+def test_a_craft_crosses_the_surface_as_it_lies(angles: tuple[float, float, float]) -> None:
+    """Without drag it flies a parabola in earth axes whatever its attitude: an attitude set back at the surface bends it."""
+    forward = 4.0
+    manoeuvre = hop(velocity=np.array([forward, 0.0, 0.0, 0.0, 0.0, 0.0]), attitude=from_euler(*angles))
+    found = through(manoeuvre)
+    ahead = forward * np.cos(angles[1]) * np.array([np.cos(angles[2]), np.sin(angles[2])])
+    up = forward * np.sin(angles[1])
+    out = (np.sqrt(up**2 + 2.0 * UP * DEPTH) - up) / UP
+    assert found.reached == pytest.approx((out, out + 2.0 * (up + UP * out) / BACK), abs=1e-7)
+    assert found.position[-1, :2] == pytest.approx(ahead * found.reached[-1], abs=1e-6)
+    assert np.asarray(found.attitude) == pytest.approx(np.tile(from_euler(*angles), (len(found.time), 1)), abs=1e-9)

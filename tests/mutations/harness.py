@@ -28,7 +28,8 @@ import numpy as np
 import coeflab.workbench as workbench
 from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
@@ -372,7 +373,12 @@ class Suboff:
         """The plan on copies with edited texts: names under cfd_data, what is replaced by what (every time it occurs)."""
         place = Path(mkdtemp(dir=self.folder))
         data = Path(str(shipped("cfd_data")))
-        for name in ("suboff", *(f"suboff_roddy_{i}" for i in (1, 2, 3)), "suboff_cfd_barehull"):
+        for name in (
+            "suboff",
+            *(f"suboff_roddy_{i}" for i in (1, 2, 3)),
+            "suboff_cfd_barehull",
+            "suboff_roddy_2_dimensional",
+        ):
             shutil.copytree(data / name, place / "cfd_data" / name)
         shutil.copytree(data.parent / "geometry" / "suboff", place / "geometry" / "suboff")
         for name, changes in edits.items():

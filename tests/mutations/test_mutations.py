@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.motion.glider import motion
 from coeflab.study.study import Study
 from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, validate_huuv

@@ -71,7 +71,7 @@ def test_without_tows_the_printed_numbers_remain_and_it_says_so(tmp_path: Path) 
     found = acceptance(tmp_path)
     assert [t.key for t in found.tables] == ["lamb"]
     assert found.holds
-    assert {r.basis for r in found.numbers} == {Basis.PRINTED}
+    assert {r.basis for r in found.numbers} == {Basis.VERIFICATION}
     assert found.statements == tuple(f"Not towed: there is no campaign {n} yet." for n in (PLANE, SPHEROID))
 
 

@@ -58,9 +58,9 @@ def test_the_cycle_settles(thauv: Acceptance) -> None:
 
 def test_what_is_calibrated_is_called_so(thauv: Acceptance) -> None:
     assert {t.key: (len(t.rows), {r.basis.value for r in t.rows}) for t in thauv.tables if t.key != "gains"} == {
-        "engine": (1, {"printed and recomputed"}), "steady_glides": (12, {"consistency"}), "speeds": (6, {"calibration"}),
-        "left_out": (6, {"predicted"}), "constants": (4, {"consistency"}), "cycle": (6, {"calibration"}),
-        "settling": (1, {"calibration"}), "power": (6, {"consistency"}), "masses": (10, {"printed and recomputed", "consistency"}),
+        "engine": (1, {"verification"}), "steady_glides": (12, {"consistency"}), "speeds": (6, {"calibration"}),
+        "left_out": (6, {"verification"}), "constants": (4, {"consistency"}), "cycle": (6, {"calibration"}),
+        "settling": (1, {"calibration"}), "power": (6, {"consistency"}), "masses": (10, {"verification", "consistency"}),
         "power_in_space": (3, {"consistency"}), "cruise": (4, {"consistency"}), "spiral": (7, {"consistency"}),
         "senses": (3, {"consistency"}), "carried": (3, {"consistency"}),
     }  # fmt: skip

@@ -36,11 +36,11 @@ def test_every_number_holds(tables: dict[str, ComparedTable]) -> None:
 
 
 def test_only_what_the_paper_prints_is_validation(tables: dict[str, ComparedTable]) -> None:
-    printed = [(r.case, r.quantity) for t in tables.values() for r in t.rows if r.basis is Basis.PRINTED]
+    printed = [(r.case, r.quantity) for t in tables.values() for r in t.rows if r.basis is Basis.VERIFICATION]
     assert len(printed) == 13
     assert {case for case, _ in printed} == {"link 1", "gravity along x"}
     assert {t.key for t in tables.values() if any(r.basis is Basis.CALIBRATION for r in t.rows)} == {"transformations"}
-    assert not any(r.basis is Basis.PREDICTED for t in tables.values() for r in t.rows)
+    assert not any(r.basis is Basis.VALIDATION for t in tables.values() for r in t.rows)
 
 
 def test_independent_numbers(tables: dict[str, ComparedTable]) -> None:

@@ -20,11 +20,11 @@ from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
     ],
 )
 def test_agreement(published: float, found: float | None, tolerance: float, how: dict[str, bool], holds: bool) -> None:
-    row = Compared("case", "q", "m", published, found, tolerance, Basis.PRINTED, **how)
+    row = Compared("case", "q", "m", published, found, tolerance, Basis.VERIFICATION, **how)
     assert row.holds is holds
     table = ComparedTable("k", "t", (row,), "Table 1")
     assert Acceptance("n", "t", (table,), (), (), ()).holds is holds
 
 
 def test_a_relative_difference_of_zero_is_absolute() -> None:
-    assert Compared("case", "q", "deg", 0.0, 1e-4, 1e-3, Basis.PRINTED, relative=True).difference == 1e-4
+    assert Compared("case", "q", "deg", 0.0, 1e-4, 1e-3, Basis.VERIFICATION, relative=True).difference == 1e-4

@@ -14,9 +14,9 @@ DRAWN = Figure("a-b", '<svg viewBox="0 0 340 100"></svg>', "A & B", "cap", "two 
 
 def found(second: float, **changes) -> Acceptance:
     rows = (
-        Compared("case 1", "u", "m/s", 1.0, 1.05, 0.1, Basis.PRINTED),
+        Compared("case 1", "u", "m/s", 1.0, 1.05, 0.1, Basis.VERIFICATION),
         Compared("case 2", "u", "m/s", 2.0, second, 0.1, Basis.CALIBRATION),
-        Compared("case 3", "rms", "1", 0.5, 0.1, 0.0, Basis.PRINTED, at_most=True),
+        Compared("case 3", "rms", "1", 0.5, 0.1, 0.0, Basis.VERIFICATION, at_most=True),
     )
     table = ComparedTable("turns_a", "Turns", rows, "Table 1", ("a statement",))
     made = {
@@ -61,17 +61,16 @@ def test_parts_without_content_are_left_out():
 
 def test_the_verdict_counts_and_names_what_fails():
     assert acceptance_document.verdict(found(2.05)).paragraphs[0] == (
-        "3 of the 3 compared numbers lie within their tolerance: printed and recomputed 2 of 2; calibration 1 of 1."
+        "3 of the 3 compared numbers lie within their tolerance: verification 2 of 2; calibration 1 of 1."
     )
     failed = acceptance_document.verdict(found(2.5))
     assert failed.paragraphs[0].startswith("2 of the 3 compared numbers lie within their tolerance: ")
     assert (
-        failed.paragraphs[1]
-        == "Only predicted numbers, and printed numbers that we recompute, are validation: 2 of 2 lie within."
+        failed.paragraphs[1] == "Nothing here is validation: nothing is compared with a measurement that was not used."
     )
     assert failed.paragraphs[2] == "Outside, Turns: u of case 2."
     assert failed.paragraphs[3:] == (
-        "Printed and recomputed: published, and computed here from other published numbers.",
+        "Verification: published: computed by its authors from the same equations or data.",
         "Calibration: our model was fitted to these numbers, so agreement proves nothing.",
     )
 
@@ -85,23 +84,24 @@ def test_numbers_met_another_way_count_once():
     assert first.endswith(
         "3 more comparisons repeat these numbers in another way and do not count; 3 of them lie within."
     )
-    assert second == "Only predicted numbers, and printed numbers that we recompute, are validation: 2 of 2 lie within."
-    failing = replace(again, rows=(*again.rows, Compared("case 4", "u", "m/s", 1.0, 2.0, 0.1, Basis.PRINTED)))
+    assert second == "Nothing here is validation: nothing is compared with a measurement that was not used."
+    failing = replace(again, rows=(*again.rows, Compared("case 4", "u", "m/s", 1.0, 2.0, 0.1, Basis.VERIFICATION)))
     assert not replace(made, tables=(*made.tables, failing)).holds
 
 
-def test_a_number_is_called_printed_only_where_it_is():
-    """Basis beside every number; no column says paper, and a report without printed numbers says so."""
+def test_a_number_is_called_validation_only_where_it_is_measured():
+    """Basis beside every number; no column says paper, and a report without measurements says so."""
     (shown,) = acceptance_tables.tables(found(2.05))
     assert shown.headers[2:5] == ("reference", "basis", "found")
     assert [row[2:4] for row in shown.rows] == [
-        ("1", "printed and recomputed"),
+        ("1", "verification"),
         ("2", "calibration"),
-        ("at most 0.5", "printed and recomputed"),
+        ("at most 0.5", "verification"),
     ]
     assert b"held_against" in acceptance_tables.acceptance_csv(found(2.05)).splitlines()[0]
-    none = "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed."
-    assert none not in acceptance_document.verdict(found(2.05)).paragraphs
+    none = "Nothing here is validation: nothing is compared with a measurement that was not used."
+    measured = replace(found(2.05).tables[0], rows=(Compared("case", "u", "m/s", 1.0, 1.05, 0.1, Basis.VALIDATION),))
+    assert none not in acceptance_document.verdict(replace(found(2.05), tables=(measured,))).paragraphs
     rows = (Compared("case", "mass", "kg", 2.2297, 2.2297, 5e-5, Basis.CONSISTENCY),)
     made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
     said = acceptance_document.verdict(made)
@@ -118,7 +118,7 @@ def test_the_overview_shows_how_much_of_the_allowance_is_used():
 
 
 def test_a_limit_that_is_nearly_reached_shows_in_the_overview():
-    rows = (Compared("case", "rms", "1", 0.5, 0.45, 0.0, Basis.PRINTED, at_most=True),)
+    rows = (Compared("case", "rms", "1", 0.5, 0.45, 0.0, Basis.VERIFICATION, at_most=True),)
     made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
     assert acceptance_document.overview(made).rows[0][2:] == ("1 of 1", "90 %", "pass")
 

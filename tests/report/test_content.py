@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.core.wording import Verbatim, in_sentences, listed
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient, Parts, Status

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from coeflab.cli.show import plain_lines
-from coeflab.core.table import Severity, in_digits_of, percent
+from coeflab.core.finding import Severity
+from coeflab.core.table import in_digits_of, percent
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import first_page
+from coeflab.report.acceptance import Basis
 from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Document, Section
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, share_text, slope_figure
@@ -372,18 +374,18 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     made = answer(found(2.5))
     assert (
         made.sentence
-        == "Boat: 1 of 3 numbers outside the tolerance; 2 of the 3 are validation: printed and recomputed."
+        == "Boat: 1 of 3 numbers outside the tolerance; none of them is validation: verification and calibration only."
     )
     assert made.rows == ()
     assert (
         [(r[0], *r[2:]) for r in made.table.rows]
         == [r[:4] for r in answer_table(made).rows]
         == [
-            ("printed and recomputed", "2 of 2", "50 %", "pass"),
+            ("verification", "2 of 2", "50 %", "pass"),
             ("calibration", "0 of 1", "500 %", "fail"),
         ]
     )
-    assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
+    assert [c.severity.value for c in made.chips] == ["fail", "note", "note", "note"]
     assert made.slope.anchor == "answer-figure"
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within the tolerance;")
     assert "arrow" in made.forest.caption
@@ -476,3 +478,13 @@ def test_suboff(suboff: Study):
         "####",
     ]
     assert lines[6].split()[:9] == ["Yr'", "-0.002", "+-", "0.013", "(>", "100", "%)", "0.005251", "0.0044"]
+
+
+@pytest.mark.parametrize(("second", "shown", "severity"), [(2.05, "1 of 1 pass", "pass"), (2.5, "0 of 1 pass", "fail")])
+def test_the_chip_of_validation_fails_with_what_it_counts(second: float, shown: str, severity: str):
+    """It said pass for a count of numbers, whatever came out of them."""
+    made = found(second)
+    table = made.tables[0]
+    rows = (*table.rows[:1], replace(table.rows[1], basis=Basis.VALIDATION), *table.rows[2:])
+    chip = next(c for c in answer(replace(made, tables=(replace(table, rows=rows),))).chips if c.name == "Validation")
+    assert (chip.text, str(chip.severity)) == (shown, severity)

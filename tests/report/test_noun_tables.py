@@ -13,8 +13,9 @@ from coeflab.bodies.readers import read_body
 from coeflab.cli.show import plain_lines
 from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
+from coeflab.core.finding import Severity
 from coeflab.core.several import ByName, Several
-from coeflab.core.table import Check, Severity, Table
+from coeflab.core.table import Check, Table
 from coeflab.fits import FITS
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import COVERS, Coefficient, Parts, Status

@@ -8,7 +8,8 @@ import pymupdf
 import pytest
 
 from coeflab.core.errors import OutputError
-from coeflab.core.table import Severity, Table
+from coeflab.core.finding import Severity
+from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.published.documents import report_of
 from coeflab.report.content import document

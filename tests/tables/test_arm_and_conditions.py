@@ -13,7 +13,7 @@ from coeflab.core.types import Array
 from coeflab.fits import FITS
 from coeflab.fits.rows.regression import Area, response
 from coeflab.fits.uncertainty.budget import budgets_of
-from coeflab.fits.uncertainty.grid_convergence import grid_studies
+from coeflab.fits.uncertainty.grid_studies import grid_studies
 from coeflab.law.symbols import MOTIONS
 from coeflab.tables.force_table import COARSER, ForceTable
 from coeflab.tables.to_frd import ASSUMED_POINT

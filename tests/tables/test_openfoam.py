@@ -302,8 +302,10 @@ def test_a_rotor_is_not_the_motion_of_the_body(case: Callable[[str], Path]) -> N
         ("constant 0.25", "$rate", -0.125),
         ("constant 0.25", "table ((0 0) (1 2))", None),
         ("constant 0.25", "[0 0 -1 0 0 0 0]", None),
-        ("constant 0.25", '#calc "1.0/4.0"', None),
-        ("constant 0.25", "#eval{ 1/4 }", None),
+        ("constant 0.25", '#calc "1.0/8.0"', 0.125),
+        ("constant 0.25", "#eval{ 1/8 }", 0.125),
+        ("constant 0.25", '#calc "1/8"', None),
+        ("constant 0.25", "{ type constant; value 30 [rpm]; }", np.pi),
         ("active          yes", "active no", None),
     ],
 )
@@ -316,8 +318,8 @@ def test_rates_as_they_are_written(case: Callable[[str], Path], old: str, new: s
         assert ("u" in run.conditions) == ("active" in old)
     else:
         assert run.conditions["r"].value == pytest.approx(rate)
-    if new.startswith("#"):
-        assert "is code, which is not run" in remarks(run)
+    if new.startswith("#") and rate is None:
+        assert "constant/MRFProperties:17: " in remarks(run)
 
 
 @pytest.mark.parametrize(
@@ -329,7 +331,10 @@ def test_rates_as_they_are_written(case: Callable[[str], Path], old: str, new: s
         ("type freestream; freestreamValue $:flow;", (4.0, 0.0, 0.0)),
         ("type freestream; freestreamValue ${flow};", (4.0, 0.0, 0.0)),
         ("type freestream; freestreamValue uniform $nowhere;", None),
-        ('type fixedValue; value #calc "vector(1,0,0)";', None),
+        ('type fixedValue; value #calc "vector(1,0,0)";', (1.0, 0.0, 0.0)),
+        ("type fixedValue; value uniform (#neg $ux 0 0.5);", (-3.0, 0.0, 0.5)),
+        ('type fixedValue; value #calc "mesh()";', None),
+        ("type codedFixedValue; value uniform (1 0 0);", None),
         ("type zeroGradient;", None),
         ("type fixedValue; value uniform (1 0 0) uniform (1 0 0);", None),
         ("type uniformFixedValue; uniformValue table ((0 (1 0 0)));", None),
@@ -495,7 +500,7 @@ def test_files_compressed_and_over_several_lines(case: Callable[[str], Path]) ->
             "line .*system/controlDict|controlDict.*line",
         ),
         ("system/controlDict", "functions\n{", "functions\n{ {{{{{{{{{{{{{{", "controlDict, line .*nest too deep"),
-        ("0/U", "boundaryField\n{", "boundaryField\n{ /*", "0/U, line .*the end of the file without }"),
+        ("0/U", "boundaryField\n{", "boundaryField\n{ /*", "0/U, line .*a comment without its end"),
     ],
 )
 def test_files_that_are_refused(

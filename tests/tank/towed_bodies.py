@@ -21,3 +21,38 @@ def with_mirrors(mirrors: str = "", *, nose: float = 2.013, stern: float = -2.34
         read_body(BODY_FILE), vertices, faces, ("hull",), np.zeros(4, dtype=np.int64), {"hull": nose - stern},
         (False, Y in mirrors, Z in mirrors), FOURFOLD in mirrors,
     )  # fmt: skip
+
+
+def _fin(number: int) -> str:
+    return f"""
+[[fin]]
+name = "f{number}"
+section = "NACA 0015"
+roll = "{90 * number - 45} deg"
+root = 0.05
+tip = 0.30
+root_chord = 0.24
+tip_chord = 0.18
+trailing_edge = -0.92
+"""
+
+
+# A spheroid of 4:1 with four fins that lie in no mirror plane.
+X_FINS = """
+[body]
+name = "x_fins"
+reader = "finned"
+datum = "centre"
+datum_note = "of the spheroid"
+reference_point = [0.0, 0.0, 0.0]
+[source]
+citation = "synthetic"
+kind = "synthetic"
+[prime]
+length = 2.0
+length_name = "length"
+[hull]
+kind = "spheroid"
+length = 2.0
+diameter = 0.5
+""" + "".join(map(_fin, (1, 2, 3, 4)))

@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.units import same_unit
 from coeflab.study.study import Study
 from coeflab.vehicle.expected_signs import control_signs, sign_findings

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import not_belonging

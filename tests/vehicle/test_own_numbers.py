@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.json import lines_of
 from coeflab.core.units import also_written, same_unit
 from coeflab.law.coefficient import Status

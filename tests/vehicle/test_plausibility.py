@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study

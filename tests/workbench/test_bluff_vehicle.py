@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.study.checks import ideal_fluid
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity, number
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, number
 from coeflab.core.types import Array
 from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.study.checks.data_gate import findings

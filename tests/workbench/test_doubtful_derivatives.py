@@ -10,7 +10,8 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.checks.signs import check as signs
 from coeflab.study.checks.viscous_centre import check as centres
 from coeflab.study.plan import read_plan

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError, PluginError
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.formats.export import PlannedExport
 from coeflab.report.content import document
 from coeflab.study.plan import read_plan

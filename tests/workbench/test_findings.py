@@ -11,7 +11,7 @@ import pytest
 from coeflab.core.declarations import declared_key
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.formats.export import lost_by_all

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.fits.results.fit_result import Sensitivity
 from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.study.checks import coverage

@@ -95,7 +95,7 @@ def test_a_measured_number_counts_once(
     for found, good in (((first, second, open_one), 1), ((first, missed, open_one), 0)):
         for module in (acceptance, first_page_notes):
             monkeypatch.setattr(module, "validations", lambda *_, found=found: found)
-        assert held_of_study(study)[Basis.PREDICTED] == (good, 1)
+        assert held_of_study(study)[Basis.VALIDATION] == (good, 1)
         said = " ".join(headline_of_study(study))
         assert f"{good} of 1 coefficients predicted by CFD" in said
         assert (
@@ -133,7 +133,7 @@ def test_a_tow_without_a_grid_study_has_no_verdict(bodies: tuple[Study, tuple[To
     assert {row[-1] for row in table.rows} == {"no verdict"}
     assert "No verdict on Yv', Nv': no grid study." in table.notes
     assert all(v.within is None for v in validations(study, study.budgets))
-    assert held_of_study(study)[Basis.PREDICTED] == (0, 0)
+    assert held_of_study(study)[Basis.VALIDATION] == (0, 0)
 
 
 def test_tables_of_tows_print_both_reynolds_numbers(bodies: tuple[Study, tuple[Towed, ...]]) -> None:

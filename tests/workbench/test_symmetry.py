@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.checks import symmetry
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables

@@ -9,15 +9,19 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from coeflab.cli import show
 from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
+from coeflab.core.finding import Severity
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report.tables import tow as tables
-from coeflab.study.towed import TowedRow
+from coeflab.study.checks.symmetry import biases
+from coeflab.study.secants import OF_SECANT
+from coeflab.study.towed import SECANT, TowedRow
 from coeflab.tank.folder import CAMPAIGN, PLAN, has_begun, read_plan
 from coeflab.tank.jobs import EARLIER, Job, JobState, only_one, outstanding
 from coeflab.tank.states import states_of
@@ -97,21 +101,24 @@ def test_known_derivatives_come_back(whole: tuple[Tow, Collected]) -> None:
 
 
 def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: tuple[Tow, Collected]) -> None:
-    tow, made = whole
+    _, made = whole
     assert "error of the grid is not in it: there is no grid study" in tables.covers(made.six)
     studied = [replace(r, u_grid=0.0012) for r in made.six]
     assert "By the grid study, 95 %: Yv' 0.0012" in tables.covers(studied)
     assert "not in it" not in tables.covers(studied)
-    said = []
-    for share in (0.04, 0.06):
-        least = next(r for r in made.runs if r.condition.name == "drift+3").summary
-        assert least is not None
-        runs = [r if r.condition.kind != "straight" or r.summary is None else
-                replace(r, summary=replace(r.summary, means={**r.summary.means, "Y": share * least.means["Y"]}))
-                for r in made.runs]  # fmt: skip
-        said += [line for line in tables.symmetry_checks(tow.tank, runs) if "Y of straight" in line]
-    assert said[0] == "Check: Y of straight, zero by symmetry, is 4 % of that of drift+3."
-    assert said[1].startswith("Warning: Y of straight, zero by symmetry, is 6 % of that of drift+3, more than 5 %")
+    assert made.study is not None
+    fit = made.study.fits[0]
+    sweep = fit.sweep("Yv")
+    for share, severity in ((0.04, Severity.PASS), (0.06, Severity.WARN)):
+        bias = share * float(np.abs(sweep.y).min())
+        (found,) = biases([replace(sweep, bias=bias)])
+        assert (found.code, found.severity) == ("symmetry.bias", severity)
+        assert found.statistic == pytest.approx(share)
+        assert found["of_value"] == pytest.approx(abs(bias * sweep.by_row.sum() / sweep.value))
+        assert found["row"] == "drift+3"
+        study = replace(made.study, fits=(replace(fit, sweeps=(replace(sweep, bias=bias),)),))
+        (line,) = tables.symmetry_checks(study)
+        assert line.startswith("Warning" if severity is Severity.WARN else "Check")
 
 
 def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:
@@ -123,13 +130,31 @@ def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:
     assert tables.solver_name("OpenFOAM 1912, (patch=200626)") == "OpenFOAM 1912 (patch=200626)"
 
 
-def test_two_rates_give_no_rotary_derivative_and_say_why(whole: tuple[Tow, Collected]) -> None:
+def test_two_rates_give_a_secant_with_a_wide_u95_and_say_why(whole: tuple[Tow, Collected]) -> None:
+    """Planted: Yr' = 2e-3, Nr' = -2e-3 and Nrr' = -1e-3, so that the secant at r' = 0.1 is -2.1e-3."""
     rows = {r.symbol: r for r in whole[1].six}
-    for symbol in ("Yr", "Nr"):
-        assert rows[symbol].value is None
-        assert rows[symbol].why == "2 runs with r count, 3 are needed"
-    absent = {c.symbol: c.status for c in whole[1].study.missing}
-    assert absent == {"Yr": Status.TOO_FEW_POINTS, "Nr": Status.TOO_FEW_POINTS}  # a table varies r
+    for symbol, known, slope in (("Yr", 2e-3, 2e-3), ("Nr", -2.1e-3, -2e-3)):
+        assert rows[symbol].value == pytest.approx(known, rel=1e-3)
+        assert rows[symbol].u95 == pytest.approx(OF_SECANT * abs(known), rel=0.02)
+        assert abs(rows[symbol].value - slope) < rows[symbol].u95  # type: ignore[operator]
+        assert rows[symbol].why.startswith(SECANT)
+
+
+def test_one_run_that_did_not_converge_leaves_no_derivative_open(tmp_path: Path) -> None:
+    """Three drifts and two rates: no sweep has three runs that count, and its secants are shown."""
+    more = '[solver.planted]\nrestless = ["drift+6"]\n'
+    matrix = tank_file(tmp_path, more)
+    tank, body = room.read(shipped("geometry") / "tow_spheroid", matrix)
+    made = towed(room.laid_out(tank, body, tmp_path / "x", matrix))
+    for row in made.six:
+        assert row.missing == ""
+        assert row.value is not None
+        assert row.u95 is not None
+        assert row.u95 >= OF_SECANT * abs(row.value)
+    rows = {r.symbol: r for r in made.six}
+    planted = -6e-3 - 2e-2 * np.sin(np.radians(3.0))
+    assert rows["Yv"].value == rows["Zw"].value == pytest.approx(planted, rel=1e-3)
+    assert abs(rows["Yv"].value + 6e-3) < rows["Yv"].u95  # type: ignore[operator]
 
 
 def test_a_finished_tow_is_kept_and_gives_the_same_bytes(whole: tuple[Tow, Collected]) -> None:

@@ -21,7 +21,7 @@ from coeflab.bodies.thrusters import Thruster
 from coeflab.cli.vehicle import typed
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.formats.export import Loss
@@ -45,7 +45,7 @@ from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
 from coeflab.workbench import run
 from coeflab.workbench import vehicle as workbench_vehicle
 from coeflab.workbench.exports import export, parameter_files_rendered
@@ -109,7 +109,7 @@ def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_pa
     path.write_bytes(made.to_json())
     back = read_parameter_file(path)
     assert back == made
-    assert back.schema_version == "1.5"
+    assert back.schema_version == SCHEMA_VERSION
     assert {(c.status, c.origin) for c in back.coefficients} == {(Status.ESTIMATE, "estimate")}
     assert {c.symbol.removesuffix("'"): c.u95 for c in back.coefficients} == pytest.approx(
         {s: SHARE * abs(v) for s, v in (VALUES | RUDDER).items()}

@@ -79,7 +79,9 @@ def part_file(
         lines += ["", "[prime]", f"length = {_number(body.scaling.length)}"]
         lines.append(f"length_name = {_text(body.scaling.length_name)}")
     if mesh:
-        lines += ["", "[mesh]", f"path = {_text(mesh)}", 'unit = "m"', 'axes = "FRD"']
+        spelled = body.axes is not None and body.axes.spelled  # what was stated one by one stays so
+        frame = '["forward", "starboard", "down"]' if spelled else '"FRD"'
+        lines += ["", "[mesh]", f"path = {_text(mesh)}", 'unit = "m"', f"axes = {frame}"]
     if shape.agreement is not None:
         lines += ["", *_comments((AGREEMENT,)), "[against_mesh]"]
         found = zip(MOTIONS, shape.agreement.entries, strict=True)

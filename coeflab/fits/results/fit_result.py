@@ -11,7 +11,9 @@ from math import isinf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
@@ -214,6 +216,8 @@ class Sweep:
         Declared symmetry by which a sweep of one side is odd or even; empty where both sides were run or none is declared.
     by_symmetry : str
         Table whose rows these are, turned by a declared symmetry; empty for rows that were run.
+    bias : float
+        Primed force of the rows at rest, which a declared symmetry says is zero; what it does to the value is in U95.
     """
 
     symbol: str
@@ -249,6 +253,7 @@ class Sweep:
     one_size: bool = False
     symmetry: str = ""
     by_symmetry: str = ""
+    bias: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))
@@ -362,6 +367,8 @@ class FitResult:
         Of oscillating runs, one a force component and motion.
     straight : tuple of StraightRuns
         Of tables in which nothing varies but the speed.
+    findings : tuple of Finding
+        What is assumed, left out or not assessed; they travel with its numbers.
     """
 
     fit: str
@@ -377,6 +384,7 @@ class FitResult:
     tied: Tied | None = None
     oscillations: tuple[Oscillation, ...] = ()
     straight: tuple[StraightRuns, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     @property
     def law(self) -> str:

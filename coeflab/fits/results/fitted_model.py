@@ -18,7 +18,7 @@ from math import isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by
+from coeflab.core.cards import html_by
 from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability

@@ -20,6 +20,7 @@ import numpy as np
 from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding
 from coeflab.core.limits import JSON_BYTES, positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
@@ -28,6 +29,7 @@ from coeflab.core.text.yaml import number, read_yaml
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
+from coeflab.formats.left_out import left_out
 from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
@@ -367,7 +369,7 @@ def examine(path: Path) -> tuple[Check, ...]:
 
 
 def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
-    notes = [*law.notes, *(f"left out: {model}" for model in dict.fromkeys(body.left_out))]
+    notes = [*law.notes]
     named = next((n for n in LENGTHS if law.constants.get(n, 0.0) > 0.0), None)
     scaling = Scaling(law.constants[named], named) if named else Scaling(1.0, "1 m")
     notes.append(f"lengths made dimensionless by {scaling.length_name}" + ("" if named else ": the file states none"))
@@ -412,7 +414,43 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         matrix=matrix if kept else None,
         mass=mass,
         notes=(*notes, *doubt),
+        findings=_left_out(body, name),
     )
+
+
+# Force models of xdyn that are not of the hull's own hydrodynamics.
+STATICS = (
+    "gravity",
+    "buoyancy",
+    "non-linear hydrostatic (exact)",
+    "non-linear hydrostatic (fast)",
+    "linear hydrostatics",
+    "hydrostatic",
+)
+DRIVES = re.compile(
+    r"propeller|rudder|thruster|wageningen|kt\(j\)|controll?er|PID|constant force|sail|aero|linear stiffness",
+    re.IGNORECASE,
+)
+
+
+def _left_out(body: XdynBody, name: str) -> tuple[Finding, ...]:
+    """Force models that are not read, commands at zero, times, and the state at the start."""
+    models = tuple(dict.fromkeys(body.left_out))
+    statics = [m for m in models if m in STATICS]
+    drives = [m for m in models if m not in STATICS and DRIVES.search(m)]
+    commands = [c for m in body.manoeuvring for c in m.commands if c not in CONTROLS]
+    timed = [k for m in body.manoeuvring for k, v in m.expressions.items() if _TIME.search(_STATE.sub("", v))]
+    return (
+        *left_out(name, "hydrostatics", statics),
+        *left_out(name, "propulsion", drives),
+        *left_out(name, "forces", [m for m in models if m not in (*statics, *drives)]),
+        *left_out(name, "commands", commands),
+        *left_out(name, "time", timed),
+        *left_out(name, "environment", body.unread),
+    )
+
+
+_STATE, _TIME = re.compile(r"\(\s*t\s*\)"), re.compile(r"(?<!\w)t(?!\w)", re.ASCII)
 
 
 def _mass(body: XdynBody, point: Array) -> tuple[MassProperties | None, tuple[str, ...]]:

@@ -196,7 +196,7 @@ def _dive(glider: Glider, stage: str) -> GliderPhase:
 
 def _engine(gliders: dict[str, Flown]) -> ComparedTable:
     found = 2.0 * space_of(gliders["01"].run.glider)[0].masses.ballast(0.03)
-    row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST, Basis.PRINTED)
+    row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST, Basis.VERIFICATION)
     return ComparedTable("engine", "Ballast water", (row,), "Equation 5 and section 5")
 
 
@@ -243,7 +243,7 @@ def _left_out(gliders: dict[str, Flown]) -> ComparedTable:
     for i, p in enumerate(_published("published_speed")):
         speed = speed_of(known[i], calibrated([*known[:i], *known[i + 1 :]]))
         found = speed if np.isfinite(speed) else None
-        rows.append(Compared(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found, SPEED, Basis.PREDICTED))
+        rows.append(Compared(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found, SPEED, Basis.VERIFICATION))
     return ComparedTable(
         "left_out", "Each speed from a calibration on the other five", tuple(rows), "Section 5",
         ("Least squares, started from the linear pitch balance, not from known constants.",),
@@ -330,7 +330,9 @@ def _gains(gliders: dict[str, Flown]) -> ComparedTable:
     rows = []
     for stage, printed in (("1", 28.0), ("2", 25.58)):
         found = 100.0 * (known["02", stage] / known["01", stage] - 1.0)
-        rows.append(Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005, Basis.PRINTED))
+        rows.append(
+            Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005, Basis.VERIFICATION)
+        )
         ours = [steady_glides(g, _dive(g, stage)) for g in (gliders[c].run.glider for c in ("01", "02"))]
         gain = 100.0 * (ours[1][0].speed / ours[0][0].speed - 1.0) if all(ours) else None
         rows.append(

@@ -90,7 +90,7 @@ def _masses(glider: Glider) -> ComparedTable:
     masses, g = space.masses, glider.gravity
     right_angle = g * (masses.moments(0.0, np.pi / 2, rest) - masses.moments(0.0, 0.0, rest))
     rows = [
-        Compared("section 2", "static mass m_s", "kg", 65.33, masses.static, 0.005, Basis.PRINTED),
+        Compared("section 2", "static mass m_s", "kg", 65.33, masses.static, 0.005, Basis.VERIFICATION),
         Compared("stroke 0.03 m", "mass less displaced mass", "kg", glider.phases[0].net_mass,
                  masses.total - masses.displaced(0.03), 1e-5, Basis.CONSISTENCY),
     ]  # fmt: skip

@@ -121,7 +121,7 @@ def _link_1() -> ComparedTable:
     rows = [
         Compared(
             "link 1", f"{name}_1, {axis}", units[name], round(float(paper[name][i]), PLACES), round(float(found[name][i]), PLACES), EXACT,
-            Basis.CONSISTENCY if name == "a" else Basis.PRINTED,
+            Basis.CONSISTENCY if name == "a" else Basis.VERIFICATION,
         )
         for name in paper
         for i, axis in enumerate("xyz")
@@ -131,7 +131,7 @@ def _link_1() -> ComparedTable:
     whole = model.VEHICLE_MASS + sum(model.MASSES)
     rows.append(
         Compared(
-            "gravity along x", "(F_1)grav", "N", whole * chain.gravity * 0.3, float(pulled[0]), 1e-9, Basis.PRINTED
+            "gravity along x", "(F_1)grav", "N", whole * chain.gravity * 0.3, float(pulled[0]), 1e-9, Basis.VERIFICATION
         )
     )
     return ComparedTable(

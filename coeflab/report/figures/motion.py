@@ -14,9 +14,10 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, LEFT, LEGEND_ROW, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 FLAT = 1e-9
@@ -129,7 +130,7 @@ def history_figures(trajectory: Trajectory, anchor: str, after: str = "") -> tup
     turns = {"roll": angles[:, 0], "pitch": angles[:, 1], "heading": np.degrees(trajectory.heading)}
     rates = {name: np.degrees(nu[:, 3 + i]) for i, name in enumerate(("roll rate p", "pitch rate q", "yaw rate r"))}
     ordered = {
-        ANGLE_NAMES.get(n, n.replace(".tilt", ", tilt")): np.degrees(c)
+        f"{ANGLE_NAMES[n]} {n}, sign of the file" if n in CONTROLS else n.replace(".tilt", ", tilt"): np.degrees(c)
         for n, c in trajectory.controls.items()
         if n in CONTROLS or n.endswith(".tilt")
     }

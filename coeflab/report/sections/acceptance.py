@@ -19,9 +19,10 @@ from coeflab.core.types import Array
 from coeflab.report import acceptance as acceptance_tables
 from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable, overview, share
 from coeflab.report.document import Document, Figure, Panel, Section, digest_of, published_reproduction
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
 from coeflab.report.figures.series import numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.first_page import answer
 from coeflab.report.sections.conventions import published_conventions
 
@@ -32,8 +33,8 @@ INDENT = 16.0
 HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "markeredgewidth": 0.9}
 FILLED: dict[str, Any] = {"markeredgewidth": 0.0}
 MARKS: dict[Basis, dict[str, Any]] = {
-    Basis.PREDICTED: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
-    Basis.PRINTED: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
+    Basis.VALIDATION: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
+    Basis.VERIFICATION: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
     Basis.CALIBRATION: {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
     Basis.CONSISTENCY: {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
 }  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Severity
+from coeflab.core.finding import Severity
 from coeflab.core.wording import in_sentences, listed, spelled_out
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from coeflab.core.table import ABSENT, Check, Severity, Table, coefficient, number, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics.diagnostics import replicate_groups

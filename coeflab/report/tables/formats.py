@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.core.finding import Severity
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.texts import known, remark
 from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
@@ -213,6 +215,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         if loss.lossless
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
+    lines += [f"Of the parameter file, {f.severity}: {remark(f)}" for f in parameters.findings]
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
     own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
@@ -237,8 +240,10 @@ def _aligned(table: Table) -> list[str]:
 
 
 def contents(parameters: ParameterFile, kind: str) -> Table:
-    """Every coefficient, primed and in SI."""
+    """Every coefficient, primed and in SI; findings that warn are printed with the checks."""
     p = parameters
+    noted = tuple(remark(f) for f in p.findings if f.severity in (Severity.PASS, Severity.NOTE) or not known(f))
+    remarks = tuple(dict.fromkeys((*p.provenance.notes, *noted)))
     rows = tuple(
         (c.symbol, with_u95(c.value, c.u95)[0], number(c.value_si), c.unit_si, with_u95(c.value, c.u95)[1], c.status.replace("_", " "),
          c.origin, c.estimator or ABSENT)
@@ -257,7 +262,7 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
             if is_later(p.schema_version, SCHEMA_VERSION)
             else ()
         ),
-        *p.remarks,
+        *remarks,
         *(
             ("values are totals: -C_A(nu) nu of the added mass is in them",)
             if p.added_mass is not None and kind != "coeflab"

@@ -9,9 +9,12 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.tables.uncertainty import sentences_on_open
+from coeflab.study.lines import MEANING, NAME
+from coeflab.study.towed import NO_RESULT as SHARE
 from coeflab.study.towed import Towed
 from coeflab.study.validation import AS_PRINTED, Validation, in_millions
 
+NO_RESULT = "no result"
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
 
 
@@ -20,7 +23,9 @@ def own_tow(found: Towed) -> Table:
     rows = []
     for r in found.rows:
         value, u95 = (NO_VALUE, ABSENT) if r.missing else with_u95(r.value, r.u95)
-        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(as_printed, r.published)))
+        value = value if r.is_result else NO_RESULT
+        line = ABSENT if r.line is None else as_printed(float(f"{r.line:.3g}"))
+        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), line, *map(as_printed, r.published)))
     said: dict[str, list[str]] = {}
     for r in found.rows:
         said.setdefault(r.why, []).append(primed(r.symbol))
@@ -43,9 +48,14 @@ def own_tow(found: Towed) -> Table:
     no_grid = [
         f"{', '.join(symbols)}: {why}; U95 leaves out the discretisation error." for why, symbols in without.items()
     ]
-    notes = tuple(n for n in (where, *reasons, *found.turned, grid, *no_grid, found.tow.note) if n)
+    wide = [f"{primed(r.symbol)} {r.value:.2g}" for r in found.rows if not r.is_result]
+    few = f"No result: U95 above {SHARE:.0%} of the value ({', '.join(wide)})." if wide else ""
+    spread = [f"{primed(r.symbol)} {percent(r.model, r.value)}" for r in found.rows if r.model is not None]
+    models = f"Model error, beside U95: another turbulence model moves {', '.join(spread)}." if spread else ""
+    lines = MEANING if any(r.line is not None for r in found.rows) else ""
+    notes = tuple(n for n in (where, few, *reasons, *found.turned, grid, *no_grid, models, lines, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
-    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", *columns)
+    headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", NAME, *columns)
     return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
 
 

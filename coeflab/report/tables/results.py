@@ -21,6 +21,7 @@ from coeflab.core.table import (
     probability,
     with_u95,
 )
+from coeflab.core.texts import remark
 from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.results.fit_result import Sweep
@@ -309,11 +310,14 @@ def side_by_side(study: Study) -> Table:
 
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
+    inferred = [remark(f) for f in r.assumed]
     if r.relation is Relation.QUOTED:
         digits = "The first page has the digits of the test report itself."
-        return f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits} {r.note}".strip()
+        return " ".join(
+            filter(None, (f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits}", r.note, *inferred))
+        )
     another = "by another method for the same body" if r.body in ours else "for another body"
-    return f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}. {r.note}".strip()
+    return " ".join(filter(None, (f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}.", r.note, *inferred)))
 
 
 def _printed_in(r: Reference) -> str:

@@ -10,27 +10,30 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coeflab.core.finding import Severity
 from coeflab.core.table import ABSENT, Table, with_u95
+from coeflab.core.texts import words
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
-from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
+from coeflab.study.checks.symmetry import biases
+from coeflab.study.towed import NO_RESULT
 from coeflab.tables.conditions import named
 from coeflab.tank.campaign import TowedRun
 from coeflab.tank.jobs import Job, JobState
 from coeflab.tank.states import JobRow
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import Kind, TowCondition
+from coeflab.tank.test_matrix import TowCondition
 
 if TYPE_CHECKING:
+    from coeflab.study.study import Study
     from coeflab.study.towed import TowedRow
 
 NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
 SIGN_OPEN = "sign open"
-MUCH = 0.05  # of the smallest force of a sweep, that a straight run has where symmetry says zero
-_ZERO = ((PORT_STARBOARD, Kind.DRIFT, "YN"), (UP_DOWN, Kind.ATTACK, "ZM"))
+IN_A_PLANE = ("Y'", "N'", "Z'", "M'")
 LEAST = 1e-4  # of a thousandth of a primed unit
 # What a person looks for first, where not all rows fit.
 FIRST = (
@@ -199,7 +202,8 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
             continue
         status = "" if r.coefficient.status is Status.OK else r.coefficient.status.replace("_", " ")
         is_open = r.value is not None and r.u95 is not None and abs(r.value) <= r.u95 and SIGN_OPEN not in status
-        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, r.why)))
+        wide = "" if r.is_result else f"no result: U95 above {NO_RESULT:.0%}"
+        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, wide, r.why)))
         cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(said, LONGEST)))
     about = ", ".join(f"{x:.4g}" for x in tank.reference_point)
     notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
@@ -230,39 +234,36 @@ def covers(rows: Sequence[TowedRow]) -> str:
         return "U95: 95 %, the scatter and the spread of the methods of estimates. No measurement and no CFD."
     said = "U95: 95 %, of the fit and the scatter of the runs about it."
     studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
+    spread = [f"{primed(r.symbol)} {r.model:.2g}" for r in rows if r.model is not None]
     if studied:
-        return f"{said} By the grid study, 95 %: {', '.join(studied)}. Domain and turbulence model: see the report."
-    return f"{said} The error of the grid is not in it: there is no grid study. Nor are those of domain and turbulence model."
+        said += f" By the grid study, 95 %: {', '.join(studied)}."
+    else:
+        said += " The error of the grid is not in it: there is no grid study."
+    if spread:
+        return (
+            f"{said} Model error beside it, by another turbulence model: {', '.join(spread)}. Domain: see the report."
+        )
+    return (
+        f"{said} Domain and turbulence model: see the report."
+        if studied
+        else f"{said} Nor are those of domain and turbulence model."
+    )
 
 
-def symmetry_checks(tank: Tank, runs: Sequence[TowedRun]) -> tuple[str, ...]:
-    """What straight runs have of components that symmetry makes zero, over the smallest of the sweep, a sentence each.
+def symmetry_checks(study: Study | None) -> tuple[str, ...]:
+    """What straight runs have of components that symmetry makes zero, a sentence each, of forces and moments in a plane.
 
     Parameters
     ----------
-    tank : Tank
-    runs : sequence of TowedRun
+    study : Study or None
     """
-    counted = [r for r in runs if r.summary is not None and not r.condition.variant and r.counts]
+    found = () if study is None else biases([s for f in study.fits for s in f.sweeps if not s.by_symmetry])
     out = []
-    for straight in (r for r in counted if r.condition.kind is Kind.STRAIGHT and r.summary is not None):
-        for plane, kind, components in _ZERO:
-            if plane not in tank.symmetry or straight.summary is None:
-                continue
-            like = [r for r in counted if r.condition.kind is kind and r.condition.grid == straight.condition.grid
-                    and math.isclose(r.condition.speed, straight.condition.speed, rel_tol=1e-6)]  # fmt: skip
-            for c in components:
-                sizes = {r.condition.name: abs(r.summary.means.get(c, 0.0)) for r in like if r.summary is not None}
-                sizes = {name: size for name, size in sizes.items() if size > 0.0}
-                if c not in straight.summary.means or not sizes:
-                    continue
-                least = min(sizes, key=lambda name: sizes[name])
-                share = abs(straight.summary.means[c]) / sizes[least]
-                said = (
-                    f"{c} of {straight.condition.name}, zero by symmetry, is {100.0 * share:.2g} % of that of {least}"
-                )
-                much = ", more than 5 %: the mesh is not its own mirror image." if share > MUCH else "."
-                out.append(f"{'Warning' if share > MUCH else 'Check'}: {said}{much}")
+    for f in found:
+        text = words(f)
+        if f["component"] in IN_A_PLANE:
+            warned = f.severity is Severity.WARN
+            out.append(f"{'Warning' if warned else 'Check'}: {text.statement}" + f" {text.advice}" * warned)
     return tuple(out)
 
 

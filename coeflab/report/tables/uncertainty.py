@@ -325,7 +325,7 @@ def studies(budgets: Sequence[Budget]) -> Table:
     headers = ("study", "", "setting", "", "value", "apart", "95 %")
     notes = (
         "One thing changed at a time. 95 %: 2 / sqrt 3 of the largest distance, at least of the iteration noise.",
-        "U95 holds it; U_V of a validation leaves the turbulence model out, as E is about it.",
+        "U95 holds domain and iterations. The spread of turbulence models is an error of the model and stands beside U95 and U_V.",
     )
     return Table("Studies of domain, turbulence model and iterations", headers, rows, notes, frozenset({0, 1, 2, 3}))
 

@@ -7,7 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, plus_minus
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from coeflab.bodies.mass_model import at_rest
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.from_shape import displaced_mass, floods
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.study.study import Study

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import Index, factorise, solve

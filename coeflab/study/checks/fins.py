@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.bodies.outlining import fins_along
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.study import Study
 
 summary = "where the fins of a vehicle from its shape stand along its hull"

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, plus_minus
 from coeflab.fits.results.fit_result import Sensitivity, Sweep
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.bodies.mesh.particulars import likeness
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.study import Study
 
 summary = "length and volume of the added mass's body against the vehicle's"

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import stats
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import Secant, explained
 from coeflab.law.symbols import primed

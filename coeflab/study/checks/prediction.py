@@ -7,7 +7,8 @@ from math import isfinite
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.study.study import Study
 
 summary = "left-out rows of fitted models against their own scatter"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, plus_minus
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from coeflab.bodies.hull_flow import friction_line
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.law.coefficient import Coefficient
 from coeflab.study.study import Study
 from coeflab.study.validation import PrintedIndex, printed_indices

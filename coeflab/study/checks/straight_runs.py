@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check
 from coeflab.fits.results.straight_runs import DOUBTFUL, StraightRuns
 from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.study.study import Study

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, plus_minus
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
@@ -64,7 +65,33 @@ def check(study: Study) -> Sequence[Check]:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    return [c for s in odd if (c := _intercept(s)) is not None] + across
+    found = [as_check("symmetry", f) for f in biases(sweeps)]
+    return [c for s in odd if (c := _intercept(s)) is not None] + found + across
+
+
+def biases(sweeps: Sequence[Sweep]) -> tuple[Finding, ...]:
+    """What rows at rest have of a force that a declared symmetry makes zero, of every sweep over one side.
+
+    Parameters
+    ----------
+    sweeps : sequence of Sweep
+    """
+    out = []
+    for s in sweeps:
+        sizes = np.abs(s.y)
+        if not s.bias or s.value is None or not np.any(sizes > 0.0):
+            continue
+        least = int(np.argmin(np.where(sizes > 0.0, sizes, np.inf)))
+        share = abs(s.bias) / float(sizes[least])
+        of_value = abs(s.bias * float(s.by_row.sum()) / s.value) if s.value else np.inf
+        out.append(
+            Finding.of(
+                "symmetry.bias", s.table, Severity.WARN if share > LARGE else Severity.PASS, statistic=share, threshold=LARGE,
+                advice=f'matrix.pairs = ["{s.labels[least]}"]', component=f"{s.component}'", row=s.labels[least],
+                symbol=f"{s.symbol}'", of_value=of_value,
+            )
+        )  # fmt: skip
+    return tuple(out)
 
 
 def _across(table: ForceTable, cut: Cut) -> Iterator[Check]:

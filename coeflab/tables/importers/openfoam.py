@@ -32,7 +32,6 @@ summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF 
 citations = (
     "Weller, Tabor, Jasak and Fureby (1998): A tensorial approach to computational continuum mechanics using "
     "object-oriented techniques. Computers in Physics 12, 620-631",
-    "Gerlero and Kler (2025): foamlib, a modern Python package for working with OpenFOAM. JOSS 10(109), 7633",
 )
 
 

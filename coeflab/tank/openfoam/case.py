@@ -26,6 +26,7 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.types import Array
 from coeflab.tables.campaign import CUTS, PORT_STARBOARD, UP_DOWN
 from coeflab.tank.openfoam import rendered
+from coeflab.tank.openfoam.mirroring import SYMMETRY_AXIS, sides
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, TowCondition
 
@@ -37,9 +38,6 @@ FOOT = b"// ****"  # with which OpenFOAM ends every field that it has written wh
 STOP_AT = re.compile(r"^(stopAt\s+)\w+;", re.MULTILINE)
 # The image in the cut has the same; of the others it has the opposite, so that they vanish in the sum of both.
 EVEN = {Half.PORT: CUTS[PORT_STARBOARD].doubled, Half.UPPER: CUTS[UP_DOWN].doubled}
-ACROSS = {Half.PORT: 1, Half.UPPER: 2}
-SAME = 0.01  # of the length and of the area: how well the image of a patch has to fit the patch on the other side
-ON_PLANE = 1e-5  # of the body's length: what ends this near to the plane of the cut does not cross it
 ALIKE = ("system/decomposeParDict",)  # does not count for the key: how many processes share a run
 SOMETIMES = {"constant/MRFProperties", "0/k", "0/omega", "0/epsilon", "0/nut", "0/nuTilda"}  # not in every case
 TAKEN = {
@@ -208,35 +206,13 @@ def split(body: TowedBody, half: Half) -> tuple[tuple[str, ...], tuple[tuple[str
     """
     if half is Half.WHOLE:
         return body.patches, ()
-    axis, near = ACROSS[half], SAME * body.length
-    corners = body.vertices[body.faces]
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    divided: list[str] = []
-    inside: dict[str, tuple[Array, float]] = {}
-    outside: dict[str, tuple[Array, float]] = {}
-    for i, name in enumerate(body.patches):
-        mine = body.patch == i
-        across = corners[mine][:, :, axis]
-        area = float(areas[mine].sum())
-        centre = np.average(corners[mine].mean(axis=1), axis=0, weights=areas[mine])
-        if across.min() < -ON_PLANE * body.length and across.max() > ON_PLANE * body.length:
-            divided.append(name)
-        else:
-            (inside if centre[axis] < 0.0 else outside)[name] = (centre, area)
-    pairs = []
-    turn = np.where(np.arange(3) == axis, -1.0, 1.0)
-    for name, (centre, area) in outside.items():
-        image = [
-            n for n, (c, a) in inside.items()
-            if np.linalg.norm(turn * centre - c) < near and abs(a - area) < SAME * area
-        ]  # fmt: skip
-        if len(image) != 1:
-            raise InputError(
-                f"the patch {name}, of which no patch with {half} is the mirror image", "a body that is its own image",
-                advice="Tow the whole body.",
-            )  # fmt: skip
-        pairs.append((image[0], name))
-    return tuple(divided), tuple(pairs)
+    found = sides(body, SYMMETRY_AXIS[half])
+    for name in found.alone:
+        raise InputError(
+            f"the patch {name}, of which no patch with {half} is the mirror image", "a body that is its own image",
+            advice="Tow the whole body.",
+        )  # fmt: skip
+    return found.divided, found.pairs
 
 
 def slices(cores: int) -> tuple[int, int, int]:

@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from coeflab.core.declarations import ABOVE_ZERO, TABLE, Declaration, Pure, Within, one_of
+from coeflab.core.declarations import ABOVE_ZERO, TABLE, Declaration, Pure, Within
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.scaling import Conditions
+from coeflab.tank.openfoam.features import foils, is_appended
+from coeflab.tank.openfoam.layers import Layers, Wall, layers
+from coeflab.tank.openfoam.mirroring import SYMMETRY_AXIS
 from coeflab.tank.test_matrix import Half
 
 if TYPE_CHECKING:
     from coeflab.tank.towed_body import TowedBody
 
-Wall = Annotated[str, one_of("functions", "resolved", "none")]
 Positive = Annotated[Pure, ABOVE_ZERO]
 Distance = Annotated[
     Pure, Within(lambda v: "0.5 or more, else the body fills the domain" if v < 0.5 else "", schema={"minimum": 0.5})
@@ -32,13 +34,13 @@ Countable = Annotated[
     Positive, Within(lambda v: f"{MOST_CELLS:g} at most" if v > MOST_CELLS else "", schema={"maximum": MOST_CELLS})
 ]
 
-Y_PLUS = {"functions": 60.0, "resolved": 0.8}
-GROWTH, LAST_LAYER = 1.3, 0.35  # of layers; the last one over the cell that it lies on
-MOST_LAYERS = 30
 FAR_CELL = 0.082  # edge of the cells far away, over the distance from the body to the sides of the domain
 CELLS_IN_RADIUS, FINER_AT_ENDS, END_DEPTH = 4.0, 2, 0.01
-APPENDED = SHORT = 0.5  # of the body's length: an appendage by its chord, a part of the hull by its extent
-SYMMETRY_AXIS = {Half.PORT: 1, Half.UPPER: 2}
+SHORT = 0.5  # of the body's length: a part of the hull by its extent
+NEAR_WAKE, FAR_WAKE = (
+    2.0,
+    0.07,
+)  # of an appendage: chords behind it; half width of the wake to the tail, over its length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +52,7 @@ class MeshKeys(Declaration):
     wall : {"functions", "resolved", "none"}
         Layers for wall functions, down to the wall, or no layers.
     y_plus : float
-        Of the middle of the first cell; 60 for wall functions and 0.8 for a resolved wall, unless given.
+        Of the middle of the first cell; unless given, 0.8 for a resolved wall, and for wall functions 60 on hulls, 30 on foils.
     cells_per_length : float
         Along the hull.
     cells_per_chord : float
@@ -60,7 +62,7 @@ class MeshKeys(Declaration):
     ahead, behind, beside : float
         Distance from the body to the end of the domain, over the length of the body.
     coverage : float
-        Share of each patch that layers have to cover; below it the mesh gets a remark.
+        Share of each patch that layers have to cover, else the mesh gets a remark; unless given, 0.95 of hulls, 0.9 of foils.
     most_cells : float
         A mesh that is expected to have more is not begun.
     """
@@ -73,7 +75,7 @@ class MeshKeys(Declaration):
     ahead: Distance = 1.4
     behind: Distance = 2.0
     beside: Distance = 1.4
-    coverage: Positive = 0.8
+    coverage: Positive | None = None
     most_cells: Countable = 6e6
 
     def check(self) -> None:
@@ -105,24 +107,6 @@ class Region:
     def __post_init__(self) -> None:
         object.__setattr__(self, "low", locked(self.low))
         object.__setattr__(self, "high", locked(self.high))
-
-
-@dataclass(frozen=True, slots=True)
-class Layers:
-    """Layers on a patch.
-
-    Attributes
-    ----------
-    count : int
-    last : float
-        Thickness of the outermost one over the cell that it lies on.
-    first : float
-        Thickness at the wall, m, on the grid ``medium``.
-    """
-
-    count: int
-    last: float
-    first: float
 
 
 @brief
@@ -198,7 +182,7 @@ def mesh_sizes(
     """
     _usable(body, half, keys, conditions)
     length, patches = body.length, _patches(body)
-    hull = np.concatenate([x for name, x in patches.items() if not _appended(body, name)] or [body.vertices])
+    hull = np.concatenate([x for name, x in patches.items() if not is_appended(body, name)] or [body.vertices])
     edge = length / keys.cells_per_length
     below = max(round(float(np.log2(FAR_CELL * keys.beside * length / edge))), 1)
     base = edge * 2.0**below
@@ -217,27 +201,12 @@ def mesh_sizes(
         levels=levels,
         regions=regions,
         layers={
-            name: made for name in patches if (made := _layers(body, name, base / 2 ** levels[name], keys, conditions))
+            name: made
+            for name in patches
+            if (made := layers(body, name, base / 2 ** levels[name], keys.wall, keys.y_plus, conditions))
         },
         inside=low + (high - low) * np.array([0.9713, 0.0387, 0.0431]),
     )
-
-
-def mirrored_axes(body: TowedBody, half: Half) -> tuple[int, ...]:
-    """Axes across whose plane the mesh of one side is mirrored: 1 for y = 0, 2 for z = 0.
-
-    A hull's mesh comes out alike on both sides. That of a fin in a mirror plane does not: its trailing edge is thinner than a
-    cell and snaps to one of them, which gave SUBOFF's straight run a side force of a tenth of that at 2 degrees.
-
-    Parameters
-    ----------
-    body : TowedBody
-    half : Half
-    """
-    if not any(chord < 0.999 * body.length for chord in body.chord.values()):  # a hull's differs from it by rounding
-        return ()
-    cut = None if half is Half.WHOLE else SYMMETRY_AXIS[half]
-    return tuple(axis for axis in (1, 2) if body.mirrors[axis] and axis != cut)
 
 
 def _usable(body: TowedBody, half: Half, keys: MeshKeys, conditions: Conditions) -> None:
@@ -257,19 +226,15 @@ def _patches(body: TowedBody) -> dict[str, Array]:
     return {name: body.vertices[np.unique(body.faces[body.patch == k])] for k, name in enumerate(body.patches)}
 
 
-def _appended(body: TowedBody, patch: str) -> bool:
-    return body.chord.get(patch, body.length) < APPENDED * body.length
-
-
 def _level(
     body: TowedBody, patch: str, points: Array, base: float, below: int, keys: MeshKeys, patches: Mapping[str, Array]
 ) -> int:
     """From cells along a chord; a short part of the hull on which appendages stand, such as the stern, is one finer."""
-    if _appended(body, patch) or patch in keys.cells:
+    if is_appended(body, patch) or patch in keys.cells:
         count = keys.cells.get(patch, keys.cells_per_chord)
         return max(round(float(np.log2(base * count / body.chord.get(patch, body.length)))), 1)
     start, end = points[:, 0].min(), points[:, 0].max()
-    others = (other[:, 0] for name, other in patches.items() if _appended(body, name))
+    others = (other[:, 0] for name, other in patches.items() if is_appended(body, name))
     carries = any(start < x.mean() < end for x in others)
     return below + int(carries and end - start < SHORT * body.length)
 
@@ -313,15 +278,22 @@ def _end(points: Array, way: float, depth: float) -> tuple[float, Array]:
 def _appendage_regions(
     body: TowedBody, patches: Mapping[str, Array], levels: Mapping[str, int], below: int
 ) -> Iterator[Region]:
-    """About each appendage by itself, and its wake."""
+    """About each foil by itself, and its wake: two chords, and to the tail where that is farther."""
+    tail = float(body.vertices[:, 0].min())
     for patch in patches:
-        if not _appended(body, patch):
+        if patch not in foils(body):
             continue
-        margin, wake = 0.25 * body.chord[patch], 2.0 * body.chord[patch]
+        below = below if is_appended(body, patch) else levels[patch] - 2  # a wing alone is the body
+        margin, near = 0.25 * body.chord[patch], NEAR_WAKE * body.chord[patch]
         for k, points in enumerate(_pieces(body, patch), start=1):
             low, high = points.min(0) - margin, points.max(0) + margin
             yield Region(f"{patch}_{k}", low, high, max(levels[patch] - 2, below))
-            yield Region(f"{patch}_{k}_wake", low - np.array([wake, margin, margin]), high + margin, below)
+            yield Region(f"{patch}_{k}_wake", low - np.array([near, margin, margin]), high + margin, below)
+            far = float(points[:, 0].min()) - tail
+            if far > near:
+                aside = np.array([0.0, 1.0, 1.0]) * FAR_WAKE * far
+                start = np.array([tail, *points.min(0)[1:]])
+                yield Region(f"{patch}_{k}_far", start - aside, points.max(0) + aside, below)
 
 
 def _pieces(body: TowedBody, patch: str) -> Iterator[Array]:
@@ -338,28 +310,3 @@ def _pieces(body: TowedBody, patch: str) -> Iterator[Array]:
     )
     for k in range(count):
         yield body.vertices[names[piece == k]]
-
-
-def _layers(body: TowedBody, patch: str, edge: float, keys: MeshKeys, conditions: Conditions) -> Layers | None:
-    """As many as lead from the first cell, of the wanted y+, to a last one that suits the cell on it."""
-    if keys.wall == "none" or conditions.viscosity is None:
-        return None
-    wanted = keys.y_plus or Y_PLUS[keys.wall]
-    first = 2.0 * wanted * wall_unit(conditions.speed, body.chord.get(patch, body.length), conditions.viscosity)
-    count = min(1 + round(float(np.log(LAST_LAYER * edge / first) / np.log(GROWTH))), MOST_LAYERS)
-    return Layers(count, first * GROWTH ** (count - 1) / edge, first) if count > 0 else None
-
-
-def wall_unit(speed: float, length: float, viscosity: float) -> float:
-    """Viscous length nu/u_tau of a turbulent boundary layer on a plate, m; friction by the ITTC 1957 line.
-
-    Parameters
-    ----------
-    speed, length : float
-        m/s and m; a Reynolds number below 1e4, where the line means nothing, counts as 1e4.
-    viscosity : float
-        Kinematic, m^2/s.
-    """
-    reynolds = max(speed * length / viscosity, 1e4)
-    friction = 0.075 / (np.log10(reynolds) - 2.0) ** 2
-    return float(viscosity / (speed * np.sqrt(friction / 2.0)))

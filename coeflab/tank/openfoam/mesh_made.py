@@ -1,0 +1,236 @@
+"""What a mesh became: cells, layers and quality from the logs of its tools, the body in it from the mesh itself."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.files import write_all
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import remark
+from coeflab.core.types import Array, brief
+from coeflab.tank.jobs import Job
+
+GEOMETRY = "constant/triSurface"
+MADE, PLANNED = "mesh.json", "planned.json"
+# What checkMesh marks and no solver can use; what else it marks is a remark.
+UNUSABLE = ("negative", "open cells", "boundary openness", "face pyramids", "invalid face", "boundary definition")
+SKEW = re.compile(r"Max skewness = (\S+?),? (\d+) highly skew faces")
+VOLUME_WITHIN, SURFACE_WITHIN, SURFACE_LEAST = 0.1, 0.02, 0.5
+FEW_LAYERS = 2
+NUMBER = r"[-+\d.eE]+"
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class MeshMade:
+    """A mesh.
+
+    Attributes
+    ----------
+    cells : int
+    layers : mapping of str to float
+        Share of the layers asked for that stand on each patch, on average over its faces.
+    surface : mapping of str to float
+        Of each patch, over that of the body's surface.
+    volume : float
+        That the mesh leaves out, over that of the body.
+    non_orthogonality, skewness : float
+        The largest, deg and 1.
+    marked : tuple of str
+        What checkMesh marks.
+    """
+
+    cells: int
+    layers: Mapping[str, float]
+    surface: Mapping[str, float]
+    volume: float
+    non_orthogonality: float
+    skewness: float
+    marked: tuple[str, ...] = ()
+
+
+def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
+    """Judge a mesh whose steps have ended, and keep what it became in ``mesh.json`` beside it.
+
+    Parameters
+    ----------
+    job : Job
+        Of a mesh.
+
+    Returns
+    -------
+    remarks : tuple of str
+        Few layers, a surface that the cells do not follow, cells of poor quality.
+    why : str
+        Why no run may use it; empty where it is sound.
+    """
+    planned = json.loads((job.folder / PLANNED).read_text())
+    try:
+        made = _read(job.folder, planned)
+    except FileNotFoundError as why:
+        return (), f"no mesh was made: {Path(why.filename).relative_to(job.folder)} is missing"
+    except (ValueError, IndexError) as why:
+        return (), f"the mesh cannot be read: {why}"
+    write_all(job.folder, {MADE: (json.dumps(asdict(made), indent=1) + "\n").encode()})
+    return tuple(map(remark, findings(made, planned))), next(_faults(made), "")
+
+
+def mesh_made(folder: Path) -> MeshMade | None:
+    """The mesh in a folder as its job left it; None before it is made."""
+    if not (folder / MADE).is_file():
+        return None
+    kept = json.loads((folder / MADE).read_text())
+    tables = {name: MappingProxyType(kept[name]) for name in ("layers", "surface")}
+    return MeshMade(**(kept | tables | {"marked": tuple(kept["marked"])}))
+
+
+def expected_cells(folder: Path) -> float:
+    """Cells of the mesh in a folder: counted once it is made, expected before."""
+    made = mesh_made(folder)
+    return float(made.cells if made else json.loads((folder / PLANNED).read_text())["cells"])
+
+
+def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
+    checked = (folder / "log.checkMesh").read_text(errors="replace")
+    surface, volume = _body_in_mesh(folder / "constant" / "polyMesh", list(planned["surface"]))
+    asked = {patch: count for patch, count in planned["layers"].items() if planned["surface"][patch] > 0.0}
+    snapped = (folder / "log.snappyHexMesh").read_text(errors="replace")
+    return MeshMade(
+        cells=int(_after("cells:", checked)),
+        layers=dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked},
+        surface={name: surface[name] / area for name, area in planned["surface"].items() if area > 0.0},
+        volume=volume / planned["volume"],
+        non_orthogonality=_after("Mesh non-orthogonality Max:", checked),
+        skewness=_after("Max skewness =", checked),
+        marked=tuple(" ".join(line.split()) for line in re.findall(r"^ *\*{3}(.*)$", checked, re.MULTILINE)),
+    )
+
+
+def _after(words: str, log: str) -> float:
+    found = re.search(rf"{re.escape(words)}\s*({NUMBER})", log)
+    if not found:
+        raise ValueError(f'log.checkMesh does not say "{words}"')
+    return float(found[1].rstrip(","))
+
+
+def _layers(log: str) -> Iterator[tuple[str, float]]:
+    """Mean number of layers on each patch: the last table of snappyHexMesh."""
+    table = log.rpartition("overall thickness")[2].partition("\n\n")[0] if "overall thickness" in log else ""
+    for patch, mean in re.findall(rf"^(\S+)\s+\d+\s+({NUMBER})\s+{NUMBER}\s+{NUMBER}\s*$", table, re.MULTILINE):
+        yield patch, float(mean)
+
+
+def findings(made: MeshMade, planned: Mapping[str, Any]) -> tuple[Finding, ...]:
+    """What is to be known of a mesh that is used.
+
+    Parameters
+    ----------
+    made : MeshMade
+    planned : mapping
+        What ``planned.json`` holds.
+    """
+    return tuple(_findings(made, planned))
+
+
+def _findings(made: MeshMade, planned: Mapping[str, Any]) -> Iterator[Finding]:
+    for patch, share in made.layers.items():
+        if share < (wanted := planned["coverage"][patch]):
+            yield Finding.of("tow.layers", patch, Severity.WARN, statistic=share, threshold=wanted)
+        if (count := planned["layers"][patch]) <= FEW_LAYERS:
+            yield Finding.of("tow.few_layers", patch, Severity.NOTE, statistic=float(count), threshold=FEW_LAYERS + 1.0)
+    for patch, share in made.surface.items():
+        if abs(share - 1.0) > SURFACE_WITHIN:
+            yield Finding.of(
+                "tow.surface", patch, Severity.WARN, statistic=share, threshold=SURFACE_WITHIN,
+                advice=f"cells.{patch}",
+            )  # fmt: skip
+    for line in made.marked:
+        skew = SKEW.search(line)
+        if skew:
+            yield Finding.of(
+                "tow.skew", "mesh", Severity.WARN, statistic=float(skew[1]), threshold=4.0, faces=int(skew[2])
+            )
+        elif not _unusable(line):
+            yield Finding.of("tow.check_mesh", "mesh", Severity.NOTE, line=line)
+
+
+def _faults(made: MeshMade) -> Iterator[str]:
+    for patch, share in made.surface.items():
+        if share == 0.0:
+            yield f"no cell lies on the patch {patch}: its cells are too large for its shape"
+        elif not SURFACE_LEAST < share < 1.0 / SURFACE_LEAST:
+            yield f"the patch {patch} has {share:.0%} of its surface"
+    if abs(made.volume - 1.0) > VOLUME_WITHIN:
+        yield f"the mesh leaves out {made.volume:.0%} of the body's volume: water got in, or cells are too large"
+    yield from (f"checkMesh: {line}" for line in made.marked if _unusable(line))
+
+
+def _unusable(line: str) -> bool:
+    return any(words in line.lower() for words in UNUSABLE)
+
+
+def _body_in_mesh(folder: Path, patches: list[str]) -> tuple[dict[str, float], float]:
+    """Surface of each patch, m^2, and the volume that all of them enclose with a cut through the origin, m^3."""
+    ranges = _ranges((folder / "boundary").read_text())
+    points, (starts, corners) = _binary(folder / "points", 3)[0], _binary(folder / "faces", 0)
+    surface, volume = {}, 0.0
+    for patch in patches:
+        count, start = ranges.get(patch, (0, 0))
+        bounds = starts[start : start + count + 1]
+        area = np.zeros((count, 3))
+        for triangles, face in _fans(points, corners, bounds):
+            across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]) / 2.0
+            area[face] += across
+            volume -= float((triangles.mean(1) * across).sum() / 3.0)  # faces look into the body
+        surface[patch] = float(np.linalg.norm(area, axis=1).sum())
+    return surface, volume
+
+
+def _fans(points: Array, corners: NDArray[Any], bounds: NDArray[Any]) -> Iterator[tuple[Array, NDArray[Any]]]:
+    """Triangles of each face from its first corner, by the number of corners; and the faces that they belong to."""
+    sizes = np.diff(bounds)
+    for size in np.unique(sizes):
+        face = np.flatnonzero(sizes == size)
+        ring = points[corners[bounds[face][:, None] + np.arange(size)]]
+        for k in range(1, size - 1):
+            yield ring[:, [0, k, k + 1]], face
+
+
+def _ranges(boundary: str) -> dict[str, tuple[int, int]]:
+    """Number of faces and first face of each patch."""
+    found = re.findall(r"(\S+)\s*\{[^{}]*?nFaces\s+(\d+);\s*startFace\s+(\d+);[^{}]*\}", boundary)
+    return {name: (int(count), int(start)) for name, count, start in found}
+
+
+def _binary(path: Path, width: int) -> list[NDArray[Any]]:
+    """Lists of a binary file of OpenFOAM: one of (n, width) scalars, or with a width of 0 two of labels.
+
+    Raises
+    ------
+    ValueError
+        The file is not binary, or ends early.
+    """
+    content = path.read_bytes()
+    arch = re.search(rb'arch\s+"LSB;label=(32|64);scalar=(32|64)"', content[:4096])
+    if not arch or not re.search(rb"format\s+binary", content[:4096]):
+        raise ValueError(f"{path.name} is not binary, least significant byte first")
+    kind = np.dtype(f"<f{int(arch[2]) // 8}" if width else f"<i{int(arch[1]) // 8}")
+    lists, place = [], content.index(b"}") + 1
+    for _ in range(1 if width else 2):
+        head = re.compile(rb"(?:\s|//[^\n]*\n)*(\d+)\s*\(").match(content, place)
+        if not head:
+            raise ValueError(f"{path.name} holds no list")
+        size = int(head[1]) * max(width, 1)
+        values = np.frombuffer(content, kind, size, head.end())
+        lists.append(values.reshape(-1, width) if width else values)
+        place = head.end() + values.nbytes + 1
+    return lists
