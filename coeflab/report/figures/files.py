@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,6 +16,7 @@ from coeflab.report.document import Figure
 from coeflab.report.figures import svg
 
 PAGE = b'#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes(sys.inputs.svg), format: "svg")\n'
+CLOCK = datetime(2000, 1, 1, tzinfo=UTC)  # of every file: equal drawings give equal bytes
 DENSITY = 300.0  # pixels an inch
 FAMILY = 'font-family="Helvetica, Arial, sans-serif"'
 KINDS = ("svg", "pdf", "png")
@@ -77,8 +79,6 @@ def printed(picture: bytes, kind: Literal["pdf", "png"]) -> bytes:
     """
     import typst
     from matplotlib import get_data_path
-
-    from coeflab.report.formats.pdf import CLOCK
 
     text = picture.decode().replace(FAMILY, 'font-family="DejaVu Sans"')
     try:
