@@ -61,6 +61,8 @@ def command(
     require_targets(targets)
     vehicle = cf.read_vehicle(file)
     parameters = vehicle.file
+    if not json:
+        show.not_used(parameters)
     made, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = vehicle.checks()
     if not json:

@@ -115,6 +115,7 @@ def new(
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.formats import contents
     from coeflab.vehicle.own_numbers import typed_file
+    from coeflab.vehicle.plausibility import plausibility
 
     made = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
@@ -126,14 +127,20 @@ def new(
     if path.exists():
         raise OutputError(f"{path} exists. Name another, or change it: coeflab merge {path} --set SYMBOL=VALUE.")
     write_all(path.parent, {path.name: made.to_json()})
+    found = plausibility(made)
     if json:
-        show.json_object(
-            {"name": made.name, "coefficients": [c.symbol for c in made.coefficients], "files": [str(path)]}
-        )
+        from coeflab.cli.as_json import findings
+
+        show.json_object({
+            "name": made.name, "coefficients": [c.symbol for c in made.coefficients], "findings": findings(found), "files": [str(path)],
+        })  # fmt: skip
     else:
         show.table(contents(made, "coeflab"))
         show.path(path)
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
+        show.file_findings(made.name, found)
+    if show.failed(found):
+        raise typer.Exit(1)
 
 
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")

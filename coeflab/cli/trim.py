@@ -46,7 +46,7 @@ def command(
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
@@ -66,14 +66,18 @@ def command(
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
+    import coeflab as cf
     from coeflab.api.trimming import linear_model, trim
     from coeflab.core.files import write_all
     from coeflab.report.tables.linear_model import files, matrix_tables, mode_table
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
     motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
+    vehicle = cf.read_vehicle(file)
+    if not json:
+        show.not_used(vehicle.file, tables)
     found = trim(
-        file, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
+        vehicle, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
         free=free.replace(",", " ").split(), starts=starts, seed=seed, tables=tables, accelerations=accelerations, **motion,
     )  # fmt: skip
     solved = found.point.outcome.solved
@@ -93,7 +97,7 @@ def command(
                 show.table(one)
         for name in names:
             show.path(folder / name)
-    if not solved:
+    if not solved or found.refused:
         raise typer.Exit(1)
 
 

@@ -66,6 +66,8 @@ class TowedRow:
         The same as clauses of a sentence, where there is a comparison error.
     line : float or None
         By the estimator of the steady-CFD study, `coeflab.study.lines`.
+    model : float or None
+        How far other turbulence models move the value, 95 % half-width, beside U95; None where none was tried.
     no_grid : str
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
     """
@@ -82,6 +84,7 @@ class TowedRow:
     no_grid: str = ""
     reasons: tuple[str, ...] = ()
     line: float | None = None
+    model: float | None = None
 
     @property
     def is_result(self) -> bool:
@@ -140,9 +143,12 @@ def _towed(study: Study, tow: PlannedTow) -> Towed:
     fits = tuple(f for f in study.fits if f.campaign == tow.campaign)
     body = fits[0].body if fits else tow.body
     rows = tuple(
-        replace(_row(study, tow, symbol, fits, columns, tests), line=_line(study, tow, symbol, fits))
+        replace(
+            _row(study, tow, symbol, fits, columns, tests), line=_line(study, tow, symbol, fits),
+            model=None if (budget := _budget(study, tow.campaign, _source(study, tow, symbol)[0])) is None else budget.model_spread,
+        )
         for symbol in study.plan.wanted
-    )
+    )  # fmt: skip
     length = fits[0].coefficients.scaling.length if fits else None
     reynolds = None if length is None else reynolds_of(study, tow.campaign, length)
     names = tuple(f"{c.name}, as quoted" if c.relation is Relation.QUOTED else c.name for c in columns)
@@ -213,10 +219,15 @@ def _line(study: Study, tow: PlannedTow, symbol: str, fits: tuple[FitResult, ...
     tables = _tables(study, tow.campaign)
     if not fits or not tables:
         return None
-    turned = tow.fourfold or any(FOURFOLD in t.symmetry for t in tables)
-    source, sign = TURNED.get(symbol, (symbol, 1.0)) if turned else (symbol, 1.0)
+    source, sign = _source(study, tow, symbol)
     found = line(tables, source, fits[0].coefficients.scaling.length)
     return None if found is None else sign * found
+
+
+def _source(study: Study, tow: PlannedTow, symbol: str) -> tuple[str, float]:
+    """The derivative that was run, and its sign in this one."""
+    turned = tow.fourfold or any(FOURFOLD in t.symmetry for t in _tables(study, tow.campaign))
+    return TURNED.get(symbol, (symbol, 1.0)) if turned else (symbol, 1.0)
 
 
 def _coefficient(fits: tuple[FitResult, ...], symbol: str) -> Coefficient | None:

@@ -14,6 +14,7 @@ from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.parameter_file import ParameterFile
 
 Model = Callable[[Array, dict[str, Array]], Array]
+OF_A_MODEL = ("law.model", "law.model_met", "law.model_left")  # codes of its findings
 ALLOWED = 0.05  # of the largest force of a component: what a law of few terms may leave out
 NOTHING = 1e-5  # of 1/2 rho U^2 L^2, and of that times L: a tenth of the smallest coefficients that tests give
 

@@ -1,4 +1,4 @@
-"""Studies of domain, turbulence model and iterations: out of the fit, and in U95 by how far they differ."""
+"""Studies of domain, turbulence model and iterations: out of the fit; in U95 by how far they differ, but for the model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
-from coeflab.fits.uncertainty.grid_convergence import grid_studies, variant_studies
+from coeflab.fits.uncertainty.grid_studies import grid_studies, variant_studies
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.report.tables.uncertainty import budget as budget_table
 from coeflab.report.tables.uncertainty import studies as study_table
@@ -105,13 +105,16 @@ def test_parts_of_the_budget_are_relative_to_the_force_in_use(
     b, before = with_studies[1]["Yv"], without[1]["Yv"]
     assert b.value == before.value
     model = half(18.522, 20.522, 17.522) / 18.522 * abs(b.value)
-    assert b.part("turbulence model") == pytest.approx(model)
-    more = [b.part(n) or 0.0 for n in ("turbulence model", "domain size", "iterations")]
+    assert b.part("turbulence model") is None
+    assert b.model_spread == pytest.approx(model)
+    more = [b.part(n) or 0.0 for n in ("domain size", "iterations")]
+    assert min(more) > 0.0
     assert b.u95 == pytest.approx(float(np.sqrt((before.u95 or 0.0) ** 2 + np.sum(np.square(more)))))
     assert "turbulence model" in before.unassessed
     assert "domain and boundary conditions" in before.unassessed
-    assert {"turbulence models not tried", "boundary conditions"} <= set(b.unassessed)
-    assert with_studies[1]["Yr"].part("turbulence model") is None
+    assert before.model_spread is None
+    assert {"turbulence model, its spread stated beside U95", "boundary conditions"} <= set(b.unassessed)
+    assert with_studies[1]["Yr"].model_spread is None
 
 
 def test_u95_and_covariance_of_the_fit_hold_the_parts(with_studies: tuple[FitResult, dict[str, Budget]]) -> None:
@@ -119,7 +122,7 @@ def test_u95_and_covariance_of_the_fit_hold_the_parts(with_studies: tuple[FitRes
     wide = with_budget(fit, tuple(found.values())).coefficients
     assert wide["Yv"].u95 == found["Yv"].u95
     grid = found["Yv"].part("grid") or 0.0
-    rest = [found["Yv"].part(n) or 0.0 for n in ("turbulence model", "domain size", "iterations")]
+    rest = [found["Yv"].part(n) or 0.0 for n in ("domain size", "iterations")]
     at = list(wide.symbols).index(next(s for s in wide.symbols if s.removesuffix("'") == "Yv"))
     added = wide.covariance[at, at] - fit.coefficients.covariance[at, at]
     assert added == pytest.approx((grid**2 + float(np.sum(np.square(rest)))) / 4.0)
@@ -130,11 +133,16 @@ def test_a_fitted_law_shares_the_parts_among_its_terms(tables: tuple[ForceTable,
     fit = plugin.fit(tables, tables[0].scaling, {})
     wide, found = with_model_budgets(fit, tables, tables[0].scaling, lambda t, s: plugin.fit(t, s, {}), draws=2)
     law = next(m for m in wide.models if m.response == "Y")
-    shift = next(v for name, v in law.shared.items() if name.startswith("turbulence model at v"))
+    assert not any(name.startswith("turbulence") for name in law.shared)
+    shift = next(v for name, v in law.shared.items() if name.startswith("iterations at v"))
     by = dict(zip(law.symbols, shift / np.where(law.fit.coefficients, law.fit.coefficients, 1.0), strict=True))
-    assert by["Yv"] == pytest.approx(half(18.522, 20.522, 17.522) / 18.522)
+    assert by["Yv"] == pytest.approx(half(18.522, 18.022) / 18.522)
     assert by["Yr"] == 0.0
-    assert all(b.part("turbulence model") is None for b in found if b.symbol == "Yr")
+    spread = {b.symbol: b.model_spread for b in found}
+    assert spread["Yr"] is None
+    assert spread["Yv"] == pytest.approx(
+        half(18.522, 20.522, 17.522) / 18.522 * abs(law.fit.coefficients[law.symbols.index("Yv")])
+    )
 
 
 def test_a_validation_holds_all_but_the_turbulence_model(

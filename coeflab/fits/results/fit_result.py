@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding
 from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
@@ -366,6 +367,8 @@ class FitResult:
         Of oscillating runs, one a force component and motion.
     straight : tuple of StraightRuns
         Of tables in which nothing varies but the speed.
+    findings : tuple of Finding
+        What is assumed, left out or not assessed; they travel with its numbers.
     """
 
     fit: str
@@ -381,6 +384,7 @@ class FitResult:
     tied: Tied | None = None
     oscillations: tuple[Oscillation, ...] = ()
     straight: tuple[StraightRuns, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     @property
     def law(self) -> str:

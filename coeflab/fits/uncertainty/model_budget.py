@@ -22,6 +22,7 @@ from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
     COUPLED,
+    MODEL,
     Budget,
     InputPart,
     acting,
@@ -31,7 +32,7 @@ from coeflab.fits.uncertainty.budget import (
     variant_studies_of,
     with_budget,
 )
-from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest
+from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling
@@ -392,7 +393,7 @@ def _changed(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Arra
     """Half-widths by what a study changed, each common to the terms that take it; signed as the coefficients are."""
     out: dict[str, Array] = {}
     for i, value in enumerate(np.nan_to_num(model.fit.coefficients)):
-        for study in _variants(model, i, tables):
+        for study in (s for s in _variants(model, i, tables) if s.name != MODEL):
             shift = out.setdefault(f"{study.name} at {study.setting}", np.zeros(len(model.terms)))
             shift[i] = study.relative * value
     return out

@@ -33,6 +33,7 @@ from coeflab.formats.left_out import left_out
 from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
+from coeflab.law.force_law import AHEAD
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
@@ -45,6 +46,8 @@ Product = tuple[tuple[str, int], ...]
 MOST = 4000
 HIGHEST = 12
 NOTHING = 1e-15
+SIGN, SIDES = "course", ("course + 1", "course - 1")
+RESISTANCE: Product = (("U", 2),)
 
 
 @brief
@@ -235,11 +238,13 @@ def _components(
         number = value.number
         if number is not None:
             return number
+        if dict(value.terms) == {((SIDES[0], 1),): 0.5, ((SIDES[1], 1),): -0.5}:
+            return Products.of(SIGN)
         at = next((m for m, form in expected.items() if not still and value.same(form)), None)
         return value if at is None else Products.of(at + marked)
 
     functions: dict[str, Callable[..., Any]] = {m: partial(state, m) for m in MOTIONS}
-    functions |= {"abs": abs, "sqrt": partial(_root, notes)}
+    functions |= {"abs": partial(_absolute, f"u{marked}"), "sqrt": partial(_root, notes)}
     functions |= {f: partial(_of_number, f) for f in ("exp", "log", "cos", "sin")}
     given = {**body.given(model), **{c: Products.of(c) for c in model.commands if c in CONTROLS}}
     try:
@@ -253,9 +258,23 @@ def _components(
     names = {n.strip("|") for c in out for p in c.terms for n, _ in p}
     if at_point and names & set(LINEAR):
         return None
-    return tuple(
-        Products({tuple(sorted((n.replace(MARK, ""), k) for n, k in p)): v for p, v in c.terms.items()}) for c in out
-    )
+    plain = [{tuple(sorted((n.replace(MARK, ""), k) for n, k in p)): v for p, v in c.terms.items()} for c in out]
+    if RESISTANCE in plain[0]:
+        notes.append("X with U^2 alone pushes ahead on a course astern in the file; here it is drag there too")
+    signed = tuple(sorted((*RESISTANCE, (SIGN, 1))))
+    if signed in plain[0]:
+        plain[0][RESISTANCE] = plain[0].get(RESISTANCE, 0.0) + plain[0].pop(signed)
+    return tuple(Products(c) for c in plain)
+
+
+def _absolute(ahead: str, value: Any) -> Any:
+    """An absolute value: of one product, or of the two of which the sign of the course is made (`formats.exported_law.COURSE`)."""
+    if isinstance(value, Products) and len(value.terms) == 2:
+        share = {p: v / AHEAD.prime if p else v for p, v in value.terms.items()}
+        for name, side in zip(SIDES, (1.0, -1.0), strict=True):
+            if share == {tuple(sorted(((ahead, 1), ("U", -1)))): 1.0, (): side}:
+                return Products.of(name)
+    return abs(value)
 
 
 def _velocities_at(shift: Array) -> tuple[Products, ...]:

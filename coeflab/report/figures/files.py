@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -12,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coeflab.core.errors import InputError, OutputError
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
 
@@ -105,11 +104,7 @@ def numbers(figure: Figure) -> bytes:
             rows += [(i, series.name, repr(x), repr(y), n) for x, y, n in zip(series.x, series.y, notes, strict=True)]
     if not rows:
         return b""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(("panel", "series", "x", "y", "note"))
-    writer.writerows(rows)
-    return out.getvalue().encode()
+    return csv_text([("panel", "series", "x", "y", "note"), *rows]).encode()
 
 
 def files_of(figure: Figure, folder: str = "figures") -> Mapping[str, bytes]:

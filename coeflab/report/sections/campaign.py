@@ -302,8 +302,8 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         *(budget_tables.shared(m) for m in models),
     )
     text = (
-        "U95 joins every assessed part as a root sum of squares: scatter of the points, model form, grid, and what studies of domain, "
-        "turbulence model and iterations show.",
+        "U95 joins every assessed part as a root sum of squares: scatter of the points, model form, grid, and what studies of domain "
+        "and iterations show. What another turbulence model changes is stated beside it.",
         "So do the inputs that a campaign declares under [uncertainty]: angle, speed, calibration, reference point, length. A part that "
         "was not assessed is named, never zero.",
     )

@@ -50,8 +50,10 @@ def own_tow(found: Towed) -> Table:
     ]
     wide = [f"{primed(r.symbol)} {r.value:.2g}" for r in found.rows if not r.is_result]
     few = f"No result: U95 above {SHARE:.0%} of the value ({', '.join(wide)})." if wide else ""
+    spread = [f"{primed(r.symbol)} {percent(r.model, r.value)}" for r in found.rows if r.model is not None]
+    models = f"Model error, beside U95: another turbulence model moves {', '.join(spread)}." if spread else ""
     lines = MEANING if any(r.line is not None for r in found.rows) else ""
-    notes = tuple(n for n in (where, few, *reasons, *found.turned, grid, *no_grid, lines, found.tow.note) if n)
+    notes = tuple(n for n in (where, few, *reasons, *found.turned, grid, *no_grid, models, lines, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
     headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", NAME, *columns)
     return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))

@@ -234,9 +234,20 @@ def covers(rows: Sequence[TowedRow]) -> str:
         return "U95: 95 %, the scatter and the spread of the methods of estimates. No measurement and no CFD."
     said = "U95: 95 %, of the fit and the scatter of the runs about it."
     studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
+    spread = [f"{primed(r.symbol)} {r.model:.2g}" for r in rows if r.model is not None]
     if studied:
-        return f"{said} By the grid study, 95 %: {', '.join(studied)}. Domain and turbulence model: see the report."
-    return f"{said} The error of the grid is not in it: there is no grid study. Nor are those of domain and turbulence model."
+        said += f" By the grid study, 95 %: {', '.join(studied)}."
+    else:
+        said += " The error of the grid is not in it: there is no grid study."
+    if spread:
+        return (
+            f"{said} Model error beside it, by another turbulence model: {', '.join(spread)}. Domain: see the report."
+        )
+    return (
+        f"{said} Domain and turbulence model: see the report."
+        if studied
+        else f"{said} Nor are those of domain and turbulence model."
+    )
 
 
 def symmetry_checks(study: Study | None) -> tuple[str, ...]:

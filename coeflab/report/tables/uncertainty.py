@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.uncertainty.budget import COUPLED, Budget
@@ -149,10 +150,10 @@ def _narrower(share: float) -> str:
 
 def members_csv(carried: Carried) -> bytes:
     """One row a member: deviations of the coefficients in the file's units, and figures in SI; empty where it has none."""
-    lines = [",".join((*(f"d {s}" for s in carried.varied.symbols), *(f"{n}" for n in carried.names)))]
+    rows = [[*(f"d {s}" for s in carried.varied.symbols), *(f"{n}" for n in carried.names)]]
     for row, found in zip(carried.deviations, carried.values, strict=True):
-        lines.append(",".join([*map(repr, row.tolist()), *("" if np.isnan(v) else repr(v) for v in found.tolist())]))
-    return ("\n".join(lines) + "\n").encode()
+        rows.append([*map(repr, row.tolist()), *("" if np.isnan(v) else repr(v) for v in found.tolist())])
+    return csv_text(rows).encode()
 
 
 UNITS = {"angle": "rad", "reference point": "m"}
@@ -325,7 +326,7 @@ def studies(budgets: Sequence[Budget]) -> Table:
     headers = ("study", "", "setting", "", "value", "apart", "95 %")
     notes = (
         "One thing changed at a time. 95 %: 2 / sqrt 3 of the largest distance, at least of the iteration noise.",
-        "U95 holds it; U_V of a validation leaves the turbulence model out, as E is about it.",
+        "U95 holds domain and iterations. The spread of turbulence models is an error of the model and stands beside U95 and U_V.",
     )
     return Table("Studies of domain, turbulence model and iterations", headers, rows, notes, frozenset({0, 1, 2, 3}))
 
