@@ -56,6 +56,9 @@ def command(
         "", metavar="LENGTH", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'
     ),
     length_name: str = typer.Option("", metavar="NAME", help="Name of that length, such as LOA."),
+    speed: str = typer.Option(
+        "", metavar="SPEED", help="Only rows of this speed, such as 1.3 m/s: one fit a speed.", show_default=False
+    ),
     next_runs: int = typer.Option(
         0,
         "--next",
@@ -107,11 +110,16 @@ def command(
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
     alone = len(paths) == 1
+    at = (
+        quantity(f"{speed} m/s" if speed.replace(".", "", 1).isdecimal() else speed, "speed", key="--speed")
+        if speed
+        else None
+    )
     plan = Plan(
         name=Verbatim("_".join(p.stem for p in paths)[:80]),
         title=Verbatim(", ".join(p.name for p in paths)),
-        tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
-        joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
+        tables=(table_at(paths[0], (fit,), {fit: options}, at),) if alone else (),
+        joint=() if alone else (PlannedJoint(tuple(table_at(p, speed=at) for p in paths), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
         wanted=MAIN if fit == DEFAULT else (),
         include_uncertain=include_uncertain,

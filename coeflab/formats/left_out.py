@@ -12,7 +12,7 @@ MOST, LONGEST = 40, 80  # names in a finding, letters in a name
 FORCES = ("strips", "terms", "equations", "forces")  # on the hull
 
 
-def left_out(subject: str, kind: str, names: Iterable[str], **facts: float | int | str) -> tuple[Finding, ...]:
+def left_out(subject: str, kind: str, names: Iterable[str]) -> tuple[Finding, ...]:
     """A finding that names what is left out; none where nothing is.
 
     Parameters
@@ -29,7 +29,7 @@ def left_out(subject: str, kind: str, names: Iterable[str], **facts: float | int
         return ()
     more = (f"{len(named) - MOST} more",) if len(named) > MOST else ()
     severity = Severity.WARN if kind in FORCES else Severity.NOTE
-    return (Finding.of("model.left_out", subject, severity, kind=kind, names=(*named[:MOST], *more), **facts),)
+    return (Finding.of("model.left_out", subject, severity, kind=kind, names=(*named[:MOST], *more)),)
 
 
 # What moves nothing: letters of file or class names.
@@ -41,7 +41,8 @@ SILENT = (
 
 def other_plugins(subject: str, plugins: Iterable[Element], read: Element) -> tuple[Finding, ...]:
     """Plugins that act on a vehicle beside the one that is read: weight and buoyancy, and others."""
-    forces, buoyancy = [], []
+    forces: list[str] = []
+    buoyancy: list[str] = []
     for plugin in plugins:
         both = (plugin.get("name", "") + plugin.get("filename", "")).lower()
         if plugin is read or any(s in both for s in SILENT):

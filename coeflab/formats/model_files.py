@@ -8,9 +8,8 @@ from pathlib import Path
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
-from coeflab.core.table import Check, as_check
+from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
-from coeflab.core.texts import known
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
@@ -86,7 +85,7 @@ def read_model_file(path: Path, density: float | None = None) -> ModelFile:
     kind = recognised(path)
     if kind == OWN:
         parameters = read_parameter_file(path)
-        return ModelFile(kind, parameters, (*_of_the_file(kind, parameters), *plausibility(parameters)))
+        return ModelFile(kind, parameters, plausibility(parameters))
     try:
         return _imported(path, kind, density)
     except InputError as why:
@@ -108,10 +107,4 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
     findings += importer.examine(path)
     known = any(c.subject.startswith(DENSITY) for c in findings)
     found = [c for c in plausibility(parameters, importer.signs) if not (known and c.subject == DENSITY)]
-    return ModelFile(kind, parameters, (*_of_the_file(kind, parameters), *findings, *found))
-
-
-def _of_the_file(kind: str, parameters: ParameterFile) -> tuple[Check, ...]:
-    """What the file itself holds against its numbers; what is only noted stands among its remarks."""
-    grave = (Severity.WARN, Severity.FAIL)
-    return tuple(as_check(kind, f) for f in parameters.findings if f.severity in grave and known(f))
+    return ModelFile(kind, parameters, (*findings, *found))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +63,7 @@ class Exchanged:
             other = s.with_exchanged(rows) if s.symbol[0] in components else None
             if other is not None and np.isfinite(s.value) and np.isfinite(other.value):
                 moved.append((abs(s.value - other.value) / max(other.u95, 1e-300), s, other))
-        facts: dict[str, float | str] = {"moves": "none"}
+        facts: dict[str, Any] = {"moves": "none"}
         if moved:
             _, s, other = max(moved, key=lambda m: m[0])
             facts = {"moves": "some", "symbol": primed(s.symbol), "value": s.value, "u95": s.u95, "exchanged": other.value,

@@ -16,6 +16,7 @@ from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, wi
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import MOTIONS
+from coeflab.tables.assumptions import carried
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 
@@ -61,6 +62,8 @@ def fitted(
     _refuse_starved(fit, tables)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    assumed = carried([f for t in tables for f in t.findings], fit.coefficients.coefficients)
+    fit = replace(fit, findings=(*fit.findings, *assumed))
     if all(t.source.kind == "estimate" for t in tables):
         return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)

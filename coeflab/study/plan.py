@@ -142,11 +142,14 @@ class TableKeys(takes.Declaration):
         Names of fits, slope_at_origin and tied_law unless given; ``coeflab formats`` lists them.
     options : mapping
         A table of options for each fit, by its name.
+    speed : float or None
+        m/s; only rows of this speed, within 2 %, enter the fits: where a slope depends on the speed, one fit a speed.
     """
 
     campaign: CampaignPath
     fits: takes.Texts = ()
     options: Options = field(default_factory=dict)
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO] | None = None
 
     def check(self) -> None:
         """Options are those of the fits."""
@@ -476,7 +479,7 @@ def read_plan(path: Path) -> Plan:
         name=study.name,
         title=study.name if study.title is None else study.title,
         tables=(
-            *(table_at(t.campaign, t.used, t.options) for t in file.table),
+            *(table_at(t.campaign, t.used, t.options, t.speed) for t in file.table),
             *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
         ),
         tows=tows,

@@ -62,10 +62,13 @@ class Setting:
         As TOML holds it.
     origin : str
         For the comment beside it.
+    assumed : bool
+        It was accepted, and neither a person nor the source states it.
     """
 
     value: Any
     origin: str
+    assumed: bool = False
 
 
 Settings = Mapping[str, Setting]
@@ -339,12 +342,72 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     return out
 
 
+def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
+    """Complaints about keys that the source itself states and a person says otherwise; words over a table are proposals only.
+
+    A reference point counts in the file's own axes and from its own origin, so that only one from that origin can be held against it.
+    """
+    out = []
+    for key, stated in raw.stated.items():
+        one = settings.get(key)
+        section, _, name = key.partition(".")
+        if (
+            one is None
+            or stated.offered
+            or stated.convention
+            or not one.origin.startswith(CONFIRMED)
+            or key in _JUDGED_BY_THEIR_OWN
+        ):
+            continue
+        if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
+            continue
+        if not _same(key, one.value, stated.value, settings):
+            value = (
+                f"({', '.join(f'{x:g}' for x in stated.value)})"
+                if isinstance(stated.value, tuple)
+                else str(stated.value)
+            )
+            said = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
+            out.append(InputError(
+                f"{key} = {said}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
+                file=raw.path, column=key, advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
+            ))  # fmt: skip
+    return out
+
+
+_JUDGED_BY_THEIR_OWN = (POINT_OF, "conditions.density", VISCOSITY)  # complained of with what each makes wrong
+ADVICE = {
+    "table.arm_point": "Leave it out: the velocities of the source already hold there, and another point would count the drift of the arm twice.",
+    "scaling.length": 'Leave it out; primes by another length are those of `coeflab fit --length "4.3 m" --length-name LOA`, or of a plan.',
+}
+
+
+def _same(key: str, said: Any, stated: Any, settings: Settings) -> bool:
+    """Whether a person says of a key what the source states."""
+    if key in _SIZES or key in ("coefficients.area", "coefficients.length"):
+        dimension = _SIZES.get(key, key.rpartition(".")[2])
+        return said != "prime" and abs(quantity(said, dimension) / float(stated) - 1.0) <= SAME_SIZE
+    if key == ARM_POINT and stated == REFERENCE:
+        about = settings.get(POINT_OF)
+        return said == REFERENCE or (about is not None and bool(np.allclose(said, about.value, rtol=0.0, atol=1e-9)))
+    if key == "axes.frame":
+        return bool(np.array_equal(parse_axes(said).rotation, parse_axes(read_setting(key, stated)).rotation))
+    if isinstance(stated, tuple):
+        return bool(np.allclose(np.asarray(said, dtype=float), stated, rtol=SAME_SIZE, atol=1e-9))
+    return str(said).casefold() == str(stated).casefold()
+
+
 def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:
     """Settings that differ from what words over the table say: key, what is set, the words with their line."""
     out = []
     for key, words in raw.stated.items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
-        if one is None or not words.offered or words.contradicted or key.startswith(("source.", "coefficients.")):
+        if (
+            one is None
+            or not (words.offered or words.convention)
+            or words.contradicted
+            or key.startswith(("source.", "coefficients."))
+        ):
             continue
         if isinstance(words.value, float) and key in _SIZES:
             same = abs(quantity(one.value, _SIZES[key]) / words.value - 1.0) <= SAME_SIZE

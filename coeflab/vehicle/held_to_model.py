@@ -14,6 +14,7 @@ from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.parameter_file import ParameterFile
 
 Model = Callable[[Array, dict[str, Array]], Array]
+OF_A_MODEL = ("law.model", "law.model_met", "law.model_left")  # codes of its findings
 ALLOWED = 0.05  # of the largest force of a component: what a law of few terms may leave out
 NOTHING = 1e-5  # of 1/2 rho U^2 L^2, and of that times L: a tenth of the smallest coefficients that tests give
 
@@ -61,7 +62,8 @@ def held_to_model(
         A warning for each component whose difference passes both `ALLOWED` of its largest force and the U95 of the law at that
         state; a note with the largest differences of the others.
     """
-    warned, held = [], {}
+    warned: list[Finding] = []
+    held: dict[str, float] = {}
     law = full_force(parameters)
     forces = [(model(np.array(m.nu), angles_of(m.controls)), law(m.nu, m.controls)) for m in motions]
     for m, (theirs, ours), u95 in zip(motions, forces, _u95_where_apart(parameters, motions, forces), strict=True):

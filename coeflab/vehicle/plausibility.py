@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
+from coeflab.core.texts import known
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
@@ -360,7 +361,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *sign_findings(parameters),
         *law_findings(parameters),
         *twice_findings(parameters),
-        *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings),
+        *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),
     )
 
 

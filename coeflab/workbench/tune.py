@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -15,8 +13,10 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import file_stem
 from coeflab.motion.steady_state import differences, level_forces, steady_motions, wrenches
 from coeflab.motion.tune.output_error import Estimate, Problem, by_likelihood, estimate, problem
 from coeflab.motion.tune.plan import SteadyCases, TuningPlan, moved
@@ -59,7 +59,7 @@ class Tuned:
 
     def files(self) -> dict[str, bytes]:
         """Everything to write, by file name."""
-        name = self.plan.name
+        name = file_stem(self.plan.name)
         figure = agreement_figure(self.tuning, f"{name}-agreement")
         return {
             f"{name}.parameters.json": self.parameters.to_json(),
@@ -240,12 +240,10 @@ def _quantities(cases: SteadyCases, p: Problem, found: Estimate) -> tuple[TunedQ
 def _motions(cases: SteadyCases, tuning: Tuning) -> bytes:
     """Every case: line, commands, measured, before and after."""
     commands = list(cases.commands[0])
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
     heads = [f"{q.name} {what} [{q.unit}]" for q in tuning.quantities for what in ("measured", "before", "after")]
-    writer.writerow(["line", *commands, *heads])
+    rows: list[list[object]] = [["line", *commands, *heads]]
     for i, line in enumerate(cases.lines):
         values = [a[i] for q in tuning.quantities for a in (q.measured, q.before, q.after)]
         shown = ["" if np.isnan(v) else f"{v:.6g}" for v in values]
-        writer.writerow([line, *(f"{cases.commands[i][c]:g}" for c in commands), *shown])
-    return out.getvalue().encode()
+        rows.append([line, *(f"{cases.commands[i][c]:g}" for c in commands), *shown])
+    return csv_text(rows).encode()

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -500,7 +501,8 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     for (campaign, component, setting), those in studies.items():
         study = next(b.grid for b in those if b.grid is not None)
         about = f"{campaign} {', '.join(primed(b.symbol) for b in those)}"
-        judged, where = study.convergence, {"component": component, "setting": setting, "table": study.table}
+        judged = study.convergence
+        where: dict[str, Any] = {"component": component, "setting": setting, "table": study.table}
         if not judged.convergence.converges:
             level = Severity.WARN if any(_is_told(b) for b in those) else Severity.NOTE
             out.append(

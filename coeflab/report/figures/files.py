@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -11,8 +9,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coeflab.core.errors import InputError, OutputError
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
+from coeflab.report.printable import CLOCK
 
 PAGE = b'#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes(sys.inputs.svg), format: "svg")\n'
 DENSITY = 300.0  # pixels an inch
@@ -78,8 +78,6 @@ def printed(picture: bytes, kind: Literal["pdf", "png"]) -> bytes:
     import typst
     from matplotlib import get_data_path
 
-    from coeflab.report.formats.pdf import CLOCK
-
     text = picture.decode().replace(FAMILY, 'font-family="DejaVu Sans"')
     try:
         made = typst.compile(
@@ -105,11 +103,7 @@ def numbers(figure: Figure) -> bytes:
             rows += [(i, series.name, repr(x), repr(y), n) for x, y, n in zip(series.x, series.y, notes, strict=True)]
     if not rows:
         return b""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(("panel", "series", "x", "y", "note"))
-    writer.writerows(rows)
-    return out.getvalue().encode()
+    return csv_text([("panel", "series", "x", "y", "note"), *rows]).encode()
 
 
 def files_of(figure: Figure, folder: str = "figures") -> Mapping[str, bytes]:

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.finding import Severity
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.texts import known, remark
@@ -240,9 +239,9 @@ def _aligned(table: Table) -> list[str]:
 
 
 def contents(parameters: ParameterFile, kind: str) -> Table:
-    """Every coefficient, primed and in SI; findings that warn are printed with the checks."""
+    """Every coefficient, primed and in SI; findings of the file are printed with the checks."""
     p = parameters
-    noted = tuple(remark(f) for f in p.findings if f.severity in (Severity.PASS, Severity.NOTE) or not known(f))
+    noted = tuple(remark(f) for f in p.findings if not known(f))
     remarks = tuple(dict.fromkeys((*p.provenance.notes, *noted)))
     rows = tuple(
         (c.symbol, with_u95(c.value, c.u95)[0], number(c.value_si), c.unit_si, with_u95(c.value, c.u95)[1], c.status.replace("_", " "),
@@ -325,6 +324,8 @@ JSON Schema. A program that reads these files should refuse a first digit of `sc
 - Primes: `Y' = Y / (1/2 rho U^2 L^2)`, `N' = N / (1/2 rho U^2 L^3)`, `v' = v/U`, `r' = r L/U`.
 - Values are totals: a measured velocity derivative contains its potential part, an entry of `-C_A(nu) nu`. A simulator that
   adds `C_A(nu) nu` itself must be given `value - potential`.
+- The force is a sum over coefficients, fitted tables, controls and the ideal fluid, each of the products of variables that it speaks
+  of: [which source speaks of what](force_law.md).
 - A fitted table in `models` holds whole forces, potential part and all, and a simulation leaves out the products of
   `-C_A(nu) nu` that it speaks of. Where only viscous parts are tabulated, `contains_potential` is false.
 - U95 is a 95 % half-width, twice the standard uncertainty of the covariances.
