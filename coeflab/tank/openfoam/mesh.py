@@ -112,6 +112,7 @@ def mesh_job(
     contents = _files(body, sizes, half, twins, cores)
     planned = {"cells": round(cells), **_geometry(body, half)}
     planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
+    planned["images"] = {image: patch for pairs in twins.values() for patch, image in pairs}
     planned["coverage"] = {
         patch: options.coverage or (FOIL_COVERAGE if patch in foils(body) else HULL_COVERAGE) for patch in sizes.layers
     }
