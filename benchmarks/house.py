@@ -124,7 +124,7 @@ def apart(name: str, importer: str, lines: int) -> str:
     """Why a module does not stand in the only file that imports it; empty where it could."""
     if name.startswith(contracted()):
         return "numerics by contract"
-    if name.split(".")[1] != importer.split(".")[1]:
+    if name.split(".")[1:2] != importer.split(".")[1:2]:
         return "another subject"
     return f"{lines} lines together" if lines > LONGEST else ""
 

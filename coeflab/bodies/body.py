@@ -21,10 +21,10 @@ from coeflab.bodies.pieces import Control, Piece
 from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
 from coeflab.bodies.thrusters import Thruster
-from coeflab.core.axes import Datum
+from coeflab.core.axes import Axes, Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
-from coeflab.core.table import html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling
@@ -135,6 +135,8 @@ class Body:
         Where its file gives parts with masses.
     outlined : callable, optional
         Makes the outline where the reader knows more of it than the shape.
+    axes : Axes, optional
+        Of the mesh file that the shape came from, as stated; None of shapes that are stated in FRD.
     """
 
     name: str
@@ -154,6 +156,7 @@ class Body:
     controls: tuple[Control, ...] = ()
     mass_model: MassModel | None = None
     outlined: Callable[[], Outline] | None = None
+    axes: Axes | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))

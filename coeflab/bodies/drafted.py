@@ -16,6 +16,7 @@ import numpy as np
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.outline import Foil
+from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.text.toml import quoted
 from coeflab.core.types import Array
 
@@ -73,7 +74,7 @@ reference_point = {_point(body.reference_point, nothing)}  # m, x forward, y sta
 [mesh]
 path = {quoted(path)}
 unit = {quoted(unit)}
-axes = {quoted(axes)}
+axes = {_stated(parse_axes(axes))}
 {mended}
 [particulars]
 length = {high[0] - low[0]:.6g}
@@ -112,6 +113,12 @@ def is_untouched(text: str) -> bool:
     """Whether a body.toml is as `drafted` made it, of whatever unit and axes."""
     first, _, rest = text.partition("\n")
     return first == f"{SEAL}{_digest(rest)}"
+
+
+def _stated(axes: Axes) -> str:
+    """As TOML has them."""
+    said = axes.declared
+    return quoted(said) if isinstance(said, str) else f"[{', '.join(map(quoted, said))}]"
 
 
 def _digest(text: str) -> str:

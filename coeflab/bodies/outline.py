@@ -203,6 +203,28 @@ class Bluff:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+class Unseen:
+    """Area of a body that no method sees; m, FRD, from the datum.
+
+    Attributes
+    ----------
+    name : str
+    centre : (3,) array
+    areas : (3,) array
+        Silhouettes along x, y and z, m^2.
+    """
+
+    name: str
+    centre: NDArray[np.float64]
+    areas: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "areas"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
 class Outline:
     """What semi-empirical methods see of a body.
 
@@ -220,6 +242,8 @@ class Outline:
     left_out : tuple of str
         What of the body no method sees, one line each.
     propellers : tuple of Propeller
+    unseen : tuple of Unseen
+        Their areas, where these are known.
     """
 
     hulls: tuple[Sections, ...]
@@ -230,3 +254,4 @@ class Outline:
     volume: float
     left_out: tuple[str, ...] = ()
     propellers: tuple[Propeller, ...] = ()
+    unseen: tuple[Unseen, ...] = ()

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.branches import parted
 from coeflab.bodies.cuts import (
     SKIN,
     SPECK,
@@ -36,7 +37,7 @@ from coeflab.bodies.cuts import (
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import polygons
 from coeflab.bodies.mirror_planes import PAIRED, mirror_planes, silhouettes, unpaired
-from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
+from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections, Unseen
 from coeflab.bodies.outlining import SLENDER, of_parts, of_revolution, with_controls
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Parts, Revolution, Shape
@@ -177,8 +178,6 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     x = np.array([bit.x for bit in bits])
     at = float(np.clip((x[0] + x[-1]) / 2.0, hull.x[-1], hull.x[0]))
     stand = np.array([np.interp(at, hull.x[::-1], hull.centre[::-1, i]) for i in (0, 1)])
-    areas = np.array([bit.polygon.area() for bit in bits])
-    points = np.concatenate([bit.points for bit in bits])
     way, origin = _way(bits, stand)
     low, high, on_hull = np.empty(len(bits)), np.empty(len(bits)), np.zeros(len(bits), dtype=bool)
     by_step = {bit.x: bit for bit in track}
@@ -189,18 +188,48 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
         if core is not None and low[i] - (within := reach(core.polygon, origin, way)) < 0.2 * bit.inscribed:
             low[i] = min(within, high[i])
             on_hull[i] = True
-    volume = float(-np.trapezoid(areas, x)) if len(x) > 1 else 0.0
-    whole = np.ptp(points, axis=0)
-    half = np.array([(x[0] - x[-1]) / 2.0, *whole / 2.0])
-    middle = np.array([(x[0] + x[-1]) / 2.0, *((points.min(axis=0) + points.max(axis=0)) / 2.0)])
-    side = [float(-np.trapezoid([np.ptp(bit.points[:, i]) for bit in bits], x)) for i in (1, 0)]
-    shadow_x = float(areas.max()) if len(areas) else 0.0
     place = _words(way)
-    bluff = Bluff(f"part_{place}", "mesh", middle, np.eye(3), half, np.array([shadow_x, *side]))
+    bluff, volume = _bluff(f"part_{place}", bits)
     foil = _foil(f"foil_{place}", x, low, high, on_hull, bits, origin, way) if len(x) > 4 else None
     sides = np.array([_edges(bit) for bit in bits]) / 2.0
     bent = float(np.trapezoid(sides, x) / np.trapezoid(high - low, x)) - 1.0 if foil is not None else 0.0
     return _Appendage(foil, bluff, volume, bent)
+
+
+def _bluff(name: str, bits: list[Bit]) -> tuple[Bluff, float]:
+    """A cluster as a bluff part, and its volume."""
+    x = np.array([bit.x for bit in bits])
+    areas = np.array([bit.polygon.area() for bit in bits])
+    points = np.concatenate([bit.points for bit in bits])
+    half = np.array([(x[0] - x[-1]) / 2.0, *np.ptp(points, axis=0) / 2.0])
+    middle = np.array([(x[0] + x[-1]) / 2.0, *((points.min(axis=0) + points.max(axis=0)) / 2.0)])
+    side = [float(-np.trapezoid([np.ptp(bit.points[:, i]) for bit in bits], x)) for i in (1, 0)]
+    volume = float(-np.trapezoid(areas, x)) if len(x) > 1 else 0.0
+    return Bluff(name, "mesh", middle, np.eye(3), half, np.array([float(areas.max()), *side])), volume
+
+
+def _branched(bits: list[Bit], hull: Sections, track: list[Bit]) -> list[_Appendage]:
+    """A cluster as a foil and what stands across it, each a foil on that foil or bluff; empty where it is no such foil."""
+    at = float(np.clip((bits[0].x + bits[-1].x) / 2.0, hull.x[-1], hull.x[0]))
+    stand = np.array([np.interp(at, hull.x[::-1], hull.centre[::-1, i]) for i in (0, 1)])
+    way, origin = _way(bits, stand)
+    trunk, branches = parted(bits, origin, way)
+    if not branches:
+        return []
+    own = _appendage(trunk, hull, track)
+    if own.foil is None or own.foil.thickness > THICK:
+        return []
+    out = [own]
+    for one in branches:
+        bluff, volume = _bluff(f"part_{_words(one.way)}", one.bits)
+        x = np.array([bit.x for bit in one.bits])
+        high = np.array([float(((bit.points - one.stand) @ one.way).max()) for bit in one.bits])
+        low, rooted = np.minimum(one.foot, high), np.ones(len(x), dtype=bool)
+        foil = (
+            _foil(f"foil_{_words(one.way)}", x, low, high, rooted, one.bits, one.stand, one.way) if len(x) > 4 else None
+        )
+        out.append(_Appendage(foil, bluff, volume, 0.0))
+    return out
 
 
 def _edges(bit: Bit) -> float:
@@ -290,14 +319,16 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     rough = [merged for _, merged in clusters]
     names = [HULL] if len(slender) == 1 else [f"{HULL}_{i + 1}" for i in range(len(slender))]
     hulls = tuple(_hull(n, t, cuts, gone) for n, t in zip(names, slender, strict=True))
-    foils, bluff, volume, left, surfaces = _appendages(mesh, cuts, rough, slender, hulls)
+    foils, bluff, volume, left, surfaces, unseen_parts = _appendages(mesh, cuts, rough, slender, hulls)
     volume += ring_volume + sum(float(-np.trapezoid(h.area, h.x)) for h in hulls)
     if volume < SHARE * mesh.volume:
         return _all_bluff(mesh, f"hulls and foils hold {volume / mesh.volume:.0%} of its volume only")
     if (unseen := _unseen(mesh, hulls, foils, rings, bluff, *surfaces)) > UNSEEN:
         return _all_bluff(mesh, f"{unseen:.0%} of its surface is neither hull nor flat fin")
     turned, more = with_controls(foils, controls)
-    return Outline(hulls, turned, rings, bluff, mesh.integrals.area, mesh.volume, (*left, *more))
+    return Outline(
+        hulls, turned, rings, bluff, mesh.integrals.area, mesh.volume, (*left, *more), unseen=tuple(unseen_parts)
+    )
 
 
 def _unseen(
@@ -386,8 +417,9 @@ def _counts(cluster: list[Bit], tracks: list[list[Bit]], cores: list[list[Bit]])
 
 def _appendages(
     mesh: TriangleMesh, cuts: Cuts, rough: list[list[Bit]], tracks: list[list[Bit]], hulls: tuple[Sections, ...]
-) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str], tuple[float, float]]:
-    """Each cluster by finer sections of its own; volume of all, what is left out; surface across planforms, and of joints."""
+) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str], tuple[float, float], list[Unseen]]:
+    """Each cluster by finer sections of its own; volume of all, what is left out; surface across planforms, and of joints; areas unseen."""
+    unseen: list[Unseen] = []
     foils: list[Foil] = []
     bluff: list[Bluff] = []
     left: list[str] = []
@@ -413,26 +445,37 @@ def _appendages(
                 y, z = (round(float(c), 9) + 0.0 for c in centre_of(cluster[len(cluster) // 2].polygon))
                 ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
                 left.append(f"what joins two hulls, {ends}")
+                joint, _ = _bluff("what joins two hulls", cluster)
+                unseen.append(Unseen(joint.name, joint.centre, joint.areas))
                 volume += float(-np.trapezoid([b.polygon.area() for b in cluster], [b.x for b in cluster]))
                 joining += float(-np.trapezoid([_edges(b) for b in cluster], [b.x for b in cluster]))
                 continue
             track = _own_track(cluster, tracks)
             near = [bit for bit in cores if (n := _nearest(track, bit.x)) is not None and overlap(bit, n) > 0.0]
-            found = _appendage(cluster, hulls[tracks.index(track)], near)
-            if found.volume < SPECK * SPECK * mesh.volume or (
-                found.foil is None and found.volume < SPECK * mesh.volume
-            ):
-                continue
-            volume += found.volume
-            if found.foil is not None and found.foil.thickness <= THICK:
-                foils.append(found.foil)
-                if found.bent > BENT:
-                    across += 2.0 * found.bent * found.foil.area
-                    more = f"its planform leaves out {found.bent:.0%}"
-                    left.append(f"what stands across {found.foil.name} at x = {found.foil.root[0]:.3g} m: {more}")
-            else:
-                bluff.append(found.bluff)
-    return _numbered(foils), tuple(_numbered(bluff)), volume, left, (across, joining)
+            hull = hulls[tracks.index(track)]
+            for found in _branched(cluster, hull, near) or [_appendage(cluster, hull, near)]:
+                if found.volume < SPECK * SPECK * mesh.volume or (
+                    found.foil is None and found.volume < SPECK * mesh.volume
+                ):
+                    continue
+                volume += found.volume
+                if found.foil is not None and found.foil.thickness <= THICK:
+                    foils.append(found.foil)
+                    if found.bent > BENT:
+                        across += 2.0 * found.bent * found.foil.area
+                        more = f"its planform leaves out {found.bent:.0%}"
+                        unseen.append(_across(found.foil, found.bent))
+                        left.append(f"what stands across {found.foil.name} at x = {found.foil.root[0]:.3g} m: {more}")
+                else:
+                    bluff.append(found.bluff)
+    return _numbered(foils), tuple(_numbered(bluff)), volume, left, (across, joining), unseen
+
+
+def _across(foil: Foil, bent: float) -> Unseen:
+    """What stands across a foil: so much of its area, facing along its span."""
+    out = (foil.tip - foil.root) * np.array([0.0, 1.0, 1.0])
+    areas = bent * foil.area * np.abs(out) / np.linalg.norm(out)
+    return Unseen(f"what stands across {foil.name}", (foil.root + foil.tip) / 2.0, areas)
 
 
 def _joins(cluster: list[Bit], tracks: list[list[Bit]]) -> bool:

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, mirrors, vanishing
+from coeflab.bodies.rough_guide import rough_finding, rough_u95, unresolved_finding
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -116,7 +118,34 @@ class Triangulation:
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
         caution = self._caution(found)
-        return self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
+        found = self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
+        if not found.rough:
+            return found
+        half = rough_u95(found, self.shape, self.density, self.vanishing()[0])
+        return replace(found, error=half, u95=half)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What must travel with the recommended one: that it is a rough guide, with its U95; that no panels were possible."""
+        found, out = self.recommended, []
+        if found.rough:
+            out.append(rough_finding(found, "--method panel" if "panel" not in self._tried else "coeflab simplify"))
+        why = self.refused.get("panel on the mesh", self.refused.get("panel", ""))
+        if why and "panel" not in self._used and not self._exact(found):
+            out.append(unresolved_finding(found.body, found.method, why, "coeflab simplify"))
+        return tuple(out)
+
+    @property
+    def _used(self) -> set[str]:
+        return {r.method for r in self.results}
+
+    @property
+    def _tried(self) -> set[str]:
+        return self._used | set(self.refused) | {"panel" for name in self.refused if name.startswith("panel")}
+
+    def _exact(self, found: AddedMass) -> bool:
+        """Lamb's form for one ellipsoid."""
+        return found.method in ("ellipsoid", "primitives") and len(_ellipsoids(self.body.require_shape())) == 1
 
     def _caution(self, found: AddedMass) -> str:
         """What must be said first: none is good, or the parts that it is of were not compared with their mesh."""

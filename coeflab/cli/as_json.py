@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.core.finding import Finding
 from coeflab.core.table import Check
+from coeflab.core.texts import remark
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
@@ -32,7 +34,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.inertia import WaterInertia
 
 
-def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
+def coefficient(c: Coefficient, scaling: str, assumed: Sequence[Finding] = ()) -> dict[str, Any]:
     """One coefficient; absent values are null and carry a status."""
     p = c.parts
     return {
@@ -48,8 +50,17 @@ def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
         "window": None if c.window is None else list(c.window),
         "n_points": c.n_points,
         "status": c.status.value,
+        "assumed": [f["key"] for f in assumed],
         "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
     }
+
+
+def finding_as_data(f: Finding) -> dict[str, Any]:
+    """A finding as data, and its words."""
+    return {
+        "code": f.code, "subject": f.subject, "severity": str(f.severity), "statistic": f.statistic, "threshold": f.threshold,
+        "advice": f.advice, "facts": {name: list(v) if isinstance(v, tuple) else v for name, v in f.facts}, "words": remark(f),
+    }  # fmt: skip
 
 
 def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
@@ -186,6 +197,7 @@ def export(made: Export) -> dict[str, Any]:
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
+        "astern_broadside_rest": None if loss is None or loss.rare is None else loss.rare.worst.tolist(),
         "accelerations_compared": None if loss is None else accelerations_compared(loss),
         "law_at_points": [] if loss is None else [f.model_dump(mode="json") for f in loss.at_points],
     }
@@ -278,7 +290,10 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "passed": not s.failed,
         "u95_of_slopes_covers": tables.covers(s),
         "numbers": numbers(held_of_study(s)),
-        "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
+        "coefficients": [
+            coefficient(c, scalings.get(c.campaign or "", common), tables.assumed_of(s, c)) for c in s.coefficients
+        ],
+        "findings": [finding_as_data(f) for f in dict.fromkeys(found for fit in s.fits for found in fit.findings)],
         "models": [model(m) for f in s.fits for m in f.models],
         "poolings": [pooling(f.campaign, p) for f in s.fits for p in f.poolings],
         "oscillations": [oscillation(f.campaign, o) for f in s.fits for o in f.oscillations],

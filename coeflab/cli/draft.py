@@ -31,7 +31,7 @@ from coeflab.tables.parts_together import (
     understood_together,
 )
 from coeflab.tables.settings import Setting, doubtful_setting, read_in, require_one_datum, saved_mapping
-from coeflab.tables.understood import Understood
+from coeflab.tables.understood import Understood, accepted_without_source
 from coeflab.tables.words.points import POINT_OF
 
 
@@ -105,6 +105,7 @@ class Draft:
             Filled(
                 part.name, part.raw, part.importer, part.options, assigned(part.raw, found.mapping), found.mapping,
                 of_campaign(own(self.settings, part, self.parts)), frozenset(found.about),
+                accepted_without_source(found, own(self.settings, part, self.parts)),
             )
             for part, found in zip(self.parts, self.founds, strict=True)
         )  # fmt: skip

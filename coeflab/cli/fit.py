@@ -56,6 +56,9 @@ def command(
         "", metavar="LENGTH", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'
     ),
     length_name: str = typer.Option("", metavar="NAME", help="Name of that length, such as LOA."),
+    speed: str = typer.Option(
+        "", metavar="SPEED", help="Only rows of this speed, such as 1.3 m/s: one fit a speed.", show_default=False
+    ),
     next_runs: int = typer.Option(
         0,
         "--next",
@@ -68,7 +71,7 @@ def command(
     diagnostics: bool = typer.Option(
         False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
     ),
-    figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
+    figure: Path = typer.Option(None, metavar="FILE", help="Draw the fits into this file: .svg, .pdf or .png."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
     include_uncertain: bool = typer.Option(
         False, "--include-uncertain", help="Use cells that the source marks as doubtful."
@@ -85,9 +88,8 @@ def command(
     from coeflab.core.units import quantity
     from coeflab.core.wording import Verbatim
     from coeflab.law.scaling import Scaling
-    from coeflab.study.plan import table_at
     from coeflab.study.study import Plan, PlannedJoint
-    from coeflab.tables.reading import suited_fit
+    from coeflab.tables.reading import suited_fit, table_at
     from coeflab.workbench import run
 
     if help_options:
@@ -99,8 +101,8 @@ def command(
     names, options = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
-    if figure is not None and figure.suffix != ".svg":
-        raise InputError(shown(figure.name), "a file name that ends in .svg", column="--figure")
+    if figure is not None and figure.suffix not in (".svg", ".pdf", ".png"):
+        raise InputError(shown(figure.name), "a file name that ends in .svg, .pdf or .png", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
     fit = fit or suited_fit(paths[0])
     if next_runs and fit != DEFAULT:
@@ -108,11 +110,16 @@ def command(
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
     alone = len(paths) == 1
+    at = (
+        quantity(f"{speed} m/s" if speed.replace(".", "", 1).isdecimal() else speed, "speed", key="--speed")
+        if speed
+        else None
+    )
     plan = Plan(
         name=Verbatim("_".join(p.stem for p in paths)[:80]),
         title=Verbatim(", ".join(p.name for p in paths)),
-        tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
-        joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
+        tables=(table_at(paths[0], (fit,), {fit: options}, at),) if alone else (),
+        joint=() if alone else (PlannedJoint(tuple(table_at(p, speed=at) for p in paths), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
         wanted=MAIN if fit == DEFAULT else (),
         include_uncertain=include_uncertain,
@@ -206,6 +213,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     """All figures of the fits in one file; of sweeps those of the wanted symbols, where any are."""
     from coeflab.core.files import write_atomically
     from coeflab.report.figures.estimator import estimator_figure
+    from coeflab.report.figures.files import as_kind
     from coeflab.report.figures.model import distinct, model_figures
     from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.sweep import sweep_figure
@@ -221,7 +229,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     rows = [row for row in rows if row]
     if not rows:
         raise InputError("nothing to draw", "a fit with a curve or a surface", column="--figure")
-    write_atomically(file, sheet(rows))
+    write_atomically(file, as_kind(sheet(rows), file.suffix[1:]))
 
 
 def _diagnose(study: Study) -> None:

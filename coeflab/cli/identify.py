@@ -86,6 +86,7 @@ def command(
     if json:
         show.json_object({**as_json(found), "files": [str(p) for p in written]})
     else:
+        show.found(found.findings)
         show.table(identified_tables.terms(found))
         show.table(identified_tables.balances(found))
         for path in written:

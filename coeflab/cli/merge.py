@@ -12,6 +12,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
+    from coeflab.core.table import Check
     from coeflab.vehicle.own_numbers import OwnNumber
     from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -60,6 +61,8 @@ def command(
         show.json_object(done.as_json())
     else:
         done.print()
+    if show.failed(done.found):
+        raise typer.Exit(1)
 
 
 @dataclass(frozen=True)
@@ -73,16 +76,22 @@ class Done:
     source : str
         Name of what replaced estimates.
     paths : tuple of Path
+    found : tuple of Check
+        What ``coeflab params check`` finds in the merged file.
     """
 
     made: Any
     carried: Any
     source: str
     paths: tuple[Path, ...]
+    found: tuple[Check, ...]
 
     def as_json(self) -> dict[str, Any]:
         """What was replaced, what is left, and the files."""
-        return {**as_json(self.made, self.carried), "files": [str(p) for p in self.paths]}
+        from coeflab.cli.as_json import findings
+
+        found = findings(self.found)
+        return {**as_json(self.made, self.carried), "findings": found, "files": [str(p) for p in self.paths]}
 
     def print(self) -> None:
         """Print it."""
@@ -104,6 +113,7 @@ class Done:
         show.table(tables.estimates_table(made.parameters, carried))
         for path in self.paths:
             show.path(path)
+        show.file_findings(made.parameters.name, self.found)
 
 
 def carried_out(
@@ -129,6 +139,7 @@ def carried_out(
     """
     from coeflab.core.files import write_all
     from coeflab.vehicle.own_numbers import stated_beside
+    from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench import run
     from coeflab.workbench.vehicle import given_by, replaced, replaced_files
 
@@ -142,7 +153,7 @@ def carried_out(
     write_all(folder, files)
     # a tow bears the name of its body, as the estimates do
     source = second.name if by_hand or second.name != first.name else str(other)
-    return Done(made, carried, source, tuple(folder / n for n in sorted(files)))
+    return Done(made, carried, source, tuple(folder / n for n in sorted(files)), plausibility(made.parameters))
 
 
 def as_json(made: Any, carried: Any) -> dict[str, Any]:

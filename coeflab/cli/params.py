@@ -46,7 +46,7 @@ def check(
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
             "coefficients": [c.symbol for c in p.coefficients], "passed": found.passed,
             "by_added_mass": [row[0] for row in model_file_tables.by_added_mass(p).rows],
-            "findings": findings_json(found.findings),
+            "findings": findings_json(found.findings), "remarks": list(p.remarks),
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
@@ -115,6 +115,7 @@ def new(
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.formats import contents
     from coeflab.vehicle.own_numbers import typed_file
+    from coeflab.vehicle.plausibility import plausibility
 
     made = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
@@ -126,14 +127,20 @@ def new(
     if path.exists():
         raise OutputError(f"{path} exists. Name another, or change it: coeflab merge {path} --set SYMBOL=VALUE.")
     write_all(path.parent, {path.name: made.to_json()})
+    found = plausibility(made)
     if json:
-        show.json_object(
-            {"name": made.name, "coefficients": [c.symbol for c in made.coefficients], "files": [str(path)]}
-        )
+        from coeflab.cli.as_json import findings
+
+        show.json_object({
+            "name": made.name, "coefficients": [c.symbol for c in made.coefficients], "findings": findings(found), "files": [str(path)],
+        })  # fmt: skip
     else:
         show.table(contents(made, "coeflab"))
         show.path(path)
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
+        show.file_findings(made.name, found)
+    if show.failed(found):
+        raise typer.Exit(1)
 
 
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")

@@ -96,7 +96,6 @@ def summarise(study: Study, folder: Path) -> None:
     """The answer, the findings that matter, and with ``--wide`` every table."""
     from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
-    from coeflab.report.tables import results as tables
     from coeflab.report.tables import sources as source_tables
 
     if study.shape is not None:
@@ -106,8 +105,6 @@ def summarise(study: Study, folder: Path) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
-    for line in tables.drift_assumed(study):
-        show.sentence(line)
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)

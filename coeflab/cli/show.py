@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from coeflab.core.finding import Finding
     from coeflab.core.table import Check, Line, Table
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 SLOW = 2.0
@@ -368,6 +370,21 @@ def file_findings(name: str, found: Sequence[Check]) -> None:
         text(f"Checks of the file {name} (coeflab params check):")
         findings(found)
         text()
+
+
+def not_used(parameters: ParameterFile, tables: bool = False) -> None:
+    """First lines of a command: what of the file's sources of force it does not use; nothing where it uses all."""
+    from coeflab.vehicle.force_law import not_used as by_law
+
+    found(by_law(parameters, tables))
+
+
+def found(findings: Sequence[Finding]) -> None:
+    """Findings in words, a line each."""
+    from coeflab.core.texts import remark
+
+    for line in map(remark, findings):
+        text(line)
 
 
 def failed(found: Sequence[Check]) -> bool:

@@ -50,7 +50,7 @@ def command(
     record: float = typer.Option(
         0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
@@ -99,6 +99,8 @@ def command(
         _arm(body, manoeuvre if "manoeuvre" in typed else "phases", of_arm, to, out, json)
         return
     parameters = read_parameter_file(file)
+    if not json:
+        show.not_used(parameters, tables)
     given = {"integrator": integrator, "step": step, "record": record}
     how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
     made = simulate(
@@ -321,11 +323,14 @@ def current_of(text: str) -> dict[str, float]:
 
 
 def _print(made: Simulation, written: list[Path]) -> None:
+    from coeflab.core.texts import remark
     from coeflab.report.tables.motion import figure_table
+    from coeflab.vehicle.force_law import EDGE
 
     name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
     show.table(figure_table(made.figures, name, made.vehicle.length))
-    for line in (*made.vehicle.afloat, *made.statements):
+    shown_first = {remark(f) for f in made.vehicle.findings if f.code != EDGE}
+    for line in (*made.vehicle.afloat, *(s for s in made.statements if s not in shown_first)):
         show.text(f"  {line}")
     if made.trajectory.why:
         show.text(f"  {made.trajectory.ended.value}: {made.trajectory.why}")

@@ -165,17 +165,12 @@ def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float
     """The CSV in pieces: header, then rows, the last variable fastest."""
     import numpy as np
 
+    from coeflab.core.text.csv_rows import csv_text
     from coeflab.vehicle.parameter_model import ANGLE_OF, from_angles
 
     units = dict.fromkeys(ANGLE_OF, "rad") | {v.name: v.unit for m in models for v in m.variables}
-    yield (
-        ",".join(
-            [_header(v, units[v]) for v in given]
-            + [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
-            + ["inside"]
-        )
-        + "\n"
-    )
+    heads = [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
+    yield csv_text([[*(_header(v, units[v]) for v in given), *heads, "inside"]])
     shape = tuple(len(x) for x in given.values())
     total = math.prod(shape)
     for start in range(0, total, CHUNK):
@@ -191,7 +186,7 @@ def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float
         tally.points += len(inside)
         tally.outside += int(np.sum(np.logical_not(inside)))
         cells.append(["1" if w else "0" for w in inside])
-        yield "".join(",".join(row) + "\n" for row in zip(*cells, strict=True))
+        yield csv_text(zip(*cells, strict=True))
 
 
 def _text(values: NDArray[np.float64]) -> list[str]:

@@ -10,8 +10,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
-    from coeflab.motion.trim.linear_model import LinearModel
-    from coeflab.motion.trim.trim import Trim
+    from coeflab.api.trimming import LinearModel, Trim
 
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
@@ -47,7 +46,7 @@ def command(
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
@@ -67,20 +66,20 @@ def command(
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
+    import coeflab as cf
+    from coeflab.api.trimming import linear_model, trim
     from coeflab.core.files import write_all
-    from coeflab.motion.trim.linear_model import linear_model
-    from coeflab.motion.trim.trim import trim
-    from coeflab.motion.vehicle import vehicle
     from coeflab.report.tables.linear_model import files, matrix_tables, mode_table
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
-    motion = {AXES.get(k, k): _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
-    orders = _named(commands, "--commands")
-    upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
-    chosen = plane or ("vertical" if upright else "horizontal")
-    craft = vehicle(read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
-    found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
+    motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
+    vehicle = cf.read_vehicle(file)
+    if not json:
+        show.not_used(vehicle.file, tables)
+    found = trim(
+        vehicle, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
+        free=free.replace(",", " ").split(), starts=starts, seed=seed, tables=tables, accelerations=accelerations, **motion,
+    )  # fmt: skip
     solved = found.point.outcome.solved
     model = linear_model(found) if solved and (linear or out is not None) else None
     folder = out or Path()
@@ -98,7 +97,7 @@ def command(
                 show.table(one)
         for name in names:
             show.path(folder / name)
-    if not solved:
+    if not solved or found.refused:
         raise typer.Exit(1)
 
 
@@ -144,8 +143,8 @@ def _si(name: str, value: float, option: str) -> float:
     """
     from math import isfinite, radians
 
+    from coeflab.api.trimming import CONTROLS
     from coeflab.core.errors import InputError, shown
-    from coeflab.law.symbols import CONTROLS
 
     if not isfinite(value):
         raise InputError(shown(value), "a finite number", column=option)

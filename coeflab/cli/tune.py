@@ -38,14 +38,21 @@ def command(
     from coeflab.cli.run import REPORTS
     from coeflab.motion.tune.plan import read_tuning_plan
     from coeflab.report.tables import motion as tuning_tables
+    from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench.tune import tune, write
 
+    read = read_tuning_plan(plan)
+    if not json:
+        show.not_used(read.parameters)
     with show.progress(json) as say:
         say(f"tuning {plan}")
-        tuned = tune(read_tuning_plan(plan))
+        tuned = tune(read)
     paths = write(tuned, out if out is not None else Path(REPORTS) / tuned.plan.name)
+    found = plausibility(tuned.parameters)
     if json:
-        show.json_object({**as_json(tuned), "files": [str(p) for p in paths]})
+        from coeflab.cli.as_json import findings
+
+        show.json_object({**as_json(tuned), "findings": findings(found), "files": [str(p) for p in paths]})
     else:
         show.table(tuning_tables.parameters(tuned.tuning))
         show.table(tuning_tables.quantities(tuned.tuning))
@@ -53,7 +60,8 @@ def command(
         show.table(tuning_tables.together(tuned.tuning))
         for path in paths:
             show.path(path)
-    if not tuned.tuning.converged:
+        show.file_findings(tuned.parameters.name, found)
+    if not tuned.tuning.converged or show.failed(found):
         raise typer.Exit(1)
 
 

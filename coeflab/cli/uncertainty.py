@@ -50,7 +50,7 @@ def command(
         autocompletion=complete.kernels,
         help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
     accelerations: str = typer.Option(
         "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
     ),
@@ -83,8 +83,11 @@ def command(
         (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
     )  # fmt: skip
     folder = state if state is not None else out / "batches" if out is not None else None
+    parameters = read_parameter_file(file)
+    if not json:
+        show.not_used(parameters, tables)
     with show.narrated():
-        made = uncertainty(read_parameter_file(file), question, cores, scheduler, folder)
+        made = uncertainty(parameters, question, cores, scheduler, folder)
     written = [] if out is None or made.undetermined else _write(made, out)
     if json:
         show.json_object({**as_json(made), "files": [str(p) for p in written]})

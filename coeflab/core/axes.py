@@ -30,7 +30,7 @@ FRAMES = {
     "FLU": ("forward", "port", "up"),
     "CFD": ("aft", "starboard", "up"),
 }
-FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like ["forward", "port", "up"]'
+FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like "forward, port, up"'
 ANGLE_SIGNS = {
     "beta": {"v = +U sin(beta)": 1.0, "v = -U sin(beta)": -1.0},
     "alpha": {"w = +U sin(alpha)": 1.0, "w = -U sin(alpha)": -1.0},
@@ -45,9 +45,12 @@ class Axes:
     ----------
     directions : tuple of str
         Where x, y and z point.
+    spelled : bool
+        They were stated one by one; a frame by its name is a habit of its format and may be doubted.
     """
 
     directions: tuple[str, str, str]
+    spelled: bool = field(default=False, compare=False)
 
     @property
     def rotation(self) -> NDArray[np.float64]:
@@ -60,14 +63,55 @@ class Axes:
         named = {directions: name for name, directions in FRAMES.items()}
         return named.get(self.directions, ", ".join(f"{a} {d}" for a, d in zip("xyz", self.directions, strict=True)))
 
+    @property
+    def declared(self) -> str | list[str]:
+        """What a file states: the name of a frame that was named, else the three directions."""
+        named = {directions: name for name, directions in FRAMES.items()}
+        return list(self.directions) if self.spelled or self.directions not in named else named[self.directions]
+
+    @property
+    def typed(self) -> str:
+        """The three directions as an option takes them: ``forward,port,up``."""
+        return ",".join(self.directions)
+
+
+def axes_of(rotation: NDArray[np.float64]) -> Axes:
+    """The axes whose rotation to FRD this is, one of the 24 right-handed ones.
+
+    Examples
+    --------
+    >>> axes_of(parse_axes("port, up, forward").rotation).typed
+    'port,up,forward'
+    """
+    names = {tuple(way): name for name, way in DIRECTIONS.items()}
+    x, y, z = (names[tuple(float(v) for v in np.round(column) + 0.0)] for column in np.asarray(rotation).T)
+    return Axes((x, y, z), spelled=True)
+
+
+_WORDS = re.compile(r"[A-Za-z]+")
+
+
+def _directions(declared: Any) -> tuple[str, ...]:
+    """Directions in small letters of a list, or of a text: with commas, blanks, brackets, quotes, as ``x aft, y port, z down``."""
+    if isinstance(declared, str):
+        words = _WORDS.findall(declared.lower())
+        if words[::2] == ["x", "y", "z"]:
+            words = words[1::2]
+    else:
+        listed = isinstance(declared, (list, tuple)) and all(isinstance(d, str) for d in declared)
+        words = [d.strip().lower() for d in declared] if listed else []
+    return tuple(words) if len(words) == 3 and all(d in DIRECTIONS for d in words) else ()
+
 
 def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.frame") -> Axes:
-    """Read an axes declaration: ``"FRD"``, ``"FLU"``, ``"CFD"`` or three directions.
+    """Read an axes declaration: ``"FRD"``, ``"FLU"``, ``"CFD"`` or three directions, as a list or as a text.
+
+    The one reader of axes, for options, TOML and imports.
 
     Parameters
     ----------
     declared : object
-        As TOML gave it.
+        As TOML gave it, or as it was typed.
     file : path, optional
     key : str
         Both for the error.
@@ -76,15 +120,20 @@ def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.f
     ------
     AxesError
         Unknown frame, directions that do not span space, or a left-handed triad.
+
+    Examples
+    --------
+    >>> parse_axes("flu").directions
+    ('forward', 'port', 'up')
+    >>> parse_axes("port,up,forward") == parse_axes(["port", "up", "forward"])
+    True
     """
-    if isinstance(declared, str) and declared in FRAMES:
-        directions = FRAMES[declared]
-    elif isinstance(declared, list) and len(declared) == 3 and all(d in DIRECTIONS for d in declared):
-        directions = (declared[0], declared[1], declared[2])
-    else:
-        found = "nothing" if declared is None else shown(declared)
+    frame = FRAMES.get(declared.strip(" \"'").upper()) if isinstance(declared, str) else None
+    directions = frame or _directions(declared)
+    if not directions:
+        found = "nothing" if declared is None or declared == "" else shown(declared)
         raise AxesError(found, FRAME_WORDS, file=file, column=key)
-    axes = Axes(directions)
+    axes = Axes((directions[0], directions[1], directions[2]), spelled=frame is None)
     determinant = round(float(np.linalg.det(axes.rotation)))
     if determinant == 0:
         raise AxesError(shown(declared), "three directions at right angles", file=file, column=key)
@@ -107,6 +156,7 @@ Frame = Annotated[
         lambda v, _: parse_axes(v),
         {"anyOf": [
             {"enum": list(FRAMES)},
+            {"type": "string", "pattern": f"^({'|'.join(DIRECTIONS)})( *, *({'|'.join(DIRECTIONS)})){{2}}$"},
             {"type": "array", "items": {"enum": list(DIRECTIONS)}, "minItems": 3, "maxItems": 3},
         ]},
     ),

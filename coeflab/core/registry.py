@@ -171,6 +171,31 @@ class Registry(Generic[Port]):
             raise PluginError(f"the {self.kind} {shown(name)} of {_distribution(point)} {doing}: {what}.") from why
 
 
+class Folders:
+    """Modules of one name in the folders of a package, by the folder: found without being imported, imported on use.
+
+    Parameters
+    ----------
+    package : str
+        Dotted name.
+    file : str
+        Name of the module that every folder has.
+    """
+
+    def __init__(self, package: str, file: str) -> None:
+        self._package, self._file = package, file
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the folders, sorted."""
+        here = importlib.import_module(self._package).__path__
+        return tuple(sorted(p.parent.name for root in here for p in Path(root).glob(f"*/{self._file}.py")))
+
+    def load(self, name: str) -> Any:
+        """The module of a folder."""
+        return importlib.import_module(f"{self._package}.{name}.{self._file}")
+
+
 def _distribution(point: EntryPoint) -> str:
     if point.dist is None:
         return "a package without a name"

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, SupportsIndex, TypeVar, overload
 
+from coeflab.core.cards import html_by
 from coeflab.core.errors import shown
-from coeflab.core.table import html_by
 from coeflab.core.types import in_angles
 
 Item_co = TypeVar("Item_co", covariant=True)

@@ -265,7 +265,7 @@ def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:
         if not isinstance(noun, cls):
             return value
         held = {f.name: getattr(noun, f.name) for f in known}
-        return {f.name: held[f.name] for f in known if not (f.silent and held[f.name] == f.default)}
+        return {f.name: held[f.name] for f in known if not (f.silent and _is_default(held[f.name], f.default))}
 
     def made(values: Any) -> Any:
         noun = cls(**values)
@@ -275,6 +275,11 @@ def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:
 
     schema = {"type": "typed-dict", "fields": content, "extra_behavior": "forbid"}
     return _through(schema, apart, made, apart, ref=f"{cls.__module__}.{cls.__qualname__}:{id(cls)}")
+
+
+def _is_default(value: Any, default: Any) -> bool:
+    """An array is never the default of a field, and does not compare to a single truth."""
+    return value is default or (not isinstance(value, np.ndarray) and bool(value == default))
 
 
 def _json_schema(cls: Any, schema: Any, handler: Any) -> Any:

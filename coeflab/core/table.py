@@ -8,13 +8,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from html import escape
-from importlib import import_module
 from math import isfinite, isnan
 from textwrap import wrap
 from typing import NamedTuple
 
+from coeflab.core.cards import html_by
+from coeflab.core.errors import PluginError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.texts import words
+from coeflab.core.texts import Wording, remark, words
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import Verbatim
 
@@ -47,6 +48,9 @@ class Table:
     def __post_init__(self) -> None:
         if any("-0" in cell for row in self.rows for cell in row):
             object.__setattr__(self, "rows", tuple(tuple(map(_unsigned, row)) for row in self.rows))
+
+    def __str__(self) -> str:
+        return "\n".join(line.text for line in set_lines(self, 80))
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""
@@ -344,13 +348,8 @@ def as_check(name: str, found: Finding) -> Check:
         Plugin that made it.
     found : Finding
     """
-    text = words(found)
+    try:
+        text = words(found)
+    except PluginError:  # of a file by somebody else's plugin
+        text = Wording(remark(found), "", "")
     return Check(name, found.subject, found.severity, text.statement, text.rule, text.advice)
-
-
-def html_by(renderer: str, noun: object) -> str:
-    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.notebook``.
-
-    The report is imported on first use and by name: nouns stand below it.
-    """
-    return str(getattr(import_module("coeflab.report.notebook"), renderer)(noun))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, Planes, forbidden, planes_of, planes_through
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
@@ -151,6 +152,7 @@ NOTHING = 1e-9
 # Of the largest alike: fins of a mesh file in single precision stand 1e-6 rad off their planes.
 OF_MESH = 1e-5
 LEVERS = {4: (2, -1.0), 5: (1, 1.0)}  # M = -x Z, N = x Y
+STEERED = {"dr": ("v", "r"), "ds": ("w", "q"), "db": ("w", "q")}  # motions of the plane that a control steers in
 PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
 IDEAL = "ideal fluid"
 SEPARATED = 0.50  # of a bluff body's ideal fluid, judged: what separated flow takes from it or adds
@@ -172,8 +174,9 @@ def estimated(body: Body, water: Water, towed: bool = False, added_mass: AddedMa
     Raises
     ------
     InputError
-        The body has no outline, or nothing in it that a method is for.
+        The body has no outline, nothing in it that a method is for, or axes that its mesh contradicts.
     """
+    require_orientation(body)
     outline = body.outline
     if outline is None:
         advice = "Give its body.toml a shape: a mesh, a hull form with fins, or parts."
@@ -461,7 +464,26 @@ def _functionals(length: float, speed: float, controls: tuple[str, ...]) -> tupl
         angles = {control: steps}
         out += [Functional(f"{c}{control}", ahead, angles, i, first) for i, c in enumerate(COMPONENTS) if c != "X"]
         out.append(Functional(f"X{control}{control}", ahead, angles, 0, even))
+        out += [_steered(length, speed, motion, control) for motion in STEERED[control]]
     return tuple(out)
+
+
+def _steered(length: float, speed: float, motion: str, control: str) -> Functional:
+    """Xvdr, Xrdr and the like: the lift of a turned foil in drift or a turn has a part along x, which slows a turn."""
+    wide = 1.0 if motion in LINEAR else 2.0
+    a, b = (
+        g.ravel()
+        for g in np.meshgrid(
+            [s * wide * x for s in (-1.0, 1.0) for x in GRID], [s * x for s in (-1.0, 1.0) for x in GRID]
+        )
+    )
+    none = np.zeros_like(a)
+    nu = _motions(length, speed, **{motion: np.concatenate([a, a, none, none])})
+    signs = np.repeat([1.0, -1.0, -1.0, 1.0], len(a))
+    product = np.linalg.pinv((a * b)[:, None])[0]
+    return Functional(
+        f"X{motion}{control}", nu, {control: np.concatenate([b, none, b, none])}, 0, np.tile(product, 4) * signs
+    )
 
 
 def _coupled(length: float, speed: float, slide: str, turn: str, components: list[str]) -> list[Functional]:

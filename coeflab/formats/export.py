@@ -22,7 +22,7 @@ from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.rigid_body import momentum_force
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, primed
 from coeflab.vehicle.expected_signs import control_signs
-from coeflab.vehicle.force_law import by_coefficients, force_of_tables, steered_terms
+from coeflab.vehicle.force_law import motion_law, sources_of, steered_terms
 from coeflab.vehicle.inertia import COMPUTED, MEASURED, WaterInertia, known_mass, stated_accelerations, water_inertia
 from coeflab.vehicle.law_at_points import SMALL, LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -67,7 +67,7 @@ def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterIn
     """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
     that are not in the added mass it is given, and an added mass of another body.
     """
-    tables = tuple(_table(m) for m in parameters.models if not by_coefficients(m, parameters))
+    tables = tuple(_table(s.model) for s in sources_of(parameters).tables)
     unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
     out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, water))]
@@ -107,7 +107,7 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
 
 def _table(model: ParameterModel) -> str:
     over = f"{model.response} over {', '.join(model.names)} ({model.form})"
-    return f"{over}: simulators get the coefficients only; the targets csv and toml contain the table"
+    return f"{over}: no force stands in its place; the targets csv and toml contain the table"
 
 
 def _accelerations(parameters: ParameterFile, water: WaterInertia) -> list[str]:
@@ -246,6 +246,8 @@ class Loss:
     controls : tuple of str
         Which controls of the file's coefficients were varied, or that the target holds none of them; then what each does above
         zero.
+    rare : Apart
+        As ``forces``, astern, broadside and at rest, see `rare_states`.
     """
 
     target: str
@@ -259,6 +261,7 @@ class Loss:
     grid: str
     at_points: tuple[LawAtPoints, ...] = ()
     controls: tuple[str, ...] = ()
+    rare: Apart | None = None
 
     @property
     def worst(self) -> Array:
@@ -316,7 +319,8 @@ class Loss:
     @property
     def lossless(self) -> bool:
         """Whether the target holds everything, has what it needs, and forces and accelerations are the file's to rounding."""
-        return not self.not_held and not self.lost and self.furthest[1] <= LOSSLESS
+        alike = self.furthest[1] <= LOSSLESS and (self.rare is None or self.rare.furthest[1] <= LOSSLESS)
+        return not self.not_held and not self.lost and alike
 
 
 def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
@@ -358,6 +362,29 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
 
 
+RARE = "astern, broadside and at rest"
+
+
+def rare_states(parameters: ParameterFile) -> Array:
+    """Velocities (n, 6) that no test covers and every vehicle meets: astern, broadside, at rest.
+
+    Straight astern, to either side, up and down, at each of `SPEEDS`, and at no speed, along with none and either extreme of
+    one motion that `covered_grid` tries; in planes that the file speaks of.
+    """
+    grid, speed = covered_grid(parameters)[0], parameters.conditions.speed
+    fastest = float(np.max(np.linalg.norm(grid[:, :3], axis=1)))
+    extremes = [np.zeros(6)]
+    for k in range(1, 6):
+        at = float(np.max(np.abs(grid[:, k])))
+        extremes += [way * at * np.eye(6)[k] for way in (1.0, -1.0) if at > 0.0]
+    across = [k for k in (1, 2) if np.any(grid[:, k])]
+    ways = [-np.eye(6)[0], *(way * np.eye(6)[k] for k in across for way in (1.0, -1.0)), np.zeros(6)]
+    rows = [
+        factor * (speed * way + extreme * speed / fastest) for factor in SPEEDS for way in ways for extreme in extremes
+    ]
+    return np.unique(np.array(rows) + 0.0, axis=0)
+
+
 def _moved_by_terms(parameters: ParameterFile) -> set[str]:
     of_terms = {f for c in parameters.coefficients if c.value for f in derivative(c.symbol).factors}
     return (of_terms | {v.name for m in parameters.models for v in m.variables}) & set(MOTIONS)
@@ -365,7 +392,6 @@ def _moved_by_terms(parameters: ParameterFile) -> set[str]:
 
 def loss_of(
     target: str,
-    law: ForceLaw,
     parameters: ParameterFile,
     files: Mapping[str, bytes],
     force: Callable[[Mapping[str, bytes], Array], Array],
@@ -376,13 +402,11 @@ def loss_of(
     added_mass: Callable[[Mapping[str, bytes]], Array] | None = None,
     steered: Callable[[Mapping[str, bytes], Array, Array], Array] | None = None,
 ) -> Loss:
-    """Evaluate a target's law and added mass, from its own files, beside those of the parameter file.
+    """Evaluate a target's law and added mass, from its own files, beside those of the parameter file, tables and all.
 
     Parameters
     ----------
     target : str
-    law : ForceLaw
-        Of the parameter file.
     parameters : ParameterFile
     files : mapping of str to bytes
         What was exported.
@@ -402,6 +426,7 @@ def loss_of(
         As ``force``, with (n, 3) controls dr ds db in rad, of a target that holds them.
     """
     nu, words = covered_grid(parameters)
+    law, rare = motion_law(parameters)[0], rare_states(parameters)
     turned = steered_terms(parameters)
     names = tuple(n for n in CONTROLS if any(n in t.variables for t in turned))
     if steered is None or not names:
@@ -412,11 +437,9 @@ def loss_of(
     else:
         controls, said = _deflected(parameters, names, len(nu))
         nu = np.tile(nu, (len(controls) // len(nu), 1))
-        ours = law.force(nu) + ForceLaw(turned, np.zeros((6, 6, 6))).force(nu, controls)
-        theirs = steered(files, nu, controls)
-    tables = force_of_tables(parameters, nu)
-    if tables is not None:
-        ours, words = ours + tables, f"{words}; the file's force with its fitted tables"
+        ours, theirs = law.force(nu, controls), steered(files, nu, controls)
+    if any(t.kind == "table" for t in law.terms):
+        words = f"{words}; the file's force with its fitted tables"
     compared, why = None, "its exporter does not say what added mass it integrates"
     if added_mass is not None:
         compared, why = accelerations_apart(parameters, added_mass(files), nu, theirs, ours)
@@ -428,7 +451,7 @@ def loss_of(
         controls=False,
     )
     return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found,
-                (*said, *control_signs(parameters)))  # fmt: skip
+                (*said, *control_signs(parameters)), apart(force(files, rare), law.force(rare)))  # fmt: skip
 
 
 def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:

@@ -10,7 +10,7 @@ Absolute values in a name are written with ``a`` before the factor, ``Yvav`` for
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +18,10 @@ import numpy as np
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import definiteness
-from coeflab.law.force_law import ForceLaw, ForceTerm
+from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import canonical
-from coeflab.vehicle.force_law import force_law, ideal_terms, stated_terms
+from coeflab.vehicle.force_law import force_law, ideal_terms, motion_law, sources_of
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
 from coeflab.vehicle.law_at_points import motion_of
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -216,7 +216,7 @@ def propulsion(parameters: ParameterFile) -> str:
     """That an export has no propulsion, and which thrust keeps the file's speed on a straight course, in words."""
     speed, nu = parameters.conditions.speed, np.zeros((1, 6))
     nu[0, 0] = speed
-    thrust = -float(force_law(parameters).force(nu)[0, 0])
+    thrust = -float(motion_law(parameters)[0].force(nu)[0, 0])
     needed = f": {thrust:.4g} N along x keep {speed:g} m/s straight ahead" if thrust > 0.0 else ""
     return f"propulsion is not in the export{needed}"
 
@@ -246,7 +246,7 @@ def canonical_name(term: ForceTerm) -> str | None:
     """What a term is on a straight course ahead, where U = u = |u|: ``Yv`` for Yv, Yuv, Yv|u|; ``X0`` for X0, Xu|u|, Xuu, Xu;
     ``Yv|v|``; None for products of other motions and for terms even in one.
     """
-    match [f for f in canonical(term.term) if f[0] != "u"]:
+    match [f for f in canonical(term.product) if f[0] != "u"]:
         case []:
             return f"{term.component}0"
         case [(x, 1, True)]:
@@ -275,8 +275,8 @@ def straight_coefficients(law: ForceLaw, speed: float) -> Mapping[str, float]:
     for t in law.terms:
         name = canonical_name(t)
         if name is not None:
-            ahead = sum(n for v, n, _ in t.term.factors if v == "u")
-            rest = t.term.degree - ahead
+            ahead = sum(n for v, n, _ in t.product.factors if v == "u")
+            rest = t.product.degree - ahead
             out[name] = out.get(name, 0.0) + t.coefficient * speed ** (t.speed_power + ahead + rest - 2)
     return out
 
@@ -300,7 +300,7 @@ def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: fl
 
     def held(t: ForceTerm) -> bool:
         name = canonical_name(t)
-        if name is None or "|" in name or t.speed_power + t.term.degree != 2:
+        if name is None or "|" in name or t.speed_power + t.product.degree != 2:
             return False
         i = COMPONENTS.index(t.component)
         if name.endswith("0"):
@@ -315,6 +315,15 @@ def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: fl
         return abs(theirs - ours) <= TOLERANCE * abs(ours)
 
     return held
+
+
+COURSE = f"0.5*(abs({AHEAD.prime:g}*u/U + 1) - abs({AHEAD.prime:g}*u/U - 1))"
+COURSE_MEANS = "1 ahead, -1 astern: drag astern too"
+
+
+def has_course(terms: Iterable[ForceTerm]) -> bool:
+    """Whether a program needs ``course``, of `COURSE`: for X0' alone, which turns with the direction of motion."""
+    return any(t.ahead for t in terms)
 
 
 _SPELT = re.compile(r"a(dr|ds|db|[uvwpqr](?!dot))")
@@ -335,7 +344,9 @@ def expression(term: ForceTerm, place: Callable[[str, str], str], power: str) ->
     parts.append(place(term.kind, spelt(term.symbol)))
     if term.speed_power > 0:
         parts.append("U" + (f"{power}{term.speed_power}" if term.speed_power > 1 else ""))
-    for variable, n, absolute in term.term.factors:
+    if term.ahead:
+        parts.append("course")
+    for variable, n, absolute in term.product.factors:
         parts.append((f"abs({variable})" if absolute else variable) + (f"{power}{n}" if n > 1 else ""))
     text, below = "*".join(parts), -term.speed_power
     return text if below <= 0 else f"{text}/U" + (f"{power}{below}" if below > 1 else "")
@@ -352,8 +363,8 @@ def sname(name: str) -> str:
 
 
 def written_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
-    """Every coefficient with a value but accelerations, then the ideal fluid's products that these leave open."""
-    return (*stated_terms(parameters), *ideal_terms(parameters))
+    """Every coefficient of the law, then the ideal fluid's products that no coefficient and no fitted table speaks of."""
+    return (*sources_of(parameters).terms, *ideal_terms(parameters))
 
 
 def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], str]:

@@ -17,6 +17,7 @@ from pydantic import ValidationError
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding
 from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief, locked
@@ -55,6 +56,8 @@ class Stated:
     matrix_body, matrix_method : str
     mass : MassProperties or None
     notes : tuple of str
+    findings : tuple of Finding
+        What the file holds and this does not.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Stated:
     matrix_method: str = "stated"
     mass: MassProperties | None = None
     notes: tuple[str, ...] = field(default=())
+    findings: tuple[Finding, ...] = ()
 
 
 def stated_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
@@ -104,6 +108,7 @@ def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, .
         covariance=ParameterCovariance(symbols=(), matrix=()),
         covered=(),
         added_mass=hull,
+        findings=s.findings,
         provenance=Provenance(
             coeflab_version=VERSION,
             study=sources[0].name if sources else s.name,
@@ -337,6 +342,8 @@ class LinkModel:
         m, where the file states one.
     length_name : str
     notes : tuple of str
+    findings : tuple of Finding
+        What the file holds and this does not.
     """
 
     model: str
@@ -351,6 +358,7 @@ class LinkModel:
     length: float | None = None
     length_name: str = ""
     notes: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("added", "matrix", "centre"):
@@ -403,5 +411,6 @@ def link_file(
         matrix=kept_matrix(link.matrix),
         mass=stated_mass(link.mass, link.centre, link.inertia, notes),
         notes=tuple(notes),
+        findings=link.findings,
     )
     return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from coeflab.core.wording import listed
+from coeflab.core.texts import remark
+from coeflab.core.wording import listed, one_line
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.force_law import force_law, sources_of
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.sources import name_of
 
 
 def without_law(parameters: ParameterFile) -> tuple[str, ...]:
-    """The force components that no coefficient speaks of, and which motions are left, in one sentence; none where all have one.
+    """The force components that no source speaks of, and which motions are left, in one sentence; none where all have one.
 
-    A fitted table speaks of its component; one of drag, side force or lift of all.
+    A fitted table speaks of its component; drag, side force and lift of X, Y and Z.
     """
     spoken = {t.component for t in force_law(parameters).terms if not t.variables or set(t.variables) & set(MOTIONS)}
-    for model in parameters.models:
-        component = model.response.removesuffix("'")
-        spoken |= {component} if component in COMPONENTS else set(COMPONENTS)
+    sources = sources_of(parameters)
+    spoken |= {c for s in sources.tables for c in sources.components(s)}
     silent = [c for c in COMPONENTS if c not in spoken]
     if not silent:
         return ()
@@ -28,6 +29,24 @@ def without_law(parameters: ParameterFile) -> tuple[str, ...]:
     if not moving:
         return (f"no law for {', '.join(silent)}: the file has no force of the water",)
     return (f"no law for {', '.join(silent)}: only {listed(moving)} may move{speed}; hold {listed(still)}",)
+
+
+def in_header(parameters: ParameterFile) -> tuple[str, ...]:
+    """What the head of every exported file says: components without a law, tables of the law that are not in the file, and what
+    was found of the numbers, each in one line.
+    """
+    return (*without_law(parameters), *lacking_tables(parameters), *found_in(parameters))
+
+
+def lacking_tables(parameters: ParameterFile) -> tuple[str, ...]:
+    """The tables of the law, which no simulator's file holds, in one sentence; none where there are none."""
+    tables = [name_of(s.model) for s in sources_of(parameters).tables]
+    return (f"not in this file, and no force in its place: {listed(tables)}",) if tables else ()
+
+
+def found_in(parameters: ParameterFile) -> tuple[str, ...]:
+    """The findings of a parameter file in words, each in one line."""
+    return tuple(one_line(remark(f)).removesuffix(".") for f in parameters.findings)
 
 
 def unstated(parameters: ParameterFile, names: dict[str, str] | None = None) -> tuple[str, ...]:

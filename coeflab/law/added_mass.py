@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
-from coeflab.core.table import html_by
 from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
@@ -110,7 +110,7 @@ class NearWall(NamedTuple):
     matrix: Annotated[Square6, Means("as that of `added_mass`", "kg, kg m, kg m^2")]
 
 
-@stored("body method density matrix others? walls?? statements?")
+@stored("body method density matrix u95?? others? walls?? statements?")
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
@@ -137,6 +137,8 @@ class AddedMass:
         In a parameter file: the same by other methods, about the same point.
     walls : tuple of NearWall
         The same near walls, about the same point, of one wall by rising distance; empty where none were asked for.
+    u95 : (6, 6) array, optional
+        95 % half-widths of the entries of a rough guide, kg, kg m, kg m^2.
     """
 
     matrix: Annotated[
@@ -155,12 +157,14 @@ class AddedMass:
     density: Annotated[Positive, Means("density of the water that the matrix holds for", "kg/m^3")] = np.nan
     others: Annotated[tuple[OtherMethod, ...], Means("the same by other methods, to be compared with")] = ()
     walls: Annotated[tuple[NearWall, ...], Means("the same near walls, by distance", since="1.5")] = ()
+    u95: Annotated[Square6 | None, Means("95 % half-widths of a rough guide", "kg, kg m, kg m^2", since="1.6")] = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
-        if self.error is not None:
-            object.__setattr__(self, "error", locked(self.error))
+        for name in ("error", "u95"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
         if self.matrix.shape != (6, 6):
             raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
 
@@ -202,17 +206,17 @@ class AddedMass:
     def about(self, point: NDArray[np.float64]) -> AddedMass:
         """The same about another point, m, FRD, from the datum; errors add up as if all had the worst sign."""
         shift = np.asarray(point, dtype=float) - self.reference_point
-        matrix, error = moved(self.matrix, shift), None
-        if self.error is not None:
-            lever = np.abs(velocity_transfer(-shift))
-            error = lever.T @ self.error @ lever
+        matrix, lever = moved(self.matrix, shift), np.abs(velocity_transfer(-shift))
+        error, u95 = (None if half is None else lever.T @ half @ lever for half in (self.error, self.u95))
         others = tuple(OtherMethod(o.method, moved(o.matrix, shift)) for o in self.others)
         # The distance of a table near walls is from its reference point: it moves with that along z, down.
         walls = tuple(
             NearWall(w.wall, w.distance - shift[2] * (1.0 if w.wall == "bottom" else -1.0), moved(w.matrix, shift))
             for w in self.walls
         )
-        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error, others=others, walls=walls)
+        return replace(
+            self, matrix=matrix, reference_point=np.asarray(point), error=error, u95=u95, others=others, walls=walls
+        )
 
     def near(self, wall: str, distance: float) -> NDArray[np.float64]:
         """(6, 6) matrix at a distance from a wall, of its table.

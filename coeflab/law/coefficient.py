@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, RefusedError, stored
-from coeflab.core.table import html_by, percent, plus_minus
+from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative, primed

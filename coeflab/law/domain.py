@@ -9,12 +9,15 @@ defined here, by the cubic step 1 - 3 t^2 + 2 t^3 of Hermite interpolation.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 from scipy.spatial import ConvexHull, QhullError
 
-from coeflab.core.types import Array
+from coeflab.core.types import Array, brief, locked
 
 SLACK = 1e-9
 FLAT = 1e-10
@@ -193,3 +196,59 @@ def taper_weight(points: Array, nearest: Array, low: Array, high: Array) -> Arra
     t = np.linalg.norm(away / _widths(low, high), axis=1) / TAPER
     t = np.where(np.any(away[:, flat] > 0.0, axis=1) | ~np.isfinite(t), 1.0, np.minimum(t, 1.0))
     return np.asarray(1.0 - t**2 * (3.0 - 2.0 * t), dtype=np.float64)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Hull:
+    """The region of a table's data, and what a reader outside of it gets: the one reading of a domain.
+
+    Attributes
+    ----------
+    variables : tuple of str
+    low, high : (d,) array
+        Bounding box.
+    spaces : (m, d + 1) array
+        Rows [a, b] with a . x + b <= 0 inside.
+    rule : {"refuse", "clamp", "taper"}
+        Outside: no value; that of the nearest point of the hull; a blend into that.
+    """
+
+    variables: tuple[str, ...]
+    low: Array
+    high: Array
+    spaces: Array
+    rule: Literal["refuse", "clamp", "taper"] = "clamp"
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spaces"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def is_box(self) -> bool:
+        """Whether the hull is its bounding box, so that every variable may be held by itself."""
+        d = len(self.variables)
+        normals, offsets = self.spaces[:, :d], self.spaces[:, d]
+        if np.any(np.count_nonzero(np.abs(normals) > SLACK * np.abs(normals).max(axis=1, keepdims=True), axis=1) != 1):
+            return False
+        at = np.argmax(np.abs(normals), axis=1)
+        slope = normals[np.arange(len(at)), at]
+        edge, ends = -offsets / slope, np.where(slope > 0.0, self.high[at], self.low[at])
+        wide = np.where(self.high > self.low, self.high - self.low, 1.0)[at]
+        if len({(int(i), up) for i, up in zip(at, slope > 0.0, strict=True)}) < 2 * d:
+            return False
+        return bool(np.all(np.abs(edge - ends) <= SLACK * np.maximum(wide, np.abs(ends))))
+
+    def contains(self, points: Array, slack: float = SLACK) -> NDArray[np.bool_]:
+        """(n,) whether points (n, d) lie inside."""
+        return np.asarray(inside(self.spaces, points, slack), dtype=bool)
+
+    def read(self, points: Array) -> tuple[Array, Array]:
+        """Where a table is read for points (n, d): the nearest points of the hull, and (n,) the share of the free continuation.
+
+        The share is zero unless the rule is ``taper``; what ``refuse`` does with a point outside is its caller's.
+        """
+        nearest = clamped(points, self.spaces, self.low, self.high)
+        if self.rule != "taper":
+            return nearest, np.zeros(len(points))
+        return nearest, taper_weight(points, nearest, self.low, self.high)

@@ -1,8 +1,8 @@
-"""The hydrodynamic force of a vehicle: one kind of term, one law of such terms, and its value at many states at once.
+"""The hydrodynamic force of a vehicle: one kind of term, one law as the sum of such terms, and its value at many states at once.
 
 A term is ``coefficient * V^n * product of variables``, along a body axis or along drag, side force or lift. A variable is one of
 u v w p q r, of the control angles dr ds db, or of the incidence alpha = atan2(w, u), beta = asin(v/V); as it is or primed (v/V,
-r L/V, no control), and held within the range that its table covers.
+r L/V, no control), and held within the hull of its table's data.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief, locked
+from coeflab.law.domain import SLACK, Hull
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import Term
@@ -24,6 +25,7 @@ SPEED, ALPHA, BETA = BASE.index("V"), BASE.index("alpha"), BASE.index("beta")
 WIND = ("D", "S", "L")
 CONTROLS = BASE[6:9]
 SLOWEST = 1e-9
+MOVED = 1e-6  # of a hull: a motion on its edge is inside, with the rounding of its integration
 
 Ints = NDArray[np.int64]
 
@@ -31,13 +33,15 @@ Ints = NDArray[np.int64]
 class Reading(NamedTuple):
     """How a term reads a variable: times ``prime`` over V where that is not zero, and held between ``low`` and ``high``.
 
-    ``tabled``: that range is where a table has data, so that a motion beyond it is worth a word.
+    ``tabled``: that range is where a table has data, so that a motion beyond it is worth a word. ``table``: whose hull holds
+    the variable together with others, where that is no box.
     """
 
     prime: float = 0.0
     low: float = -np.inf
     high: float = np.inf
     tabled: bool = False
+    table: str = ""
 
 
 PLAIN = Reading()
@@ -74,6 +78,8 @@ class ForceTerm:
         Of the variables that are not read as they are.
     note : str
         U95 and origin, in words.
+    hull : Hull or None
+        Of the table's data.
     """
 
     symbol: str
@@ -87,6 +93,17 @@ class ForceTerm:
     potential: float | None = None
     readings: tuple[tuple[str, Reading], ...] = ()
     note: str = ""
+    hull: Hull | None = None
+
+    @property
+    def ahead(self) -> bool:
+        """Whether the term is a force by V^2 alone that turns with the course, such as X0': see `AHEAD`."""
+        return self.readings == (("u", AHEAD),)
+
+    @property
+    def product(self) -> Term:
+        """The product of variables without the sign of the course that `AHEAD` gives."""
+        return Term() if self.ahead else self.term
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -111,9 +128,10 @@ class ForceTerm:
     @property
     def pair(self) -> tuple[int, int] | None:
         """The product of two velocities that the term is near straight motion; None for others."""
-        if any(a for _, _, a in self.term.factors) or self.term.degree > 2 or self.term.degree + self.speed_power != 2:
+        factors, degree = self.product.factors, self.product.degree
+        if any(a for _, _, a in factors) or degree > 2 or degree + self.speed_power != 2:
             return None
-        at = sorted(MOTIONS.index(v) for v, n, _ in self.term.factors for _ in range(n))
+        at = sorted(MOTIONS.index(v) for v, n, _ in factors for _ in range(n))
         first, second = [0] * (2 - len(at)) + at
         return first, second
 
@@ -130,6 +148,10 @@ class ForceLaw:
         Q of `coeflab.law.rigid_body.ideal_quadratics`, zero where a measured term speaks: force i = sum of Q[i, j, k] nu_j nu_k.
     left_out : tuple of str
         Symbols with a value that are no part of the law: accelerations, and controls where they are not asked for.
+    wind : (3,) bool array
+        For which of X, Y and Z drag, side force and lift speak; body axes speak for the others.
+    strict : bool
+        Whether the force is NaN where a table refuses to be read. A motion goes on with the value at the edge, and ends there.
     coefficient : (t,) or (m, t) array
         SI; one row a member where the members differ. Those of the terms unless given.
     source, prime, low, high, tabled
@@ -139,11 +161,17 @@ class ForceLaw:
     powers, gathered, primed, along, angled
         Distinct powers of V; (f, t) rows of the pool whose product is each term; variables that are primed; (9, t) which
         component each term adds to; whether any needs the incidence.
+    regions : tuple of _Region
+        The hull of every table.
+    curved : bool
+        Whether one of them is no box, or tapers: then variables are not held one by one.
     """
 
     terms: tuple[ForceTerm, ...]
     ideal: Array
     left_out: tuple[str, ...] = ()
+    wind: tuple[bool, bool, bool] = (True, True, True)
+    strict: bool = False
     coefficient: Array = field(default_factory=lambda: np.empty(0))
     source: Ints = field(init=False, repr=False)
     prime: Array = field(init=False, repr=False)
@@ -156,6 +184,8 @@ class ForceLaw:
     primed: Ints = field(init=False, repr=False)
     along: Array = field(init=False, repr=False)
     angled: bool = field(init=False, repr=False)
+    regions: tuple[_Region, ...] = field(init=False, repr=False)
+    curved: bool = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         readings = [dict(t.readings) for t in self.terms]
@@ -183,6 +213,27 @@ class ForceLaw:
         object.__setattr__(self, "primed", np.flatnonzero(self.prime))
         object.__setattr__(self, "along", (self.component == np.arange(9)[:, None]).astype(np.float64))
         object.__setattr__(self, "angled", bool(np.any(self.component >= 6) or np.any(self.source >= ALPHA)))
+        object.__setattr__(self, "regions", self._regions(variables))
+        object.__setattr__(self, "curved", any(r.together for r in self.regions))
+
+    def _regions(self, variables: list[tuple[str, Reading]]) -> tuple[_Region, ...]:
+        hulls: dict[int, tuple[Hull, dict[str, Reading], list[int]]] = {}
+        for i, t in enumerate(self.terms):
+            if t.hull is not None:
+                hulls.setdefault(id(t.hull), (t.hull, {}, []))[1].update(t.readings)
+                hulls[id(t.hull)][2].append(i)
+        at = {v: i for i, v in enumerate(variables)}
+        out = []
+        for hull, readings, terms in hulls.values():
+            each = [(v, readings[v]) for v in hull.variables]
+            rows = [at.get(v, -1) for v in each] if any(r.table for _, r in each) else []
+            out.append(
+                _Region(
+                    hull, np.array([BASE.index(v) for v, _ in each]), np.array([r.prime for _, r in each]), np.array(rows, dtype=np.int64),
+                    np.array(terms, dtype=np.int64),
+                )
+            )  # fmt: skip
+        return tuple(out)
 
     def _gathered(
         self, of_terms: list[list[tuple[tuple[str, Reading], int, bool]]], variables: list[tuple[str, Reading]]
@@ -212,7 +263,10 @@ class ForceLaw:
             dr, ds, db, rad; zero unless given.
         """
         angles = np.zeros((3, len(nu))) if controls is None else controls.T
-        return np.asarray(self.term_force(nu.T, angles).T + self._ideal(nu))
+        out = np.asarray(self.term_force(nu.T, angles).T + self._ideal(nu))
+        if self.strict:
+            out[self.refused(nu, angles.T, SLACK)] = np.nan
+        return out
 
     def _ideal(self, nu: Array) -> Array:
         if self.ideal.ndim == 4:
@@ -235,14 +289,32 @@ class ForceLaw:
         along = self.along @ products
         out = along[:6]
         if self.angled:
-            out[:3] += np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
+            turned = np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
+            out[:3] += turned * np.array(self.wind)[:, None]
         return np.asarray(out)
 
     def _products(self, base: Array) -> Array:
         """(t, n) every term before its coefficient."""
-        speed = base[SPEED]
         values = self._values(base)
         np.clip(values, self.low[:, None], self.high[:, None], out=values)
+        if not self.curved:
+            return self._multiplied(values, base[SPEED])
+        near, shares = values.copy(), list[tuple[Ints, Array]]()
+        for r in self.regions:
+            if r.together:
+                nearest, free = r.hull.read(r.points(base))
+                used = r.rows >= 0
+                near[r.rows[used]] = nearest.T[used]
+                shares += [(r.terms, free)] if np.any(free) else []
+        out = self._multiplied(near, base[SPEED])
+        if shares:
+            beyond = self._multiplied(values, base[SPEED])
+            for terms, free in shares:
+                out[terms] += free * (beyond[terms] - out[terms])
+        return out
+
+    def _multiplied(self, values: Array, speed: Array) -> Array:
+        """(t, n) every term before its coefficient, of variables (v, n) where they are read."""
         pool = np.empty((1 + len(self.powers) + 2 * len(values), len(speed)))
         pool[0] = 1.0
         for row, power in enumerate(self.powers, 1):
@@ -263,8 +335,61 @@ class ForceLaw:
         return values
 
     def held(self, nu: Array, controls: Array) -> NDArray[np.bool_]:
-        """(n,) whether a variable lies beyond the range of its table, where the table's edge stands in."""
-        speed = np.sqrt(np.sum(nu[:, :3] ** 2, axis=1))
-        base = np.vstack([nu.T, controls.T, speed, *incidence(nu[:, 0], nu[:, 1], nu[:, 2])])
+        """(n,) whether a state lies beyond the data of a table, where the table's edge stands in."""
+        base = _base(nu, controls)
         values = self._values(base).T
-        return np.asarray(np.any(((values < self.low) | (values > self.high)) & self.tabled, axis=1))
+        out = np.any(((values < self.low) | (values > self.high)) & self.tabled, axis=1)
+        for r in self.regions:
+            if r.together:
+                out |= ~r.hull.contains(r.points(base), MOVED)
+        return np.asarray(out)
+
+    def refused(self, nu: Array, controls: Array, slack: float = MOVED) -> NDArray[np.bool_]:
+        """(n,) whether a table that refuses to be read beyond its data would have to be; nothing is read without a speed.
+
+        Parameters
+        ----------
+        nu : (n, 6) array
+        controls : (n, 3) array
+        slack : float
+            Of the hull.
+        """
+        base, out = _base(nu, controls), np.zeros(len(nu), dtype=bool)
+        for r in self.regions:
+            if r.hull.rule == "refuse":
+                still = base[SPEED] <= SLOWEST if np.all(self._powers_of_speed(r.terms) > 0) else False
+                out |= ~r.hull.contains(r.points(base), slack) & np.logical_not(still)
+        return out
+
+    def _powers_of_speed(self, terms: Ints) -> Ints:
+        return np.array([self.terms[i].speed_power for i in terms], dtype=np.int64)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class _Region:
+    """The hull of one table in a law: base row and prime of its variables, their rows where they are held together, its terms."""
+
+    hull: Hull
+    source: Ints
+    prime: Array
+    rows: Ints
+    terms: Ints
+
+    @property
+    def together(self) -> bool:
+        """Whether its variables are held together, and not one by one."""
+        return len(self.rows) > 0
+
+    def points(self, base: Array) -> Array:
+        """(n, d) its variables."""
+        values = base[self.source].copy()
+        primed = np.flatnonzero(self.prime)
+        values[primed] *= self.prime[primed, None] / np.maximum(base[SPEED], SLOWEST)
+        return np.asarray(values.T)
+
+
+def _base(nu: Array, controls: Array) -> Array:
+    """(b, n) every variable as it is."""
+    speed = np.sqrt(np.sum(nu[:, :3] ** 2, axis=1))
+    return np.vstack([nu.T, controls.T, speed, *incidence(nu[:, 0], nu[:, 1], nu[:, 2])])

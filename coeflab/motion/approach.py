@@ -11,10 +11,10 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import named_numbers
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, MOTIONS
-from coeflab.motion.dynamics import linearised, modes
+from coeflab.law.symbols import ANGLE_NAMES, CONTROLS, MOTIONS
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
 from coeflab.motion.trajectory import UNCOVERED, WITHOUT_DATA, Trajectory, covered_ranges, outside, outside_in_words
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import THRUST, Vehicle
 from coeflab.vehicle.parameter_parts import ParameterThruster
 
@@ -179,61 +179,15 @@ def _images(one: ParameterThruster, other: ParameterThruster) -> bool:
     )
 
 
-def linear_growth(vehicle: Vehicle, plane: Sequence[str], speed: float) -> float:
-    """Largest real part of the eigenvalues of small motions about a straight course with the speed held, 1/s.
-
-    Positive: the course is unstable, and only nonlinear terms end the growth.
-    """
-    at = [MOTIONS.index(m) for m in plane if m != "u" and m in vehicle.free]
-    if not at:
-        return 0.0
-    held = replace(vehicle, free=tuple(MOTIONS[i] for i in at))
-    nu = along(vehicle, speed)
-    upright = np.array([UPRIGHT])
-
-    def rates(small: Array) -> Array:
-        moved = nu.copy()
-        moved[at] = small
-        return np.asarray(held.acceleration(moved[None, :], upright, np.zeros((1, 3)), np.zeros(6))[0, at])
-
-    scale = np.array([nu[0] / vehicle.length if MOTIONS[i] in ANGULAR else nu[0] for i in at])
-    return float(modes(linearised(rates, nu[at], scale))[0].real)
-
-
-def has_rotary_limit(vehicle: Vehicle, rate: str, components: Sequence[str]) -> bool:
-    """Whether a term of second or higher degree in a rate, beyond its product with V or u, stands in these components."""
-    return any(
-        t.component in components
-        and rate in t.variables
-        and sum(n for v, n, _ in t.term.factors if v in ("v", "w", "p", "q", "r")) > 1
-        for t in vehicle.law.terms
-    )
-
-
-def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
-    """Why a steady turn in a rate (``r``, ``q``) is not determined, in words; empty where the file's terms limit it."""
-    other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
-    if has_rotary_limit(vehicle, rate, components) or linear_growth(vehicle, (other, rate), speed) <= 0.0:
-        return ""
-    return unlimited_in_words(rate, components)
-
-
-def unlimited_in_words(rate: str, components: Sequence[str]) -> str:
-    """Why nothing limits a turn in a rate; components are ``YN`` or ``ZM``."""
-    terms = f"{components[0]}{rate}|{rate}| or {components[1]}{rate}|{rate}|"
-    return f"unstable, and no nonlinear term such as {terms} limits the turn"
-
-
 def decisive(names: Iterable[str], rate: str) -> list[str]:
-    """Of what a motion has left, what leaves a turn that nothing limits open: a range of data, or the rate, on which there are none."""
+    """Of what a motion has left, what leaves a turn that grows of itself open: a range of data, or the rate, on which there are none."""
     return [name for name in names if not name.endswith(UNCOVERED) or name == f"{rate}': {UNCOVERED}"]
 
 
 def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequence[Figure]) -> str:
     """Why a file determines nothing of a manoeuvre, in words; empty where it determines its beginning.
 
-    A vehicle whose straight course is unstable, without nonlinear terms that limit the turn, is determined only within its
-    data. Orders that it follows at once may leave them at time zero; where no data cover the rate of turn, it has none.
+    A turn that grows of itself and ends beyond the data, or never, is determined only within them. Orders that it follows at once may leave them at time zero; where no data cover the rate of turn, it has none.
 
     Parameters
     ----------
@@ -257,11 +211,7 @@ def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequen
     if any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
         return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), why))
     none = all(f.value is None for f in figures) and any(f.status == NOT_DETERMINED for f in figures)
-    return (
-        f"The file states no range of data for {rate}'. {why}"
-        if none and f"{rate}'" not in covered_ranges(vehicle)
-        else ""
-    )
+    return why if none and f"{rate}'" not in covered_ranges(vehicle) else ""
 
 
 def in_current(current: Array) -> tuple[str, ...]:
@@ -301,7 +251,7 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
     beyond = "; ".join(filter(None, said)) or "no force table stands behind the file"
     if lacking and decisive(names, rate):
-        return replace(figure, value=None, status=NOT_DETERMINED, why=f"{beyond}; {lacking}")
+        return replace(figure, value=None, status=NOT_DETERMINED, why="; ".join(filter(None, (said[0], lacking))))
     return replace(figure, status="extrapolated", why=beyond)
 
 
@@ -311,5 +261,5 @@ def in_field_terms(name: str) -> str:
 
 
 def undetermined(figure: Figure, lacking: str) -> Figure:
-    """A figure of a steady turn; without a value where nothing limits the turn."""
+    """A figure of a steady turn; without a value where the turn is not determined."""
     return replace(figure, value=None, status=NOT_DETERMINED, why=lacking) if lacking else figure

@@ -175,9 +175,17 @@ def term_force_of_one(law: ForceLaw) -> Force:
     law : ForceLaw
         Of one vehicle: coefficients (t,) or (1, t).
     """
+    if law.curved:
+        one = replace(law, coefficient=law.coefficient.reshape(-1))
+
+        def whole(state: Numbers, angles: Numbers) -> list[float]:
+            moving, turned = np.array(state[7:13])[:, None], np.array(angles)[:, None]
+            return [float(x) for x in one.term_force(moving, turned)[:, 0]]
+
+        return whole
     limits = (law.prime.tolist(), law.low.tolist(), law.high.tolist())
     variables = list(zip(law.source.tolist(), *limits, strict=True))
-    powers, angled = law.powers.tolist(), law.angled
+    powers, angled, speaks = law.powers.tolist(), law.angled, [float(w) for w in law.wind]
     coefficients = law.coefficient.reshape(-1).tolist()
     gathered = [[row for row in rows if row] for rows in law.gathered.T.tolist()]
     terms = list(zip(law.component.tolist(), coefficients, gathered, strict=True))
@@ -210,7 +218,7 @@ def term_force_of_one(law: ForceLaw) -> Force:
         if any(out[6:]):
             turned = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
             for k, value in enumerate(along_body(*turned, *out[6:])):
-                out[k] += value
+                out[k] += value * speaks[k]
         return out[:6]
 
     return force

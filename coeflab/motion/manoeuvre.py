@@ -22,8 +22,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
-from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.law.force_law import BASE, Ints
 from coeflab.law.symbols import CONTROLS

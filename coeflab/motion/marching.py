@@ -15,7 +15,6 @@ from coeflab.core.errors import InputError
 from coeflab.core.limits import MOTION_STEPS, require_rows
 from coeflab.core.machine import compiles
 from coeflab.core.types import Array, brief, locked
-from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import momentum_quadratics, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs, rates_of_one
@@ -23,7 +22,7 @@ from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
 from coeflab.motion.manoeuvre import NEAR, Manoeuvre, Marching, Orders, beyond_curves, orders_of, ramp, standing_orders
-from coeflab.motion.trajectory import Ended, Trajectory, outside
+from coeflab.motion.trajectory import Ended, Trajectory, ended_by_tables, outside
 from coeflab.motion.vehicle import Vehicle
 
 SHAPES = {"coefficients": (0,), "added": (6, 6), "ideal": (6, 6, 6), "mass": (), "centre": (3,), "inertia": (3, 3)}
@@ -94,7 +93,8 @@ class Ensemble:
         """One of them, as a vehicle."""
         v = self.vehicle
         terms = tuple(replace(t, coefficient=float(c)) for t, c in zip(v.law.terms, self.coefficients[i], strict=True))
-        law = ForceLaw(terms, v.law.ideal if self.ideal is None else self.ideal[i])
+        own = np.array([t.coefficient for t in terms])
+        law = replace(v.law, terms=terms, coefficient=own, ideal=v.law.ideal if self.ideal is None else self.ideal[i])
         return replace(
             v, law=law,
             added=v.added if self.added is None else self.added[i],
@@ -233,13 +233,14 @@ class Marched:
         controls = self._controls(manoeuvre, time, phase, switches)
         how = ENDED[int(found.ended[i])]
         flags = outside(member, rows[:, 7:13], {c: x for c, x in controls.items() if c in CONTROLS})
-        return Trajectory(
+        motion = Trajectory(
             time=time, position=rows[:, :3], attitude=rows[:, 3:7], velocity=rows[:, 7:13], heading=rows[:, 13],
             controls=controls, phase=phase, phases=tuple(p.name for p in manoeuvre.phases),
             reached=tuple(float(t) if met else None for t, met in zip(switches, found.met[i], strict=True)),
             outside=flags, ended=how, why=_why(how, float(found.end_time[i]), found.end_state[i], self.step),
             statements=(*member.statements, *manoeuvre.statements, *beyond_curves(member, manoeuvre)),
         )  # fmt: skip
+        return ended_by_tables(member, motion)
 
     def _controls(
         self, manoeuvre: Manoeuvre, time: Array, phase: NDArray[np.int64], switches: Array

@@ -9,15 +9,18 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
+from coeflab.core.texts import remark
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import MOTIONS
-from coeflab.motion.approach import at_once, decisive, linear_growth, undetermined_at_once, unlimited
+from coeflab.motion.approach import at_once, decisive, undetermined_at_once
 from coeflab.motion.manoeuvre import Manoeuvre, PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.trajectory import UNCOVERED, Trajectory
+from coeflab.motion.turn_limits import linear_growth, unlimited
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -159,11 +162,16 @@ def simulate(
         plan,
         trajectory,
         figures,
-        (*statements, *filter(None, (course, rolling, why)), *beyond),
+        (*statements, *filter(None, (course, rolling, why)), *beyond, *doubts(parameters)),
         until,
         works,
         nothing,
     )
+
+
+def doubts(parameters: ParameterFile) -> tuple[str, ...]:
+    """What a file was warned of, in words: it holds for whatever is computed with it."""
+    return tuple(remark(f) for f in parameters.findings if f.severity in (Severity.WARN, Severity.FAIL))
 
 
 def beyond_estimates(parameters: ParameterFile, plan: Manoeuvre, trajectory: Trajectory) -> tuple[str, ...]:
@@ -215,7 +223,7 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
         if lacking:
             left = decisive((name for name, f in trajectory.outside.items() if f.any()), rate)
             if any(name.endswith(UNCOVERED) for name in left):
-                return 0.0, f"not determined: no data on {rate}'; {lacking}"
+                return 0.0, f"not determined: {lacking}"
             if left:
                 first = float(min(trajectory.time[trajectory.outside[name]][0] for name in left))
                 return first, f"stopped at {first:.4g} s: {lacking}"

@@ -12,7 +12,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by, number
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import number
+from coeflab.core.texts import remark
 from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.force_law import SLOWEST
 from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, LINEAR, MOTIONS
@@ -117,6 +120,19 @@ class Trajectory:
         """Track, beginning, end and range, for notebooks."""
         return html_by("motion", self)
 
+    def ended_at(self, row: int, why: str) -> Trajectory:
+        """The rows up to one, at which the motion ended because it left what it may not leave."""
+        kept, time = slice(0, row + 1), float(self.time[row])
+        rows = {
+            name: getattr(self, name)[kept] for name in ("time", "position", "attitude", "velocity", "heading", "phase")
+        }
+        return replace(
+            self, **rows, controls={k: v[kept] for k, v in self.controls.items()},
+            outside={k: v[kept] for k, v in self.outside.items()},
+            reached=tuple(t if t is not None and t <= time else None for t in self.reached),
+            ended=Ended.OUT_OF_RANGE, why=why,
+        )  # fmt: skip
+
     def until(self, time: float) -> Trajectory:
         """The rows up to a time."""
         n = max(int(np.searchsorted(self.time, time, side="right")), 1)
@@ -169,6 +185,32 @@ def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     if np.any(vehicle.law.tabled):
         out[TABLE_EDGE] = vehicle.law.held(velocity, control_rows(controls, len(velocity)))
     return out
+
+
+def ended_by_tables(vehicle: Vehicle, motion: Trajectory) -> Trajectory:
+    """The motion up to the last row at which every table has a value: one that refuses to be read beyond its data ends it.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    motion : Trajectory
+    """
+    refused = vehicle.law.refused(motion.velocity, control_rows(motion.controls, len(motion.time)))
+    if not np.any(refused):
+        return motion
+    row = max(int(np.argmax(refused)) - 1, 0)
+    found = refusal("law.refused", vehicle, float(motion.time[row]))
+    return motion.ended_at(row, remark(found))
+
+
+def refusal(code: str, vehicle: Vehicle, time: float | None = None) -> Finding:
+    """That the tables of a vehicle which refuse to be read beyond their data have no value."""
+    names = dict.fromkeys(
+        t.symbol.split(" ")[0] for t in vehicle.law.terms if t.hull is not None and t.hull.rule == "refuse"
+    )
+    return Finding.of(
+        code, vehicle.name, Severity.WARN, statistic=time, tables=list(names), advice='extrapolation = "clamp"'
+    )
 
 
 def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, float]) -> tuple[str, ...]:

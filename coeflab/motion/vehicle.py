@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding
+from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
@@ -52,6 +54,8 @@ class Vehicle:
     covered : tuple of CoveredRange
     statements : tuple of str
         What was assumed, in words.
+    findings : tuple of Finding
+        Of the law: what of the file it does not use, and where its tables end.
     """
 
     name: str
@@ -70,6 +74,7 @@ class Vehicle:
     density: float
     covered: tuple[CoveredRange, ...]
     statements: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("centre", "inertia", "added"):
@@ -202,7 +207,7 @@ def vehicle(
         Motions that may change; empty: all six where the file knows enough of each, otherwise those of ``plane``.
     plane : {"horizontal", "vertical", ""}
     tables : bool
-        Whether fitted tables come before derivatives.
+        Whether fitted tables come first, see `coeflab.vehicle.sources.summed`.
     accelerations : {"measured", "computed"}
         Whether acceleration derivatives of the file come before its computed added mass; see `coeflab.vehicle.inertia`.
 
@@ -228,10 +233,10 @@ def vehicle(
     water = water_inertia(parameters, accelerations)
     parameters = with_accelerations(parameters, accelerations)
     centre = mass.centre_of_gravity
-    law, statements = motion_law(parameters, tables)
+    law, found = motion_law(parameters, tables)
     known = _known(parameters, law)
     moves = tuple(m for m in MOTIONS if m in free) or (MOTIONS if known == MOTIONS or not plane else PLANES[plane])
-    said = list(statements)
+    said = [remark(f) for f in found]
     if moves != MOTIONS:
         lacking = [m for m in MOTIONS if m not in moves]
         why = (
@@ -254,7 +259,7 @@ def vehicle(
     made = Vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, law=law, hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
-        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said),
+        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said), findings=found,
     )  # fmt: skip
     _positive(made)
     return made

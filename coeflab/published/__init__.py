@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import difflib
-import importlib
 from pathlib import Path
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
+from coeflab.core.registry import Folders
 from coeflab.report.acceptance import Acceptance
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan
 
 PLAN = "plan.toml"
-PUBLISHED = ("estimates", "flyingfish", "huuv", "tank", "thauv", "urv")
+PUBLISHED = Folders(__name__, "acceptance")
 
 
 def validations() -> tuple[str, ...]:
     """Names of the shipped validations; plans of synthetic tables validate nothing."""
     plans = (p.parent.name for p in shipped("cfd_data").glob(f"*/{PLAN}"))
-    return tuple(sorted((*(name for name in plans if not name.endswith("_synthetic")), *PUBLISHED)))
+    return tuple(sorted((*(name for name in plans if not name.endswith("_synthetic")), *PUBLISHED.names)))
 
 
 def validation(name: str) -> Plan | Acceptance:
@@ -37,7 +37,7 @@ def validation(name: str) -> Plan | Acceptance:
             f"one of {', '.join(validations())}",
             advice=f"Did you mean {near[0]}?" if near else "",
         )
-    if name in PUBLISHED:
-        found: Acceptance = importlib.import_module(f"coeflab.published.{name}.acceptance").acceptance()
+    if name in PUBLISHED.names:
+        found: Acceptance = PUBLISHED.load(name).acceptance()
         return found
     return read_plan(Path(shipped("cfd_data")) / name / PLAN)

@@ -11,7 +11,9 @@ from enum import StrEnum
 from math import copysign, inf, nan
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coeflab.core.table import ABSENT, Table, html_by
+from coeflab.core.cards import html_by
+from coeflab.core.table import ABSENT, Table
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import in_sentences, listed
 from coeflab.law.symbols import primed
@@ -434,29 +436,23 @@ def errata(acceptance: Acceptance) -> Table:
 
 def acceptance_csv(acceptance: Acceptance) -> bytes:
     """All rows of all tables."""
-    import csv
-    import io
-
-    buffer = io.StringIO()
-    out = csv.writer(buffer, lineterminator="\n")
-    out.writerow(
-        (
-            "table",
-            "case",
-            "quantity",
-            "unit",
-            "held_against",
-            "found",
-            "difference",
-            "relative",
-            "tolerance",
-            "basis",
-            "passed",
-        )
+    heads = (
+        "table",
+        "case",
+        "quantity",
+        "unit",
+        "held_against",
+        "found",
+        "difference",
+        "relative",
+        "tolerance",
+        "basis",
+        "passed",
     )
+    rows: list[tuple[object, ...]] = [heads]
     for t in acceptance.tables:
         for r in t.rows:
             numbers = (r.against, r.found, r.difference)
             shown = ["" if n is None else repr(float(n)) for n in numbers]
-            out.writerow((t.key, r.case, r.quantity, r.unit, *shown, r.relative, r.tolerance, r.basis, r.holds))
-    return buffer.getvalue().encode()
+            rows.append((t.key, r.case, r.quantity, r.unit, *shown, r.relative, r.tolerance, r.basis, r.holds))
+    return csv_text(rows).encode()

@@ -24,13 +24,13 @@ from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS, primed
-from coeflab.motion.approach import has_rotary_limit, unlimited_in_words
 from coeflab.motion.dynamics import FIRST, SECOND
 from coeflab.motion.manoeuvre import Manoeuvre, orders_of
 from coeflab.motion.manoeuvres import zigzag
 from coeflab.motion.marching import alone, chosen_step
 from coeflab.motion.simulation import moved
 from coeflab.motion.trajectory import covered_ranges
+from coeflab.motion.turn_limits import WITH, linear_growth, open_in_general, open_turn, speaks_of_turning
 from coeflab.motion.vehicle import Vehicle
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -294,15 +294,16 @@ def _arrays(vehicle: Vehicle, manoeuvre: Manoeuvre) -> dict[str, Any]:
 
 
 def _limit(vehicle: Vehicle, rate: str, speed: float) -> dict[str, Any]:
-    """Whether a term limits a turn, and what `coeflab.motion.approach.linear_growth` needs where none does."""
-    other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
+    """Whether a turn is determined as far as the data go, and what `linear_growth` needs where it is not."""
+    other, components, _ = WITH[rate]
+    stable = linear_growth(vehicle, (other, rate), speed) <= 0.0
     at = [MOTIONS.index(m) for m in (other, rate) if m in vehicle.free]
     held = replace(vehicle, free=tuple(MOTIONS[i] for i in at))
     return {
         "rate": rate,
-        "limited": has_rotary_limit(vehicle, rate, components),
+        "limited": speaks_of_turning(vehicle, rate, components) if stable else open_turn(vehicle, rate, speed) is None,
         "at": at,
         "scale": [speed / vehicle.length if MOTIONS[i] in ANGULAR else speed for i in at],
         "inverse": held.inverse_inertia().tolist(),
-        "words": unlimited_in_words(rate, components),
+        "words": open_in_general(vehicle, rate),
     }

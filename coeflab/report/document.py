@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.cards import html_by
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Table, as_printed, html_by
+from coeflab.core.table import Table, as_printed
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.core.version import VERSION
 from coeflab.report.acceptance import Acceptance

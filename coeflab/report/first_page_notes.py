@@ -79,7 +79,8 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
-        of = f"of another body ({body})" if body != beside.body else "by another method"
+        inferred = ", inferred" if any("body" in r.inferred for r in others if r.body == body) else ""
+        of = f"of another body ({body}{inferred})" if body != beside.body else "by another method"
         are, get = ("is", "gets") if sum(r.body == body for r in others) == 1 else ("are", "get")
         out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:

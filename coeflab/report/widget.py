@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 from coeflab.core.errors import InputError
@@ -49,7 +48,8 @@ def widget(study: Study) -> Any:
     if bench is None:
         raise InputError(f"{study.plan.name}, without a sweep that gives a slope", "a study with slopes at the origin")
     try:
-        any_widget, traits = import_module("anywidget"), import_module("traitlets")
+        import anywidget
+        import traitlets
     except ModuleNotFoundError as why:
         raise InputError(
             f"no module {why.name}",
@@ -59,7 +59,7 @@ def widget(study: Study) -> Any:
     members = {
         "_esm": module(),
         "_css": source("page.css"),
-        "content": traits.Unicode(data_json(bench)).tag(sync=True),
-        "numbers": traits.Unicode(numbers()).tag(sync=True),
+        "content": traitlets.Unicode(data_json(bench)).tag(sync=True),
+        "numbers": traitlets.Unicode(numbers()).tag(sync=True),
     }
-    return type("Workbench", (any_widget.AnyWidget,), members)()
+    return type("Workbench", (anywidget.AnyWidget,), members)()

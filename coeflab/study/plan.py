@@ -20,8 +20,7 @@ from coeflab.law.symbols import derivative
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedConversion, PlannedJoint, PlannedTow
 from coeflab.tables.campaign import FILE, read_campaign
-from coeflab.tables.importers import PlannedTable
-from coeflab.tables.reading import suited_fit
+from coeflab.tables.reading import suited_fit, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
@@ -143,11 +142,14 @@ class TableKeys(takes.Declaration):
         Names of fits, slope_at_origin and tied_law unless given; ``coeflab formats`` lists them.
     options : mapping
         A table of options for each fit, by its name.
+    speed : float or None
+        m/s; only rows of this speed, within 2 %, enter the fits: where a slope depends on the speed, one fit a speed.
     """
 
     campaign: CampaignPath
     fits: takes.Texts = ()
     options: Options = field(default_factory=dict)
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO] | None = None
 
     def check(self) -> None:
         """Options are those of the fits."""
@@ -396,14 +398,6 @@ class PlanFile(takes.Declaration):
                 raise InputError(f"the target {shown(target)} twice", "every target once", column=f"export[{i}].to")
 
 
-def table_at(
-    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
-) -> PlannedTable:
-    """A campaign folder, its campaign.toml, or one CSV of it."""
-    only = path.name if path.is_file() and path.suffix != ".toml" else None
-    return PlannedTable(path, fits, options or {}, only)
-
-
 def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
     """The tow with the first of its campaigns that is there."""
     absent: list[str] = []
@@ -485,7 +479,7 @@ def read_plan(path: Path) -> Plan:
         name=study.name,
         title=study.name if study.title is None else study.title,
         tables=(
-            *(table_at(t.campaign, t.used, t.options) for t in file.table),
+            *(table_at(t.campaign, t.used, t.options, t.speed) for t in file.table),
             *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
         ),
         tows=tows,

@@ -10,32 +10,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.triangulation import Triangulation
-from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
 from coeflab.core.finding import Severity
-from coeflab.core.provenance import InputFile
 from coeflab.core.several import ByName, Several
-from coeflab.core.table import Check, html_by
+from coeflab.core.table import Check
 from coeflab.core.types import brief, in_angles, locked
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget
-from coeflab.formats.export import PlannedExport
-from coeflab.law.coefficient import Coefficient
-from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.manoeuvre import PlannedManoeuvre
-from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import PlannedTable
-from coeflab.vehicle.assemble import PlannedParameterFile
-from coeflab.vehicle.reference import Comparison, Reference
 
 if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.core.axes import Datum
+    from coeflab.core.provenance import InputFile
     from coeflab.estimates import Estimates
-    from coeflab.formats.export import Export, Refused
-    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.formats.export import Export, PlannedExport, Refused
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.law.scaling import Conditions, Scaling
+    from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
     from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.importers import PlannedTable
+    from coeflab.vehicle.assemble import PlannedParameterFile
     from coeflab.vehicle.from_shape import Weighed
     from coeflab.vehicle.parameter_file import ParameterFile
+    from coeflab.vehicle.reference import Comparison, Reference
 
 
 @brief

@@ -16,7 +16,7 @@ import numpy as np
 
 from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.types import brief
-from coeflab.fits.uncertainty.budget import Budget
+from coeflab.fits.uncertainty.budget import BOUND_ONLY, Budget
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import derivative
 from coeflab.study.study import Study
@@ -181,7 +181,7 @@ class Validation:
     def reasons(self) -> tuple[str, ...]:
         """The same as clauses of a sentence, without the Reynolds numbers."""
         lacking = without_grid(self.lacking)
-        state = lacking.removeprefix("grid study ")
+        state = lacking.removeprefix("grid study ").removesuffix(BOUND_ONLY)
         grid = {
             "": "",
             "no grid study": "no grid study",

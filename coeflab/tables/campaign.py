@@ -273,6 +273,11 @@ class TableDeclaration(takes.Declaration):
     forces_density : float or None
         Of the fluid that the forces were computed with, kg/m^3, where a solver's files state it. Another density of the campaign is
         refused: the primes would be wrong by their ratio.
+    assumed : tuple of str
+        Keys that an import accepted although no source states them, such as table.arm_point: every coefficient that hangs on one says
+        so. Delete a key here once the source states it.
+    constant : mapping of str to float
+        Columns of the source with one number throughout that are none of the table, such as rps: what was held while speeds varied.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -291,10 +296,13 @@ class TableDeclaration(takes.Declaration):
     half_model: HalfModel | None = None
     by_symmetry: takes.Words = ""
     forces_density: takes.Density | None = None
+    assumed: takes.Texts = ()
+    constant: Annotated[Mapping[str, Any], takes.TABLE] = field(default_factory=dict)
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "select", MappingProxyType(dict(self.select)))
+        object.__setattr__(self, "constant", MappingProxyType(dict(self.constant)))
         for name in ("reference_point", "arm_point"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, locked(getattr(self, name)))
@@ -303,6 +311,9 @@ class TableDeclaration(takes.Declaration):
         """The reason of the selection is a text."""
         if not isinstance(self.select_reason, str):
             raise InputError(shown(self.select_reason), "a text", column="select.reason")
+        for name, value in self.constant.items():
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                raise InputError(shown(value), "a number", column=f"constant.{name}")
 
     @property
     def selected(self) -> Mapping[str, str]:
@@ -538,6 +549,20 @@ def read_campaign(path: Path) -> Campaign:
     """
     toml = read_toml(path)
     file = takes.declared(CampaignFile, toml)
+    return campaign_of(file, path, tuple(toml.line(("table", i)) for i in range(len(file.table))))
+
+
+def campaign_of(file: CampaignFile, path: Path, lines: tuple[int | None, ...] = ()) -> Campaign:
+    """A campaign of what is declared, by a campaign.toml or by a program.
+
+    Parameters
+    ----------
+    file : CampaignFile
+    path : Path
+        Of its campaign.toml; a path that does not exist where there is none.
+    lines : tuple of int or None
+        See `Campaign`.
+    """
     head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
     signs = {"alpha": axes.alpha, "beta": axes.beta}
     return Campaign(
@@ -559,7 +584,7 @@ def read_campaign(path: Path) -> Campaign:
         uncertainty=file.uncertainty,
         columns=file.columns,
         options=file.importer,
-        lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
+        lines=lines,
         planar_motion=file.planar_motion,
         symmetry=head.symmetry,
         assumed=axes.assumed,

@@ -31,6 +31,7 @@ DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
 FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
 KEPT = {
+    Convergence.FINAL: "taken as they stand: without a history they have no standard error",
     Convergence.SHORT: f"as every error, the range of the plateau in it, is below {100 * FINE:g} % of the largest mean of its component",
     Convergence.TOO_SHORT: "of which what is too short is marked as uncertain and not used",
     Convergence.DRIFTING: "which are kept but marked as uncertain",
@@ -326,12 +327,12 @@ def _doubtful(rows: Sequence[RunSummary], copies: Mapping[str, str]) -> dict[str
     """By run, what no fit uses: ``all``, or the columns that are too short, with semicolons between them."""
     largest: dict[str, float] = {}
     for r in rows:
-        if r.status in (Convergence.CONVERGED, Convergence.TOO_SHORT):
+        if r.status in (Convergence.CONVERGED, Convergence.FINAL, Convergence.TOO_SHORT):
             for c, mean in r.means.items():
                 largest[c] = max(largest.get(c, 0.0), abs(mean))
 
     def of(r: RunSummary) -> str:
-        if r.name in copies or r.status not in (Convergence.CONVERGED, Convergence.TOO_SHORT):
+        if r.name in copies or r.status not in (Convergence.CONVERGED, Convergence.FINAL, Convergence.TOO_SHORT):
             return ALL
         short = [c for c, enough in r.unsure.items() if not (enough and r.errors[c] < FINE * largest[c])]
         heads = [r.headers[c] if r.by_name else c for c in short]

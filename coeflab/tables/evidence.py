@@ -7,11 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.core.axes import Axes
+from coeflab.core.axes import Axes, parse_axes
+from coeflab.core.texts import words
 from coeflab.core.types import Array
-from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS
+from coeflab.tables.campaign import CUTS
 from coeflab.tables.column_map import ColumnMap, unturned
+from coeflab.tables.force_table import AT_REST
+from coeflab.tables.half_bodies import Along, forces_across, judged
 from coeflab.tables.mapping import Assigned
+from coeflab.tables.raw_table import HALF_MODEL
 
 TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
 TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
@@ -186,11 +191,74 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
     return tuple(out)
 
 
+def across_planes(
+    columns: Sequence[Assigned], frame: Axes | None, symmetry: Sequence[str], length: float
+) -> Iterator[Evidence]:
+    """Forces across a plane in rows along it, as half of a body has them: a question of `HALF_MODEL`.
+
+    Parameters
+    ----------
+    columns : sequence of Assigned
+    frame : Axes, optional
+        Of the file; FRD where nobody has said it, whose y lies as that of FLU and CFD.
+    symmetry : sequence of str
+        Declared; of others than port-starboard nothing is shown without.
+    length : float
+        m; zero where it is not known.
+    """
+    axes = frame or parse_axes("FRD")
+    alike = {
+        (c.said.pure, c.said.area, c.said.length if c.said.name in MOMENTS else None)
+        for c in columns
+        if c.said.role == "force"
+    }
+    if len({(pure, area) for pure, area, _ in alike}) != 1:
+        return
+    data = {c.said.name: c.values for c in columns if c.said.role not in ("word", "error")}
+    errors = {c.said.name: c.values for c in columns if c.said.role == "error"}
+    if "side" in data and _frd(data, "Y", axes) is None:
+        data[_named_force("Y", axes)] = data["side"]
+    if "lift" in data and _frd(data, "Z", axes) is None:
+        data[_named_force("Z", axes)] = data["lift"]
+    some = next(iter(data.values()), np.empty(0))
+    speeds = [np.abs(data[m]) for m in ("U", *LINEAR) if m in data and m not in _primed(columns)]
+    speed = float(np.nanmax(speeds, initial=0.0)) if speeds else 1.0
+    for cut in (CUTS[s] for s in judged(symmetry) if s in CUTS):
+        still = np.ones(some.size, dtype=bool) & ("R" not in data)
+        for setting in (*cut.across, *cut.controls, {"v": "beta", "w": "alpha"}[cut.across[0]]):
+            values = data.get(_named(setting, axes), np.zeros(some.size))
+            scale = speed if setting in LINEAR and _named(setting, axes) not in _primed(columns) else 1.0
+            still &= np.abs(np.nan_to_num(values)) <= AT_REST * max(scale, 1e-300)
+        forces = {c: v for c in COMPONENTS if (v := _frd(data, c, axes)) is not None}
+        theirs = {c: v for c in forces if (v := _frd(errors, c, axes)) is not None}
+        rows = Along(forces, theirs, dict.fromkeys(forces, still), 0.0 if alike and next(iter(alike))[0] else length)
+        found = forces_across("table", cut, rows, declared=cut.symmetry in symmetry)
+        if found:
+            text = words(found)
+            yield Evidence(f"{text.statement}; expected: {text.rule}", HALF_MODEL)
+
+
+def _primed(columns: Sequence[Assigned]) -> set[str]:
+    return {c.said.name for c in columns if c.said.primed}
+
+
+def _named_force(component: str, frame: Axes) -> str:
+    """The name that a force of the body has in the axes of the file."""
+    return COMPONENTS[int(np.argmax(np.abs(frame.rotation[COMPONENTS.index(component)])))]
+
+
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
     group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
     row = frame.rotation[group.index(component)]
     own = group[int(np.argmax(np.abs(row)))]
     return data[own] * float(row[group.index(own)]) if own in data else None
+
+
+def frd_column(columns: Sequence[Assigned], component: str, frame: Axes) -> Assigned | None:
+    """The column that holds a force or velocity of the body, whatever its sign there; no standard error."""
+    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
+    own = group[int(np.argmax(np.abs(frame.rotation[group.index(component)])))]
+    return next((c for c in columns if c.said.name == own and not c.said.error), None)
 
 
 def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:

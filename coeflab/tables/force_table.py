@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding
 from coeflab.core.provenance import InputFile, Source
-from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -89,6 +90,8 @@ class Declared:
         Of the campaign, for people.
     source_sha256 : str
         Of the file that the table was made from.
+    constant : tuple of (str, float)
+        What the source held at one number throughout, such as a propeller rate.
     """
 
     frame: str
@@ -96,6 +99,7 @@ class Declared:
     reference_point: tuple[float, ...]
     notes: str = ""
     source_sha256: str = ""
+    constant: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,6 +163,8 @@ class ForceTable:
         Angles whose sign was inferred from the sign of the slope, alpha or beta.
     declared : Declared or None
         What its campaign.toml says of it, before it was turned and moved; None for a table made by a program.
+    findings : tuple of Finding
+        What is assumed of it or left out; they travel with every number that comes of it.
     """
 
     name: str
@@ -192,6 +198,7 @@ class ForceTable:
     primed: frozenset[str] = frozenset()
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):
@@ -282,6 +289,16 @@ class ForceTable:
         if np.ptp(used) > 0.0:
             note += f"; grids in use have {int(used.min())} to {int(used.max())} cells"
         return replace(self, usable=usable, exclusions=(*self.exclusions, *found), notes=(*self.notes, note))
+
+    def at_speed(self, speed: float) -> ForceTable:
+        """The rows of one speed in use, m/s, as measured; the others are left out."""
+        rows = np.abs(self.speed - speed) > SAME_SIZE * abs(speed)
+        used = [int(i) for i in np.flatnonzero(rows) if any(mask[i] for mask in self.usable.values())]
+        usable = {c: mask & ~rows for c, mask in self.usable.items()}
+        found = [
+            Exclusion(i, self.lines[i] if self.lines else 0, "", f"another speed than {speed:g} m/s") for i in used
+        ]
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
 
     def without_studies(self) -> ForceTable:
         """Rows in which a study changed something are left to that study."""

@@ -34,7 +34,7 @@ MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
 KEY, VALUE = 25, 22  # letters
 SAID = (HALF_MODEL, SYMMETRY)  # of the keys of the campaign: what decides numbers
-GRAVE = ("axes.", "table.", "inertia.", *SAID)
+GRAVE = ("axes.", "table.", "inertia.", "coefficients.", *SAID)
 UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
 
 

@@ -50,6 +50,7 @@ class Convergence(StrEnum):
     """What a history says of its run, the best first."""
 
     CONVERGED = "converged"
+    FINAL = "final value"  # a result without a history, which nothing here can judge
     SHORT = "short but used"  # what a folder of runs says of a history that is too short by itself
     TOO_SHORT = "too short"
     DRIFTING = "drifting"
@@ -61,10 +62,11 @@ class Convergence(StrEnum):
     @property
     def has_numbers(self) -> bool:
         """Whether a run that ended so has a mean."""
-        return self in (Convergence.CONVERGED, Convergence.SHORT, Convergence.TOO_SHORT, Convergence.DRIFTING)
+        return self in WITH_NUMBERS
 
 
 ORDER = tuple(Convergence)
+WITH_NUMBERS = ORDER[: ORDER.index(Convergence.DRIFTING) + 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,8 +309,8 @@ def plateau(
     Returns
     -------
     Plateau
-        A history that is not finite behind its beginning, or grew a thousandfold, diverged; one of no rows or zeros only is
-        empty. ``start`` counts the rows as they came.
+        A history that is not finite behind its beginning, or grew a thousandfold, diverged; one of no rows is empty, and one of
+        zeros is what it says: zero. ``start`` counts the rows as they came.
     """
     names = list(forces)
     group = groups or {c: FORCES[0] if c in FORCES else MOMENTS[0] for c in names}
@@ -321,8 +323,6 @@ def plateau(
         row = skipped + int(np.argmin(finite[skipped:])) if skipped < columns.shape[1] else 0
         return _none(Convergence.DIVERGED, f"row {row + 1} of the history is not a number")
     columns = columns[:, skipped:]
-    if not columns.any():
-        return _none(Convergence.EMPTY, "every force is zero")
     n = columns.shape[1]
     grown = _grown(columns)
     if grown:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import toml_text, value
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
@@ -27,6 +26,7 @@ from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
+from coeflab.tables.levels import levels_of
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
@@ -57,6 +57,8 @@ class Filled:
         Every key, as it holds for this table.
     asked : frozenset of str
         Keys that this table raises.
+    assumed : tuple of str
+        Keys that were accepted and that no source states.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Filled:
     mapping: Mapping[str, ColumnMap]
     settings: Settings
     asked: frozenset[str]
+    assumed: tuple[str, ...] = ()
 
     @property
     def file(self) -> str:
@@ -132,6 +135,10 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
                 at_reference = key == ARM_POINT and one.value == REFERENCE
                 own[name] = t.settings[POINT_OF].value if at_reference else one.value
                 said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+        if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
+            own["assumed"], said["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
+        if held := _held(t):
+            own["constant"], said["constant"] = held, "one number throughout, while the speed varied"
         made_with = t.raw.stated.get("conditions.density")
         if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
             own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"
@@ -192,6 +199,20 @@ def _constants(table: Filled, common: Settings) -> dict[str, float]:
         if own != quantity(common[key].value, role) and role not in roles and (role == "density" or primed):
             out[head] = own
     return out
+
+
+def _held(table: Filled) -> dict[str, float]:
+    """Columns of no use with one number throughout, of a table of several speeds: what the test held while the speed varied."""
+    speeds = next((c.values for c in table.columns if c.said.role == "speed"), np.empty(0))
+    if np.unique(levels_of(speeds[np.isfinite(speeds)])).size < 2:
+        return {}
+    used = {c.column.name for c in table.columns}
+    idle = [
+        c
+        for c in table.raw.columns
+        if c.name not in used and not c.means and np.all(np.isfinite(c.values)) and len(c.values)
+    ]
+    return {_label(c.name, ()): float(c.values[0]) for c in idle if not np.ptp(c.values) and c.values[0] != 0.0}
 
 
 def _saved(tables: Sequence[Filled], settings: Settings) -> str:
@@ -301,15 +322,11 @@ def _table(
         names = [LONG.get(one.said.name, one.said.name) for one in columns if not one.said.error]
         words = [{LONG.get(name, name) for name in doubts[row]} for row in rows]
         cells.append([" ".join(name for name in names if name in own) for own in words])
-    out = io.StringIO()
-    out.write(f"# Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file.\n")
+    comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
-        out.write("# Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".\n")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(zip(*cells, strict=True))
-    return out.getvalue().encode(), labels
+        comments.append("Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".")
+    return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 
 def _head(said: ColumnMap) -> str:

@@ -19,11 +19,11 @@ from coeflab.core.text.patterns import PatternProblem, pattern
 from coeflab.core.text.series import opened
 from coeflab.core.types import Array
 from coeflab.tables.openfoam_forces import is_vector, listed, number
+from coeflab.tables.openfoam_symmetry import MIRRORS
 from coeflab.tables.raw_table import Stated
 
 # A number and its place.
 Found = tuple[float, str]
-MIRRORS = ("symmetryPlane", "symmetry")  # types of patches on whose other side the image of the flow lies
 OPEN = {
     "freestream": "freestreamValue", "freestreamVelocity": "freestreamValue", "inletOutlet": "inletValue",
     "fixedValue": "value", "uniformFixedValue": "uniformValue", "supersonicFreestream": "UInf",
@@ -106,20 +106,6 @@ def walls(case: FoamCase) -> set[str]:
     """The patches of the mesh that are walls."""
     boundary = case.read("constant/polyMesh/boundary")
     return {n for n, part in boundary.parts() if case.word(part, "type") == "wall"} if boundary is not None else set()
-
-
-def mirror_patches(case: FoamCase) -> str:
-    """The patches that mirror the flow, with their types and places: of the field of the velocity, else of the mesh; or empty."""
-    for name in ("0/U", "0.orig/U", "0/Urel", "0.orig/Urel", "constant/polyMesh/boundary"):
-        file = case.read(name)
-        holder = file.part("boundaryField") or file if file is not None else None
-        found = [
-            (patch, *kind) for patch, part in (holder.parts() if holder is not None else ())
-            if (kind := case.value(part, "type")) is not None and str(kind[0]).strip('"') in MIRRORS
-        ]  # fmt: skip
-        if found:
-            return "; ".join(f"{place}: patch {patch} is of type {kind}" for patch, kind, place in found)
-    return ""
 
 
 def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, list[str]]:

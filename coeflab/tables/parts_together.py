@@ -111,7 +111,8 @@ def settled_together(
         fresh: dict[str, Setting] = {}
         for key, q in questions_together(parts, founds, whole):
             if q.default and (accept or q.harmless):
-                fresh |= {k: Setting(v, q.why) for k, v in read_in(key, q.default).items() if k not in out}
+                flag = q.assumed and not q.harmless
+                fresh |= {k: Setting(v, q.why, flag) for k, v in read_in(key, q.default).items() if k not in out}
         if not fresh:
             return founds, out
         out |= fresh

@@ -10,7 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.types import Array
-from coeflab.core.units import SI, factor
+from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
 from coeflab.tables.column_map import (
     ACROSS,
@@ -119,6 +119,8 @@ class Proposal:
         What a person should read beside it.
     unread : str
         The unit that the file writes, where it is none that the column can have.
+    assumed : bool
+        The unit is a guess.
     """
 
     text: str
@@ -126,6 +128,7 @@ class Proposal:
     certain: bool = False
     note: str = ""
     unread: str = ""
+    assumed: bool = False
 
     @property
     def whole(self) -> bool:
@@ -323,7 +326,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     if said.dimension == "angle" and _whole_degrees(column.values):
-        return Proposal(f"{name} [deg]", f"{why}; whole numbers")
+        return Proposal(f"{name} [deg]", f"{why}; whole numbers", assumed=True)
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
 
 
@@ -368,7 +371,7 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     out: list[Proposal] = []
     taken: dict[str, str] = {}
     for column in raw.columns:
-        one = proposed(column, stated)
+        one = by_said_area(proposed(column, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
@@ -396,6 +399,26 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
     return tuple(out)
+
+
+def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
+    """A prime as a coefficient of the area that a person, or words that were accepted, say it was divided by."""
+    area = known.get(AREA)
+    if area is None or area == "prime" or not one.text:
+        return one
+    said = read_column_map(one.text.partition(" [")[0])
+    if said.name not in FORCES or not said.primed:
+        return one
+    length = known.get(LENGTH_OF, known.get("scaling.length"))
+    moment = said.name in MOMENTS
+    sizes = f"A={float(str(area))!r} m^2" + (
+        f" L={OPEN if length is None else repr(quantity(length, 'length'))} m" if moment else ""
+    )
+    counted = re.search(r"\[([^\]]*)\]", one.text)
+    if counted and share(counted[1]) is not None:  # a coefficient has no power of ten of its own
+        return one
+    text = f"{str(said).partition(' [')[0].rstrip(chr(39))} [coefficient {sizes.replace(f'L={OPEN} m', f'L={OPEN}')}]"
+    return replace(one, text=text, why=f"{one.why}, by 1/2 rho U^2 A{' L' * moment}, as said")
 
 
 def _beside_the_body(one: Proposal, other: str, body: str) -> Proposal:

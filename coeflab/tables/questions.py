@@ -10,6 +10,7 @@ import numpy as np
 
 from coeflab.core.axes import ANGLE_SIGNS, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
+from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
@@ -31,7 +32,9 @@ from coeflab.tables.settings import (
 )
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
+from coeflab.tables.words.primes import BASIS, SIZES, area_of
 
+UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
@@ -74,6 +77,8 @@ class Question:
         The file gives the default, or no number hangs on it: nobody has to accept it.
     grave : bool
         Axes, signs, points, inertia: a wrong one makes wrong slopes that look right.
+    assumed : bool
+        Neither words nor numbers of the file give the default: once accepted, what hangs on it says so.
     """
 
     key: str
@@ -85,6 +90,7 @@ class Question:
     shown: str = ""
     harmless: bool = False
     grave: bool = False
+    assumed: bool = False
 
     @property
     def open(self) -> bool:
@@ -94,7 +100,7 @@ class Question:
 
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
-    likely: Sequence[str] = (), offers: Sequence[Proposal] = (),
+    likely: Sequence[str] = (), offers: Sequence[Proposal] = (), primes: bool = False,
 ) -> tuple[Question, ...]:  # fmt: skip
     """Every key that makes the file a campaign, said or not.
 
@@ -111,11 +117,13 @@ def questions(
         What columns are by name whose unit is still open.
     offers : sequence of Proposal
         Of the columns that nobody has confirmed.
+    primes : bool
+        Whether a force is a prime by its name alone, so that somebody has to confirm what it was divided by.
     """
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
-        *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_halves(raw, settings), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
+        *_of_halves(raw, settings, shows), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -127,25 +135,71 @@ def without_unit(offer: Proposal) -> bool:
     return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
 
 
-def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator[Question]:
+def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:
     """Sizes and units that several columns share."""
     texts = [one.text for one in offers]
-    if any(f"A={OPEN}" in text for text in texts):
-        yield Question(
-            AREA, "Area of the coefficients, which are by 1/2 rho U^2 A (moments: A L), such as 0.2 m^2; or prime, where they "
-            "are primes by the campaign's length", "their area, such as 0.2 m^2; or prime: by the length",
-        )  # fmt: skip
+    if any(f"A={OPEN}" in text for text in texts) or primes:
+        yield _of_basis(raw, settings, primes)
     if any(f"L={OPEN}" in text for text in texts):
         length = settings.get("scaling.length")
         yield Question(
             LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
-            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length",
+            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length", assumed=True,
         )  # fmt: skip
     if any(map(without_unit, offers)):
         yield Question(
             UNITS_OF, "Unit of the columns that state none: SI is N, N m, m/s, rad/s and m; another one column by column, such as "
             "Fy=Y [kN], and Fy=Y' [-] for a prime", "SI (N, N m, m/s, rad/s) for all; or Fy=Y [kN]",
         )  # fmt: skip
+
+
+def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
+    """What coefficients and primes were divided by: by words over the table, else by the names of primes; always to be confirmed."""
+    asks = (
+        "Area that the source divided by, beside 1/2 rho U^2 (moments: area and length), such as 0.2 m^2; or prime: L^2 by "
+        "scaling.length, moments L^3"
+    )
+    choices = "area that they were divided by, such as 0.2 m^2; or prime: L^2 by scaling.length"
+    said = raw.stated.get(BASIS)
+    sizes, places = known_sizes(raw, settings)
+    if said is not None and not said.contradicted:
+        basis = str(said.value)
+        area = area_of(basis, sizes)
+        if basis == "L L":
+            return Question(AREA, asks, choices, "prime", said.place, said.place, grave=True)
+        if area is not None:
+            sources = dict.fromkeys([said.place, *(places[f] for f in basis.split() if f in places)])
+            why = "; ".join(sources)
+            return Question(AREA, asks, choices, f"{area:.12g} m^2", why, f"{basis}: {why}", grave=True)
+        if "L" in basis.split() and "L" not in sizes and area_of(basis, {**sizes, "L": 1.0}) is not None:
+            return Question(
+                AREA, asks, choices, "", said.place, f"{basis}: {said.place}", f"{basis}, once L is said", grave=True
+            )
+        return Question(AREA, asks, f"{said.place}: {basis}, in m^2; {choices}", grave=True)
+    areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral")]
+    if said is not None or (primes and areas):
+        named = said.contradicted if said is not None else "; ".join(areas)
+        return Question(AREA, asks, f"{named}; {choices}", grave=True)
+    if not primes:
+        return Question(AREA, asks, choices)
+    return Question(
+        AREA, asks, choices, "prime", "its name alone: 1/2 rho U^2 L^2 (moments L^3), which no word of the source says",
+        "by its name: L^2 (moments L^3); no word says so", grave=True, assumed=True,
+    )  # fmt: skip
+
+
+def known_sizes(raw: RawTable, settings: Settings) -> tuple[dict[str, float], dict[str, str]]:
+    """Sizes of the body by their letters, L T B D V, and areas by their names, m, m^3 and m^2; and what words say each."""
+    sizes, places = dict[str, float](), dict[str, str]()
+    for name, key in SIZES.items():
+        if (one := raw.stated.get(key)) is not None and isinstance(one.value, float):
+            sizes[name], places[name] = one.value, one.place
+    length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    if length is not None and not getattr(length, "contradicted", ""):
+        sizes["L"] = quantity(length.value, "length")
+    if (area := raw.stated.get(AREA)) is not None and area.offered and isinstance(area.value, float):
+        sizes["area"], places["area"] = area.value, area.place
+    return sizes, places
 
 
 def _of_axes(
@@ -199,7 +253,7 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
     words = raw.stated.get(POINT_FROM)
     by_words = words is not None and (datum is None or of_datum(str(datum.value), point))
     if words is not None and own is None:
-        unsaid = "; from where it does not say: taken aft of the nose" * words.value.endswith(UNSAID)  # type: ignore[union-attr]
+        unsaid = UNSAID_IN_WORDS * words.value.endswith(UNSAID)  # type: ignore[union-attr]
         if words.contradicted or not by_words:
             choices = f"{words.contradicted or words.place}; {choices}"
         elif x is None:
@@ -219,7 +273,8 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         choices = f"{said.contradicted or said.place}; {choices}"
     elif datum is not None or said is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
-    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True)
+    unsaid = why == "the datum itself" or why.endswith(UNSAID_IN_WORDS)
+    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True, assumed=unsaid)
     asks = "Point of the body that places count from: nose, cg, midship ..."
     if own is not None:
         origin = f"origin_{identifier(raw.path.resolve().stem)}"[:40]
@@ -235,15 +290,16 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         )
 
 
-def _of_halves(raw: RawTable, settings: Settings) -> Iterator[Question]:
+def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> Iterator[Question]:
     """Which half of the body a domain with a symmetry plane holds, and what a body that may be cut there is."""
     half = settings.get(HALF_MODEL)
-    if HALF_MODEL in raw.stated or half is not None:
+    across = "; ".join(e.text for e in shows if e.key == HALF_MODEL)
+    if HALF_MODEL in raw.stated or across or half is not None:
         yield Question(
             HALF_MODEL, "Half of the body, whose forces are doubled: upper or lower of a cut at z = 0 (X, Y, N; Z, K, M are left out), "
             "starboard or port of one at y = 0 (X, Z, M; Y, K, N are left out). false: the forces are of the whole body, as they are "
-            "doubled already or no symmetry plane cuts the body", "upper or lower (cut at z = 0) or starboard or port (y = 0): "
-            "forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
+            "doubled already or no symmetry plane cuts the body", f"{across}{'; ' * bool(across)}upper or lower (cut at z = 0) or "
+            "starboard or port (y = 0): forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
         )  # fmt: skip
     cut = cut_of(half.value) if half is not None else None
     if cut is not None and cut.symmetry == UP_DOWN:
@@ -265,6 +321,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Quest
     yield Question(
         "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
         f"{beyond}; m, with its name: 4.3 LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+        assumed=bool(length),
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
                    "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
@@ -309,12 +366,12 @@ def _of_rotation(
     if arm:
         side, why, shown = centre_of(columns, frame_of(settings))
         yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
-                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True)  # fmt: skip
+                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True, assumed=True)  # fmt: skip
         at, later, line = arm_by_words(raw, settings) or (same, "the reference point", "")
         yield Question(
             "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}",
             f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
-            line or "the reference point, unless said", later, grave=True,
+            line or "the reference point, unless said", later, grave=True, assumed=not line,
         )  # fmt: skip
     elif {"q", "r"} & set(likely) or any(np.any(rates[m]) for m in ("q", "r") if m in rates):
         yield _where_still(raw, settings)
@@ -355,7 +412,9 @@ def _where_still(raw: RawTable, settings: Settings) -> Question:
     choices = f"{line}; {choices}".removeprefix("; ")
     if at or later:
         return Question(ARM_POINT, about, choices, at, line, line, later if not at else "", grave=True)
-    return Question(ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True)
+    return Question(
+        ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True, assumed=True
+    )
 
 
 def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
@@ -407,7 +466,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         )
     if said is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(said.value).casefold() in q.default.casefold():
-            return q
+            return replace(q, assumed=False)  # numbers and words agree
         against = f"{said.place}, but {q.default}: {q.why}"
         return replace(
             q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against
@@ -426,7 +485,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         return q
     value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
     value = value.casefold() if isinstance(said.value, bool) else value
-    return replace(q, default=value, why=said.place, short=said.place, shown="")
+    return replace(q, default=value, why=said.place, short=said.place, shown="", assumed=False)
 
 
 def _point(value: Any) -> str:

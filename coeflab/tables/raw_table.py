@@ -32,12 +32,15 @@ class Stated:
         Words over a table say it, which may be about something else: to be confirmed.
     contradicted : str
         What contradicts it, so that a person has to say it; empty where nothing does.
+    convention : bool
+        The format fixes it for every file, this one does not say it: a person may know better.
     """
 
     value: str | float | bool | tuple[float, ...]
     place: str
     offered: bool = False
     contradicted: str = ""
+    convention: bool = False
 
 
 @brief
@@ -179,6 +182,8 @@ class Run:
         What shows it, with file and line; empty for a whole run.
     length : float
         Of the body, m: the arm that makes a scale of moments of a force; 0 where nobody says.
+    is_final : bool
+        Its files hold results without a history, such as a report of the last iteration: the last row is the value.
     """
 
     path: Path
@@ -189,6 +194,7 @@ class Run:
     ended: Ended = Ended.WHOLE
     why: str = ""
     length: float = 0.0
+    is_final: bool = False
 
     def __post_init__(self) -> None:
         for name in ("conditions", "patches"):

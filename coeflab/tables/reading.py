@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import readable
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
@@ -34,7 +35,7 @@ OF_RUNS = ("names", "run_list", "state")
 def recognised(path: Path) -> tuple[str, ...]:
     """Importers of raw tables or runs that know a file or folder by its content; a tool's own before the general one."""
     known = []
-    for name in IMPORTERS.usable():
+    for name in IMPORTERS.usable() if path.is_file() or path.is_dir() else ():
         importer = IMPORTERS.load(name)
         with IMPORTERS.guarded(name):
             if (importer.raw or importer.run) and importer.recognises(path):
@@ -73,8 +74,7 @@ def importer_of(path: Path, name: str = "") -> str:
         if not (importer.raw or importer.run):
             raise InputError(f"the importer {name}", f"one of {', '.join(readers)}", column="--as")
         return name
-    if not path.exists():
-        raise InputError("no such file or folder", "a path that exists", file=path)
+    readable(path)
     if path.is_file() and path.stat().st_size == 0:
         raise InputError("an empty file", "a table or runs of a solver", file=path)
     known = recognised(path)
@@ -142,6 +142,7 @@ def read_raw(
         By file and line; or an option that is not known.
     """
     importer = IMPORTERS.load(name)
+    readable(path)
     given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
@@ -259,6 +260,17 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
     return tuple(out)
 
 
+def table_at(
+    path: Path,
+    fits: tuple[str, ...] = (),
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    speed: float | None = None,
+) -> PlannedTable:
+    """A campaign folder, its campaign.toml, or one CSV of it."""
+    only = path.name if path.is_file() and path.suffix != ".toml" else None
+    return PlannedTable(path, fits, options or {}, only, speed)
+
+
 def _declaration(path: Path) -> Path:
     return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
 
@@ -271,6 +283,27 @@ def suited_fit(path: Path) -> str:
 
 
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
+    """The tables of a planned campaign, rows of other speeds than the one that is wanted left out.
+
+    Raises
+    ------
+    InputError
+        By file, line and column; no row of the wanted speed.
+    """
+    tables = _every_speed(planned)
+    if planned.speed is None:
+        return tables
+    found = tuple(t.at_speed(planned.speed) for t in tables)
+    if not any(mask.any() for t in found for mask in t.usable.values()):
+        have = sorted({round(float(u), 6) for t in tables for u in t.speed})
+        raise InputError(
+            f"no row at {planned.speed:g} m/s", f"one of the speeds {', '.join(f'{u:g}' for u in have[:10])} m/s",
+            file=planned.campaign, column="speed",
+        )  # fmt: skip
+    return found
+
+
+def _every_speed(planned: PlannedTable) -> tuple[ForceTable, ...]:
     """The tables of a planned campaign: a folder, its campaign.toml, or one table beside it.
 
     Raises

@@ -33,13 +33,13 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
-from coeflab.tables.histories import Convergence, is_cycle, plateau
+from coeflab.tables.histories import LEAST_ROWS, Convergence, is_cycle, plateau
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 Progress = Callable[[str], None]
 STATE = "collected_runs.jsonl"
-STATE_KIND = "coeflab collected runs 3"
+STATE_KIND = "coeflab collected runs 4"
 DEEPEST, MOST_ENTRIES = 12, 500_000
 SHALLOW, MOST_SHALLOW = 2, 2_000  # levels of a run's folder, and their entries, that tell whether it changed
 STILL_WRITTEN = 2_000_000_000  # ns; what changed so shortly before it was read may change again unseen
@@ -262,6 +262,8 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
     columns, by_name = deciding(history)
     if not columns:
         return replace(common, status=Convergence.EMPTY, why="no column of a force or moment")
+    if is_final_value(run, at):
+        return _of_last_row(common, run, columns, by_name, at)
     times = at.values if at is not None and at.means == "time" else None
     groups = {name: column.unit for name, column in columns.items()} if by_name else None
     found = plateau(
@@ -293,6 +295,33 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
         window=found.rows,
         patches=_patches(run, start),
     )
+
+
+def is_final_value(run: Run, at: RawColumn | None) -> bool:
+    """Whether a run has a result and no history: by its importer, or as its one row is of an iteration that many came before."""
+    n = len(run.history)
+    counted = at is not None and at.means == "iteration" and n == 1 and float(at.values[0]) >= LEAST_ROWS
+    return 0 < n < LEAST_ROWS and (run.is_final or counted)
+
+
+def _of_last_row(
+    common: RunSummary, run: Run, columns: Mapping[str, RawColumn], by_name: bool, at: RawColumn | None
+) -> RunSummary:
+    """The last row as it stands: no standard error follows from it."""
+    values = {c: float(k.values[-1]) for c, k in columns.items()}
+    if not all(map(math.isfinite, values.values())):
+        return replace(common, status=Convergence.DIVERGED, why="a force that is no number")
+    used = set(map(id, columns.values()))
+    others = [
+        c for c in run.history.columns if id(c) not in used and not c.is_text and c.means not in ("time", "iteration")
+    ]
+    last = float(at.values[-1]) if at is not None else len(run.history) - 1.0
+    return replace(
+        common, status=Convergence.FINAL, means=values, errors=dict.fromkeys(values, math.nan),
+        units={c: k.unit for c, k in columns.items()}, headers={c: k.name for c, k in columns.items()}, by_name=by_name,
+        beside={c.name: (float(c.values[-1]), c.unit) for c in others if not _RESIDUAL.search(c.name)},
+        averaged="the last row", window=1, patches=_patches(run, last),
+    )  # fmt: skip
 
 
 def _averaged(at: RawColumn | None, first: int, rows: int) -> str:
@@ -482,14 +511,14 @@ def _plain(summary: RunSummary) -> dict[str, Any]:
     names = [n for n in RunSummary.__dataclass_fields__ if n not in ("conditions", "name")]
     out = {n: getattr(summary, n) for n in names}
     for name in _STATED:
-        out[name] = {k: [s.value, s.place] for k, s in out[name].items()}
+        out[name] = {k: [s.value, s.place, s.offered, s.contradicted, s.convention] for k, s in out[name].items()}
     return out
 
 
 def _summary(content: Mapping[str, Any]) -> RunSummary:
     read = dict(content)
     for name in _STATED:
-        read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, place) for k, (v, place) in read[name].items()}
+        read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, *how) for k, (v, *how) in read[name].items()}
     for name in ("patches", "beside"):
         read[name] = {k: (float(v), unit) for k, (v, unit) in read[name].items()}
     for name in ("files", "remarks"):

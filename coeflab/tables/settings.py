@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
@@ -43,6 +43,9 @@ REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 VISCOSITY = "conditions.viscosity"
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
+NO_LENGTHS = frozenset(
+    ["kg", "g", "t", "s", "N", "kN", "m/s", "kn", "deg", "rad", "m^2", "m^3", "Pa", "lb"]
+)  # a wrong unit, no name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -59,10 +62,13 @@ class Setting:
         As TOML holds it.
     origin : str
         For the comment beside it.
+    assumed : bool
+        It was accepted, and neither a person nor the source states it.
     """
 
     value: Any
     origin: str
+    assumed: bool = False
 
 
 Settings = Mapping[str, Setting]
@@ -79,11 +85,7 @@ def _sign(name: str) -> Callable[[Any], Any]:
 
 
 def _frame(said: Any) -> Any:
-    if isinstance(said, str) and said not in FRAMES:
-        listed = [word.strip(" \"'[]") for word in said.split(",")]
-        said = said.upper() if said.upper() in FRAMES else listed if len(listed) == 3 else said
-    parse_axes(said)
-    return said
+    return parse_axes(said).declared
 
 
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
@@ -273,7 +275,12 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
     ):
         datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
-    if key == "scaling.length" and (sized := _SIZED.fullmatch(text)) and (name := sized[2].strip(" ()")):
+    if (
+        key == "scaling.length"
+        and (sized := _SIZED.fullmatch(text))
+        and (name := sized[2].strip(" ()"))
+        and name not in NO_LENGTHS
+    ):
         return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
     return {key: read_setting(key, text)}
 
@@ -335,12 +342,72 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     return out
 
 
+def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
+    """Complaints about keys that the source itself states and a person says otherwise; words over a table are proposals only.
+
+    A reference point counts in the file's own axes and from its own origin, so that only one from that origin can be held against it.
+    """
+    out = []
+    for key, stated in raw.stated.items():
+        one = settings.get(key)
+        section, _, name = key.partition(".")
+        if (
+            one is None
+            or stated.offered
+            or stated.convention
+            or not one.origin.startswith(CONFIRMED)
+            or key in _JUDGED_BY_THEIR_OWN
+        ):
+            continue
+        if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
+            continue
+        if not _same(key, one.value, stated.value, settings):
+            value = (
+                f"({', '.join(f'{x:g}' for x in stated.value)})"
+                if isinstance(stated.value, tuple)
+                else str(stated.value)
+            )
+            said = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
+            out.append(InputError(
+                f"{key} = {said}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
+                file=raw.path, column=key, advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
+            ))  # fmt: skip
+    return out
+
+
+_JUDGED_BY_THEIR_OWN = (POINT_OF, "conditions.density", VISCOSITY)  # complained of with what each makes wrong
+ADVICE = {
+    "table.arm_point": "Leave it out: the velocities of the source already hold there, and another point would count the drift of the arm twice.",
+    "scaling.length": 'Leave it out; primes by another length are those of `coeflab fit --length "4.3 m" --length-name LOA`, or of a plan.',
+}
+
+
+def _same(key: str, said: Any, stated: Any, settings: Settings) -> bool:
+    """Whether a person says of a key what the source states."""
+    if key in _SIZES or key in ("coefficients.area", "coefficients.length"):
+        dimension = _SIZES.get(key, key.rpartition(".")[2])
+        return said != "prime" and abs(quantity(said, dimension) / float(stated) - 1.0) <= SAME_SIZE
+    if key == ARM_POINT and stated == REFERENCE:
+        about = settings.get(POINT_OF)
+        return said == REFERENCE or (about is not None and bool(np.allclose(said, about.value, rtol=0.0, atol=1e-9)))
+    if key == "axes.frame":
+        return bool(np.array_equal(parse_axes(said).rotation, parse_axes(read_setting(key, stated)).rotation))
+    if isinstance(stated, tuple):
+        return bool(np.allclose(np.asarray(said, dtype=float), stated, rtol=SAME_SIZE, atol=1e-9))
+    return str(said).casefold() == str(stated).casefold()
+
+
 def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:
     """Settings that differ from what words over the table say: key, what is set, the words with their line."""
     out = []
     for key, words in raw.stated.items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
-        if one is None or not words.offered or words.contradicted or key.startswith(("source.", "coefficients.")):
+        if (
+            one is None
+            or not (words.offered or words.convention)
+            or words.contradicted
+            or key.startswith(("source.", "coefficients."))
+        ):
             continue
         if isinstance(words.value, float) and key in _SIZES:
             same = abs(quantity(one.value, _SIZES[key]) / words.value - 1.0) <= SAME_SIZE

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,12 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
+from coeflab.tables.assumptions import assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
 from coeflab.tables.force_table import Declared, Exclusion, ForceTable
@@ -98,6 +101,15 @@ class Columns:
         )
 
     @property
+    def digest(self) -> str:
+        """Hexadecimal sha256 of the numbers, for columns that no file holds."""
+        out = sha256()
+        for part in (self.angles, self.velocity, self.controls, {"U": self.speed}, self.forces, self.errors):
+            for name in sorted(part):
+                out.update(name.encode() + np.ascontiguousarray(part[name], dtype="<f8").tobytes())
+        return out.hexdigest()
+
+    @property
     def settings(self) -> dict[str, Array]:
         """What the test was set to: angles, velocities, control angles."""
         return {**self.angles, **self.velocity, **self.controls}
@@ -156,7 +168,6 @@ SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 HALF = "half model"
-ASSUMED_POINT = "drift is zero at the reference point (assumed: no arm_point)"
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -171,7 +182,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         A cell that cannot be, or something that campaign.toml leaves open or contradicts.
     """
     columns.check()
-    digest = sha256_of(columns.file, columns.files)
+    digest = sha256_of(columns.file, columns.files) if columns.file.exists() else columns.digest
     if table.sha256 and table.sha256 != digest:
         raise InputError(
             f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
@@ -224,10 +235,15 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         scaling=campaign.scaling,
         source=campaign.source,
         files=(
-            InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
+            *(
+                [InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path))]
+                if campaign.path.exists()
+                else []
+            ),
             InputFile(f"{campaign.name}/{table.file}", digest),
         ),
-        notes=(*notes, *([ASSUMED_POINT] if _assumes_a_point(table, motion) else [])),
+        notes=tuple(notes),
+        findings=tuple(_assumed(columns, campaign, table, motion)),
         lines=columns.lines,
         density=columns.density,
         arm_point=table.arm_point,
@@ -240,17 +256,34 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             tuple(map(float, point)),
             campaign.notes,
             "" if table.source_sha256 is None else str(table.source_sha256),
+            tuple((name, float(value)) for name, value in table.constant.items()),
         ),
         primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
     return made.about(campaign.reference_point)
 
 
-def _assumes_a_point(table: TableDeclaration, motion: Mapping[str, Array]) -> bool:
-    """Whether the point of no drift is assumed: rows turn without drifting, and nothing states the point."""
-    turning = (motion["q"] != 0.0) | (motion["r"] != 0.0)
-    drifting = np.any(motion["v"][turning]) or np.any(motion["w"][turning])
-    return table.arm_point is None and bool(np.any(turning)) and not drifting
+def _assumed(
+    columns: Columns, campaign: Campaign, table: TableDeclaration, motion: Mapping[str, Array]
+) -> Iterator[Finding]:
+    """What of a table no source states, and what it is taken for."""
+    name = f"{campaign.name}/{table.file}"
+    point = campaign.reference_point if table.reference_point is None else table.reference_point
+    of = {"table": table, "axes": campaign, "scaling": campaign.scaling, "conditions": campaign.conditions}
+    said = {"axes.reference_point": _place(point), "table.centre": f"to {table.centre}"}
+    at = point if table.arm_point is None else table.arm_point
+    same = "the reference point, " if not np.any(at != point) else ""
+    said["table.arm_point"] = f"{same}{_place(at)} from the {campaign.datum.id}"
+    said |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
+    said["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
+    keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
+    keys += ["table.arm_point"] * (table.arm_point is None and bool(np.any(motion["q"]) or np.any(motion["r"])))
+    for key in dict.fromkeys(keys):
+        section, _, plain = key.partition(".")
+        value = said.get(key) or getattr(of.get(section), plain, "")
+        if section == "columns":
+            value = columns.headers.get(plain, plain)
+        yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
 
 
 def _place(point: Array) -> str:

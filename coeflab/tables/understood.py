@@ -16,8 +16,10 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
-from coeflab.tables.evidence import Evidence, astern, evidence, turn_of
+from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
+from coeflab.tables.level_columns import slopes_by_idle_columns
+from coeflab.tables.low_aspect import above_low_aspect
 from coeflab.tables.mapping import (
     NO_FORCE,
     Assigned,
@@ -30,10 +32,21 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import Proposal, proposals, taken_as
-from coeflab.tables.questions import Question, questions
+from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
+from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, VISCOSITY, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.settings import (
+    EXTRA,
+    OF_ARMS,
+    SYMMETRY,
+    VISCOSITY,
+    Setting,
+    Settings,
+    against_words,
+    frame_of,
+    overruled,
+    read_setting,
+)
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -120,7 +133,7 @@ def understood(
     judged : collection of str, optional
         Columns whose sign a person has settled, by default all of ``said``.
     """
-    offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
+    offers = proposals(raw, {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings})
     cut = _cut_of(settings)
     offers = tuple(_of_half(one, cut, frame_of(_with_frame(raw, settings))) for one in offers) if cut else offers
     mapping: dict[str, ColumnMap] = {}
@@ -148,6 +161,8 @@ def understood(
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
+    if not any(e.instead for e in shows):  # a doubtful axis comes first
+        shows += tuple(_across(columns, frame, settings))
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
@@ -158,12 +173,20 @@ def understood(
             f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(lost)} left out" * bool(lost)
         ),)  # fmt: skip
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
+    shows += (
+        *slopes_by_idle_columns(raw, columns),
+        *above_low_aspect(columns, frame, *known_sizes(raw, settings), settings),
+    )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
+    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}
+    primes = any(
+        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name for c in columns
+    )
+    asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
-    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns))
+    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings))
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns
@@ -176,6 +199,16 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def accepted_without_source(found: Understood, settings: Settings) -> tuple[str, ...]:
+    """Keys, and columns with a guessed unit, that were accepted although neither a person nor the file states them."""
+    keys = [k for k, one in settings.items() if one.assumed and (k not in OF_ARMS or k in found.about)]
+    units = {o.text for o in found.proposals if o.assumed}
+    columns = [
+        f"columns.{one.name}" for name, one in found.mapping.items() if name in found.accepted and str(one) in units
+    ]
+    return (*keys, *columns)
 
 
 def _another_water(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> Iterator[InputError]:
@@ -193,6 +226,15 @@ def _cut_of(settings: Settings) -> Cut | None:
     """The cut of a body of which the table has one half."""
     half = settings.get("table.half_model") or settings.get(HALF_MODEL)
     return cut_of(half.value) if half is not None else None
+
+
+def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings) -> Iterator[Evidence]:
+    """Forces across a plane, while nobody has said whether the forces are of the whole body."""
+    if HALF_MODEL in settings or "table.half_model" in settings:
+        return
+    symmetry = settings[SYMMETRY].value if SYMMETRY in settings else ()
+    length = quantity(settings["scaling.length"].value, "length") if "scaling.length" in settings else 0.0
+    yield from across_planes(columns, frame, symmetry, length)
 
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:

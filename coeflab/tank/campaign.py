@@ -6,9 +6,7 @@ on when or how often a run was started, so that a finished run gives the same by
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import quoted, value
 from coeflab.core.types import Array, brief
 from coeflab.core.version import VERSION
@@ -305,11 +304,7 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     heads += [*LABELS, *([VARIANT] if varies else []), *(["cells"] if has_cells else []), "iterations"]
     heads += [f"{p} [{'N' if p[0] in FORCES else 'N*m'}]" for p in patches]
     heads.append("uncertain")
-    out = io.StringIO()
-    if origin:
-        out.write(f"# Not run: {origin}.\n")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(heads)
+    rows = [heads]
     for r in group:
         c, s = r.condition, r.summary
         means = s.means if s is not None else {}
@@ -325,11 +320,11 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
         cells.append("" if s is None or not math.isfinite(s.iterations) else f"{s.iterations:.10g}")
         cells += ["" if s is None or p not in s.patches else _number(s.patches[p][0]) for p in patches]
         cells.append(" ".join(doubtful))
-        writer.writerow(cells)
+        rows.append(cells)
     names = {"labels": list(LABELS), "ignore": ["iterations", *patches]}
     if has_cells:
         names["cells"] = ["cells"]
-    return out.getvalue().encode(), names
+    return csv_text(rows, [f"Not run: {origin}."] * bool(origin)).encode(), names
 
 
 def variant_of(condition: TowCondition) -> str:
@@ -441,14 +436,12 @@ def _campaign_text(
 
 def _runs_text(runs: Sequence[TowedRun]) -> bytes:
     """Every condition with its state, what shows it, and the keys of its case and mesh."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["condition", "state", "status", "why", "remarks", "case sha256", "mesh sha256"])
+    rows = [["condition", "state", "status", "why", "remarks", "case sha256", "mesh sha256"]]
     for r in runs:
         shown = r.why or (r.summary.why if r.summary is not None else "")
         texts = (r.condition.name, str(r.state), r.status, shown, "; ".join(r.remarks), r.case, r.mesh)
-        writer.writerow([one_line(t) for t in texts])
-    return out.getvalue().encode()
+        rows.append([one_line(t) for t in texts])
+    return csv_text(rows).encode()
 
 
 def short_history(run: Run, most: int = HISTORY_ROWS) -> bytes:
@@ -464,8 +457,5 @@ def short_history(run: Run, most: int = HISTORY_ROWS) -> bytes:
     columns = [*([at] if at is not None else []), *(c for x in COMPONENTS if (c := history.meaning(x)) is not None)]
     n = len(history)
     rows = np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(int))
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([f"{c.means} [{c.unit}]" if c.means in COMPONENTS else c.means for c in columns])
-    writer.writerows([f"{c.values[i]:.6g}" for c in columns] for i in rows)
-    return out.getvalue().encode()
+    heads = [f"{c.means} [{c.unit}]" if c.means in COMPONENTS else c.means for c in columns]
+    return csv_text([heads, *([f"{c.values[i]:.6g}" for c in columns] for i in rows)]).encode()

@@ -131,6 +131,10 @@ def _judged(history: Run) -> Verdict:
         return Verdict(False, history.why or found.why, True, found)
     if found.status is Convergence.EMPTY:
         return Verdict(False, found.why, False, found)
+    if not any(
+        np.any(values) for values in whole.values()
+    ):  # a towed body has drag: its patches are not those of the forces
+        return Verdict(False, "every force is zero", False, found)
     columns, groups = _columns(history)
     both = plateau(columns, groups=groups, length=history.length)
     why = both.why or found.why

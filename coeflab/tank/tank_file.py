@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.readers import read_body
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
@@ -23,7 +24,7 @@ from coeflab.tank import test_matrix
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS
 from coeflab.tank.tank import Tank
-from coeflab.tank.tank_keys import FRESH_WATER, MatrixKeys, TankFile
+from coeflab.tank.tank_keys import FRESH_WATER, MatrixKeys, TankFile, folder_name
 from coeflab.tank.test_matrix import Sweeps
 from coeflab.tank.towed_body import TowedBody
 
@@ -104,7 +105,7 @@ def default_text(surface: TowedBody, at: Conditions = FRESH_WATER) -> str:
     return f"""\
 # The virtual tow tank of {body.name}: coeflab tow {body.name} --matrix tank.toml --out runs/{body.name}
 [tank]
-name = {quoted(body.name)}
+name = {quoted(folder_name(body.name))}
 solver = "openfoam"                  # external needs nothing installed; coeflab formats tow_solvers
 cores = 1                            # that one run takes
 # reference_point = {value([float(v) for v in body.reference_point])}   # of velocities and moments; the body's unless given
@@ -153,6 +154,7 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     said = takes.declared(TankFile, file)
     where = _where(file, said.tank.body, body_file)
     own = read_body(where) if body is None else body.body
+    require_orientation(own)
     scaling = said.scaling or _scaling(own)
     if scaling is None and body is not None:
         scaling = Scaling(body.length, "LOA")
@@ -163,6 +165,8 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     sweeps = _sweeps(said.matrix, towed, scaling.length)
     try:
         matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
+        if not matrix:
+            raise InputError("no condition", "an angle, a rate or a speed", column="matrix")  # noqa: TRY301
         matrix = test_matrix.with_studies(matrix, [study.made for study in said.study])
     except InputError as why:
         raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None
@@ -171,7 +175,7 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     carrying = _options(file, "runner", RUNNERS, said.runner, carried_by, "tank.runner" if not runner else "")
     point = own.reference_point if said.tank.reference_point is None else said.tank.reference_point
     return Tank(
-        name=said.tank.name or own.name,
+        name=said.tank.name or folder_name(own.name),
         title=own.title or own.name if said.tank.title is None else said.tank.title,
         body=where,
         datum=Datum.named(own.datum.id, own.datum.note),

@@ -26,6 +26,18 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]{0,59}")
 FRESH_WATER = Conditions(FRESH_DENSITY, 2.0, FRESH_VISCOSITY)
 
 
+def folder_name(name: str) -> str:
+    """A name as `_NAME` takes it: what it does not take becomes an underscore.
+
+    Examples
+    --------
+    >>> folder_name("Rumpf ä'1")
+    'Rumpf___1'
+    """
+    out = re.sub(r"[^A-Za-z0-9_.+-]", "_", name)[:60]
+    return out if _NAME.fullmatch(out) else f"body{out}"[:60]
+
+
 def _no_name(name: str) -> str:
     return "" if _NAME.fullmatch(name) else "letters, digits, _ . + - (it names folders), at most 60"
 

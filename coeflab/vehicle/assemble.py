@@ -33,6 +33,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
 from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
 from coeflab.vehicle.from_shape import equipped
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
@@ -423,6 +424,9 @@ def assemble(
         covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
         models=models,
         added_mass=hull,
+        findings=tuple(
+            dict.fromkeys([*(f for fit in chosen for f in fit.findings), *(() if found is None else found.findings)])
+        ),
         provenance=Provenance(
             coeflab_version=VERSION,
             study=study,
@@ -447,7 +451,8 @@ def assemble(
     about = [
         with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
     ]
-    return with_points(made, [t for t in about if any(t.campaign in f.campaigns for f in chosen)], chosen)
+    mine = [t for t in about if any(t.campaign in f.campaigns for f in chosen)]
+    return without_driving_terms(with_points(made, mine, chosen), lambda p: with_points(p, mine, chosen))
 
 
 def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: Sequence[FitResult]) -> ParameterFile:

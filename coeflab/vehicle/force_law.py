@@ -1,39 +1,41 @@
-"""The hydrodynamic force that a parameter file states, as a law of terms.
+"""The hydrodynamic force that a parameter file states, as a law of terms: the sum over its sources.
 
-Measured terms are taken as measured, potential part and all. Where an added-mass matrix is known, those products of two
-velocities that no measured term speaks of get their share of -C_A(nu) nu of the added mass that the vehicle moves with
-(`coeflab.vehicle.inertia`), so that nothing is counted twice and nothing known is left out.
+Coefficients, fitted tables, controls and the ideal fluid each speak of products of variables (`coeflab.vehicle.sources`), and
+their forces add up. Measured terms are taken as measured, potential part and all. Where an added-mass matrix is known, those
+products of two velocities that no source speaks of get their share of -C_A(nu) nu of the added mass that the vehicle moves
+with (`coeflab.vehicle.inertia`), so that nothing is counted twice and nothing known is left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import Array, brief
-from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
-from coeflab.law.force_law import AHEAD, CONTROLS, WIND, ForceLaw, ForceTerm, Reading
+from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import powers_of
-from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS, derivative
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
+from coeflab.vehicle.parameter_model import ParameterModel
+from coeflab.vehicle.sources import Sources, acts_in, beside, moved_by, name_of, place_of, steered, summed
 
-SLOWEST = 1e-9
+EDGE = "law.edge"  # the one finding of a law that is not about what it leaves out
 LONG = 9  # a table is more than slopes
 
 
 def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
     """Every coefficient of a file with a value, controls included, but those of accelerations; at the file's density.
 
-    Literature values stand in where nothing was fitted, as in the file.
+    Literature values stand in where nothing was fitted, as in the file. An X that has only V in it, such as X0', turns with the
+    course: drag astern too.
     """
     at, out = parameters.conditions, []
     for c in parameters.coefficients:
@@ -44,49 +46,70 @@ def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
         unit = parameters.scaling.unit(d.text, at.density, at.speed if c.law == "rest" and not c.value else 1.0)
         value = c.value_si if rest and c.value_si is not None else unit * c.value
         per_prime = value / c.value if rest and c.value else unit
-        out.append(
-            ForceTerm(
-                d.text,
-                d.component,
-                parse_suffix(d.text[1:]),
-                value,
-                0 if rest else powers_of(d.text)[0],
-                per_prime,
-                "rest" if rest else "prime",
-                c.value,
-                None if c.potential is None else c.potential * per_prime,
-                note=c.origin if c.u95 is None else f"U95 {c.u95:.2g}, {c.origin}",
-            )
+        made = ForceTerm(
+            d.text,
+            d.component,
+            parse_suffix(d.text[1:]),
+            value,
+            0 if rest else powers_of(d.text)[0],
+            per_prime,
+            "rest" if rest else "prime",
+            c.value,
+            None if c.potential is None else c.potential * per_prime,
+            note=c.origin if c.u95 is None else f"U95 {c.u95:.2g}, {c.origin}",
         )
+        resists = made.component == "X" and not made.variables and made.speed_power == 2
+        out.append(replace(made, term=Term((Factor("u", 1),)), readings=(("u", AHEAD),)) if resists else made)
     return tuple(out)
-
-
-def steered_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
-    """The coefficients of controls."""
-    return tuple(t for t in stated_terms(parameters) if _steered(t) and t.coefficient)
 
 
 def _accelerates(factors: tuple[str, ...]) -> bool:
     return any(f.endswith("dot") for f in factors)
 
 
-def _steered(term: ForceTerm) -> bool:
-    return any(v in CONTROLS for v in term.variables)
+def sources_of(parameters: ParameterFile, tables: bool = False) -> Sources:
+    """The sources that add up to the force of a file.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    tables : bool
+        Whether fitted tables come first, see `coeflab.vehicle.sources.summed`.
+
+    Raises
+    ------
+    InputError
+        Two tables speak of the same products.
+    """
+    return summed(stated_terms(parameters), parameters.models, tables, parameters.schema_version)
+
+
+def steered_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
+    """The coefficients of controls in the law."""
+    return tuple(t for t in sources_of(parameters).terms if steered(t) and t.coefficient)
 
 
 def force_law(parameters: ParameterFile) -> ForceLaw:
-    """The steady law of a parameter file, no control deflected."""
-    terms = tuple(t for t in stated_terms(parameters) if not _steered(t))
+    """The part of the law that coefficients and the ideal fluid hold, no control deflected: what targets without tables take.
+
+    Products that a fitted table of the law speaks of are in neither.
+    """
+    sources = sources_of(parameters)
+    terms = tuple(t for t in sources.terms if not steered(t))
     texts = [derivative(c.symbol) for c in parameters.coefficients if c.value is not None]
     left_out = tuple(d.text for d in texts if _accelerates(d.factors) or any(f in CONTROLS for f in d.factors))
-    ideal = np.zeros((6, 6, 6))
-    if parameters.added_mass is not None:
-        ideal = np.where(_open(terms), ideal_quadratics(water_inertia(parameters).matrix), 0.0)
-    return ForceLaw(terms, ideal, left_out)
+    return ForceLaw(terms, _ideal(parameters, sources), left_out)
+
+
+def _ideal(parameters: ParameterFile, sources: Sources) -> Array:
+    """(6, 6, 6) products of the ideal fluid that no source speaks of."""
+    if parameters.added_mass is None:
+        return np.zeros((6, 6, 6))
+    return np.where(sources.open_products(), ideal_quadratics(water_inertia(parameters).matrix), 0.0)
 
 
 def ideal_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
-    """The products of the ideal fluid in `force_law`, each once."""
+    """The products of the ideal fluid in the law, each once."""
     ideal, density, out = force_law(parameters).ideal, parameters.conditions.density, []
     for i, j, k in np.argwhere(np.triu(ideal)):
         value, name = float(ideal[i, j, k] * (1.0 if j == k else 2.0)), COMPONENTS[i] + MOTIONS[j] + MOTIONS[k]
@@ -96,170 +119,125 @@ def ideal_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
     return tuple(out)
 
 
-def _open(terms: Iterable[ForceTerm]) -> NDArray[np.bool_]:
-    """(6, 6, 6), by force and two velocities: the products that no term speaks of."""
-    out = np.ones((6, 6, 6), dtype=bool)
-    for t in terms:
-        if t.pair is not None:
-            i, (j, k) = COMPONENTS.index(t.component), t.pair
-            out[i, j, k] = out[i, k, j] = False
-    return out
+def motion_law(parameters: ParameterFile, tables: bool = False) -> tuple[ForceLaw, tuple[Finding, ...]]:
+    """The law of a file, controls and fitted tables in it, and what was found: what it does not use, where its tables end.
 
-
-def motion_law(parameters: ParameterFile, tables: bool) -> tuple[ForceLaw, tuple[str, ...]]:
-    """The law that a motion follows, controls and fitted tables in it, and what has to be said of it.
-
-    A fitted table speaks for the components that no derivative speaks for; with ``tables`` it is the other way round. Of the
-    products of the ideal fluid those are left that neither a measured derivative nor a table of measured forces speaks of.
+    Simulation, trim, tuning, checks, exports and their losses move by this one law.
 
     Parameters
     ----------
     parameters : ParameterFile
     tables : bool
-        Whether fitted tables come first.
-    """
-    derivatives = _derivatives(parameters)
-    used = _used(parameters, derivatives, tables)
-    fitted, statements = _fitted(used, parameters)
-    if tables:
-        by_table = {c for m in used for c in _components(m)}
-        derivatives = tuple(t for t in derivatives if t.component not in by_table or not _of_motion(t))
-    ideal = np.where(open_places(parameters, tables), force_law(parameters).ideal, 0.0)
-    return ForceLaw((*derivatives, *fitted), ideal), statements
-
-
-def open_places(parameters: ParameterFile, tables: bool) -> NDArray[np.bool_]:
-    """(6, 6, 6), by force and two velocities: whether `motion_law` has a place for a product of the ideal fluid.
-
-    A table over alpha or beta speaks of all products of u with w or v in its component, one over a rate of those with it,
-    unless it says that the potential part is not in its values.
-    """
-    derivatives = _derivatives(parameters)
-    out = _open(t for t in stated_terms(parameters) if not _steered(t))
-    for m in _used(parameters, derivatives, tables):
-        if not m.contains_potential:
-            continue
-        moved = sorted({MOTIONS.index(v) for name in m.names for v in _moves(name)} | {0})
-        for c in _components(m):
-            out[np.ix_([COMPONENTS.index(c)], moved, moved)] = False
-    return out
-
-
-def _moves(variable: str) -> tuple[str, ...]:
-    name = ANGLE_OF.get(variable, variable)
-    return (name,) if name in MOTIONS else ()
-
-
-def _used(parameters: ParameterFile, derivatives: tuple[ForceTerm, ...], tables: bool) -> tuple[ParameterModel, ...]:
-    """Tables that speak: all that are forces, or those of components without a derivative.
+        Whether a table stands before the coefficients of its variables, even where these cover all of them.
 
     Raises
     ------
     InputError
-        Two of one component that both have a force at no angle and no rate.
+        Two tables speak of the same products.
     """
-    spoken = set() if tables else {t.component for t in derivatives if _of_motion(t)}
-    used = [m for m in parameters.models if _components(m) and not _components(m) & spoken]
-    for c in COMPONENTS:
-        based = [m for m in used if c in _components(m) and any(t.value and not t.factors for t in m.terms)]
-        if len({"wind" if _place_of(m) in WIND else m.names for m in based}) > 1:
-            names = " and ".join(f"{m.response} over {', '.join(m.names)}" for m in based)
-            raise InputError(
-                f"{names}, each with a force at rest of its own", f"one table of {c} with a constant", column="models",
-                advice="Fit one table over all of its variables, or give derivatives.",
-            )  # fmt: skip
-    return tuple(used)
+    sources = sources_of(parameters, tables)
+    fitted, found = _fitted(sources, parameters)
+    terms = (*sorted(sources.terms, key=steered), *fitted)
+    return ForceLaw(terms, _ideal(parameters, sources), wind=sources.wind), (*sources.findings, *found)
 
 
-def by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
-    """Whether coefficients of the file state the force components of a table; lift and drag are X and Z."""
+def known_beside(
+    parameters: ParameterFile, terms: Sequence[tuple[str, str, Term]]
+) -> tuple[ForceLaw, tuple[Finding, ...]]:
+    """The fitted tables of a file that stay known where terms of its force are found from data, and those that do not.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    terms : sequence of (symbol, component, Term)
+        To be found.
+    """
+    sources = beside(parameters.models, [(s, c, moved_by(v for v, _, _ in t.factors)) for s, c, t in terms])
+    fitted, found = _fitted(sources, parameters)
+    return ForceLaw(fitted, np.zeros((6, 6, 6)), wind=sources.wind), (*sources.findings, *found)
+
+
+def not_used(parameters: ParameterFile, tables: bool = False) -> tuple[Finding, ...]:
+    """What of a file its law leaves out, or takes otherwise than the file was written for."""
+    return tuple(f for f in motion_law(parameters, tables)[1] if f.code != EDGE)
+
+
+def _fitted(sources: Sources, parameters: ParameterFile) -> tuple[tuple[ForceTerm, ...], tuple[Finding, ...]]:
+    out: list[ForceTerm] = []
+    found = [
+        Finding.of("law.no_force", name_of(m), Severity.NOTE)
+        for m in parameters.models
+        if not place_of(m) and not _by_coefficients(m, parameters)
+    ]
+    ends: dict[str, list[str]] = {}
+    for s in sources.tables:
+        m = s.model
+        component, scale, power = _place(m, parameters)
+        hull, length = m.hull, parameters.scaling.length
+        together = "" if hull.is_box and hull.rule != "taper" else name_of(m)
+        readings = _readings(m, length, together)
+        for t in m.terms:
+            name = f"{m.response} {t.symbol}"
+            if t.value is None:
+                found.append(Finding.of("law.undetermined", name, Severity.NOTE))
+                continue
+            term, si = Term(t.factors), scale * t.value
+            out.append(
+                ForceTerm(name, component, term, si, power, scale, "table", t.value, readings=readings, hull=hull)
+            )
+        ends.setdefault(hull.rule, []).append(m.response)
+    found += [
+        Finding.of(EDGE, ", ".join(dict.fromkeys(names)), Severity.NOTE, rule=rule) for rule, names in ends.items()
+    ]
+    return tuple(out), tuple(found)
+
+
+def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
+    """Whether coefficients of the file state what a table of a polar or a slope does; lift and drag are X and Z."""
     name = model.response.removesuffix("/V^2").removesuffix("'")
     needed = set("XZ") if name in ("L", "D") else {name}
     stated = {derivative(c.symbol).component for c in parameters.coefficients if c.value is not None}
     return needed <= stated
 
 
-def _of_motion(term: ForceTerm) -> bool:
-    return not term.variables or any(v not in CONTROLS for v in term.variables)
-
-
-def _place_of(model: ParameterModel) -> str:
-    """X Y Z K M N, or D S L; empty where the response is no force."""
-    name = model.response.removesuffix("'")
-    found = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
-    return found if found in (*COMPONENTS, *WIND) else ""
-
-
-def _components(model: ParameterModel) -> set[str]:
-    place = _place_of(model)
-    return {"X", "Y", "Z"} if place in WIND else {place} if place else set()
-
-
-def _derivatives(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
-    """Derivatives, then controls. A force that has only V in it, such as X0, turns with the direction of motion."""
-    out = sorted(stated_terms(parameters), key=_steered)
-    return tuple(
-        replace(t, term=Term((Factor("u", 1),)), readings=(("u", AHEAD),))
-        if not t.variables and t.component == "X" and t.speed_power == 2
-        else t
-        for t in out
-    )
-
-
-def _fitted(
-    used: tuple[ParameterModel, ...], parameters: ParameterFile
-) -> tuple[tuple[ForceTerm, ...], tuple[str, ...]]:
-    out: list[ForceTerm] = []
-    statements = [
-        f"the table of {m.response} is not a force that a motion needs; left out"
-        for m in parameters.models
-        if not _components(m) and not by_coefficients(m, parameters)
-    ]
-    for m in used:
-        component, scale, power = _place(m, parameters)
-        readings = _readings(m, parameters.scaling.length)
-        for t in m.terms:
-            if t.value is None:
-                statements.append(f"{m.response}: {t.symbol} is not determined by the data and counts as zero")
-                continue
-            name, si = f"{m.response} {t.symbol}", scale * t.value
-            term = Term(t.factors)
-            out.append(ForceTerm(name, component, term, si, power, scale, "table", t.value, readings=readings))
-    if used:
-        names = ", ".join(dict.fromkeys(m.response for m in used))
-        statements.append(f"tables of {names}: outside the range of their data the value at the edge is used")
-    return tuple(out), tuple(statements)
-
-
 def _place(model: ParameterModel, parameters: ParameterFile) -> tuple[str, float, int]:
     """Component, SI force of one unit of the response, power of the speed."""
     pressure, length = 0.5 * parameters.conditions.density, parameters.scaling.length
-    component = _place_of(model)
+    component = place_of(model)
     arm = length if component in "KMN" else 1.0
     if model.unit != "1":
         return component, 1.0, 0
     return component, pressure * (model.area.value if model.area else length**2) * arm, 2
 
 
-def _readings(model: ParameterModel, length: float) -> tuple[tuple[str, Reading], ...]:
+def _readings(model: ParameterModel, length: float, together: str) -> tuple[tuple[str, Reading], ...]:
+    """How the variables are read: each within its range where the hull is a box, else all of a table together."""
     out = []
     for v, low, high in zip(model.variables, model.domain.low, model.domain.high, strict=True):
         prime = 0.0
         if v.unit == "1":
             prime = 1.0 if v.name in LINEAR else length if v.name in ANGULAR else 0.0
-        out.append((v.name, Reading(prime, low, high, True)))
+        out.append((v.name, Reading(prime, table=together) if together else Reading(prime, low, high, True)))
     return tuple(out)
 
 
+def force_at_edges(parameters: ParameterFile) -> Callable[[Array, Array], Array]:
+    """As `full_force`, with the value at the edge where a table refuses to be read: what a motion goes by until it ends there."""
+    return motion_law(parameters)[0].force
+
+
 def full_force(parameters: ParameterFile) -> Callable[[Array, Array], Array]:
-    """Velocities (n, 6) and controls (n, 3) -> forces (n, 6): the law that a simulation of the file moves by."""
-    return motion_law(parameters, tables=False)[0].force
+    """Velocities (n, 6) and controls (n, 3) -> forces (n, 6): the law that a simulation of the file moves by.
+
+    NaN where a table refuses to be read beyond its data.
+    """
+    return replace(motion_law(parameters)[0], strict=True).force
 
 
 def points_of(parameters: ParameterFile) -> tuple[LawAtPoints, ...]:
     """How far the law of a file, as it is now, is from the points in it."""
     length = parameters.scaling.length
-    return law_at_points(parameters.measured, parameters.law_holds, full_force(parameters), length)
+    return law_at_points(parameters.measured, parameters.law_holds, force_at_edges(parameters), length)
 
 
 @brief
@@ -291,20 +269,20 @@ def spoken(parameters: ParameterFile) -> Spoken:
     by_table: dict[tuple[str, str], frozenset[str]] = {}
     together: dict[str, tuple[frozenset[str], ...]] = {}
     higher: dict[str, frozenset[str]] = {}
-    constants = set()
+    constants, unused = set(), {t.symbol for t in sources_of(parameters).unused_terms}
     parts: list[tuple[str, str, frozenset[str], int]] = []
     for c in parameters.coefficients:
         d = derivative(c.symbol)
-        if c.value is None or c.law == "rest" or any(f.endswith("dot") for f in d.factors):
+        if c.value is None or c.law == "rest" or _accelerates(d.factors) or d.text in unused:
             continue
         moved = frozenset(d.factors) - {"u"}
         constants |= {d.component} if not moved else set()
         parts.append((d.component, c.table or "", moved, len(d.factors)))
-    for m in _used(parameters, _derivatives(parameters), tables=False):
-        moved = frozenset(v for name in m.names for v in (_moves(name) or (name,))) & {*MOTIONS[1:], *CONTROLS}
-        for component in _components(m):
+    sources = sources_of(parameters)
+    for s in sources.tables:
+        for component in sources.components(s):
             constants.add(component)
-            parts.append((component, m.table, moved, LONG))
+            parts.append((component, s.model.table, acts_in(s.model)[component], LONG))
     for component, tables, moved, degree in parts:
         for table in filter(None, tables.split(", ")):
             by_table[component, table] = by_table.get((component, table), none) | moved
@@ -316,12 +294,10 @@ def spoken(parameters: ParameterFile) -> Spoken:
 
 
 def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:
-    """(n, 6) what the fitted tables change in the force of the derivatives and of the ideal fluid; None where there is none."""
-    law, _ = motion_law(parameters, tables=False)
+    """(n, 6) of the fitted tables in the law alone; None where there is none."""
+    law, _ = motion_law(parameters)
     tabled = tuple(t for t in law.terms if t.kind == "table")
-    if not tabled:
-        return None
-    return ForceLaw(tabled, law.ideal - force_law(parameters).ideal).force(nu)
+    return ForceLaw(tabled, np.zeros((6, 6, 6)), wind=law.wind).force(nu) if tabled else None
 
 
 def ahead_from(parameters: ParameterFile) -> int | None:
@@ -335,7 +311,7 @@ def ahead_from(parameters: ParameterFile) -> int | None:
     motions = np.zeros((len(drift), 6))
     motions[:, 0], motions[:, 1] = np.cos(drift), np.sin(drift)
     try:
-        law = full_force(parameters)
+        law = force_at_edges(parameters)
     except InputError:  # a manoeuvre says why nothing moves by it
         return None
     ahead = law(parameters.conditions.speed * motions, np.zeros((len(drift), 3)))[:, 0] > 0.0

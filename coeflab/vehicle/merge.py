@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed
@@ -243,7 +244,7 @@ def _written(
         "measured": (*base.measured, *(other.measured if same else ())),
         "law_holds": (*base.law_holds, *(other.law_holds if same else ())),
         "law_at_points": (),
-        "findings": tuple(dict.fromkeys((*base.findings, *other.findings))),
+        "findings": findings_of_merged((*base.findings, *other.findings), name or base.name),
         "provenance": mine.model_copy(
             update={
                 "coeflab_version": VERSION,
@@ -254,3 +255,10 @@ def _written(
         ),
     }
     return ParameterFile(**content)
+
+
+def findings_of_merged(found: Sequence[Finding], name: str) -> tuple[Finding, ...]:
+    """Findings of several files on one whose law is neither's: what was said of a law against its force model no longer is."""
+    kept = dict.fromkeys(f for f in found if not f.code.startswith("law.model"))
+    left = len(kept) < len(dict.fromkeys(found))
+    return (*kept, *((Finding.of("law.model_left", name, Severity.NOTE),) if left else ()))

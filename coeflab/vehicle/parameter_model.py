@@ -13,8 +13,7 @@ from pydantic import Field, model_validator
 from coeflab.core.errors import InputError, shown
 from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive
 from coeflab.core.types import Array
-from coeflab.fits.results.fitted_model import Extrapolation
-from coeflab.law.domain import clamped, inside, taper_weight
+from coeflab.law.domain import Hull
 from coeflab.law.terms import Factor, Term, design
 from coeflab.vehicle.parameter_parts import Strict
 
@@ -129,6 +128,13 @@ class ParameterModel(Strict):
         """The variables."""
         return tuple(v.name for v in self.variables)
 
+    @property
+    def hull(self) -> Hull:
+        """Where it may be read, and what a reader gets outside."""
+        d = self.domain
+        spaces = np.array(d.half_spaces, dtype=np.float64).reshape(-1, len(self.names) + 1)
+        return Hull(self.names, np.array(d.low), np.array(d.high), spaces, d.extrapolation)
+
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the convex hull of the data.
 
@@ -154,18 +160,12 @@ class ParameterModel(Strict):
                 column=self.response,
             )  # fmt: skip
         points = np.column_stack([np.asarray(columns[v], dtype=np.float64) for v in self.names])
-        domain = self.domain
-        spaces = np.array(domain.half_spaces, dtype=np.float64).reshape(-1, len(self.names) + 1)
-        within = np.asarray(inside(spaces, points), dtype=bool)
-        rule = Extrapolation(domain.extrapolation)
+        hull = self.hull
+        within = hull.contains(points)
         rows = self._rows(points)
-        if rule is not Extrapolation.REFUSE:
-            low, high = np.array(domain.low), np.array(domain.high)
-            nearest = clamped(points, spaces, low, high)
-            edge = self._rows(nearest)
-            tapers = rule is Extrapolation.TAPER
-            free = taper_weight(points, nearest, low, high) if tapers else np.zeros(len(points))
-            some = free[:, None] > 0.0
+        if hull.rule != "refuse":
+            nearest, free = hull.read(points)
+            edge, some = self._rows(nearest), free[:, None] > 0.0
             rows = np.where(some, edge + free[:, None] * np.where(some, rows - edge, 0.0), edge)
         values = rows @ np.array([0.0 if t.value is None else t.value for t in self.terms])
         unknown = np.array([t.value is None for t in self.terms])
@@ -173,7 +173,7 @@ class ParameterModel(Strict):
         bare = ~unknown & np.isnan(np.diag(covariance))
         spread = np.sqrt(np.maximum(np.einsum("ij,ij->i", rows @ np.nan_to_num(covariance), rows), 0.0))
         void = np.any(rows[:, unknown] != 0.0, axis=1)
-        if rule is Extrapolation.REFUSE:
+        if hull.rule == "refuse":
             void |= ~within
         half = np.where(void | np.any(rows[:, bare] != 0.0, axis=1), np.nan, 2.0 * spread)
         return np.where(void, np.nan, values), half, within

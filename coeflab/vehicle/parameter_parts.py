@@ -94,8 +94,14 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum, veh
     rounded = [OtherMethod(o.method, _rounded(o, point)) for o in others]
     return AddedMass(
         _rounded(chosen, point), point, datum, vehicle or chosen.body, chosen.method, chosen.statements, density=found.density,
-        others=tuple(o for o in rounded if definiteness(o.matrix).holds),
+        others=tuple(o for o in rounded if definiteness(o.matrix).holds), u95=_half_widths(chosen, point),
     )  # fmt: skip
+
+
+def _half_widths(found: AddedMass, point: np.ndarray) -> np.ndarray | None:
+    """Of a rough guide, to three digits."""
+    half = found.about(point).u95
+    return None if half is None else np.array([float(f"{v:.3g}") for v in half.ravel()]).reshape(6, 6)
 
 
 def _rounded(found: AddedMass, point: np.ndarray) -> np.ndarray:

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
+from coeflab.core.texts import known
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
@@ -33,7 +34,7 @@ MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
 SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
 PROBE = 0.05
-NAME = "plausibility"
+NAME, LAW = "plausibility", "law at points"
 
 
 def stated_matrix(parameters: ParameterFile) -> Array:
@@ -186,11 +187,11 @@ def _by_tables(p: ParameterFile) -> list[Check]:
 def _own_terms(p: ParameterFile) -> list[_Own]:
     out = []
     for t in force_law(p).terms:
-        variables = {v for v, _, _ in t.term.factors}
+        variables = {v for v, _, _ in t.product.factors}
         motion = MOTIONS[COMPONENTS.index(t.component)]
-        resistance = t.component == "X" and not variables and t.speed_power == 2
+        resistance = t.ahead
         if t.coefficient != 0.0 and (variables == {motion} or resistance):
-            out.append(_Own(t, motion, t.term.odd_in(motion) or resistance))
+            out.append(_Own(t, motion, t.product.odd_in(motion) or resistance))
     return out
 
 
@@ -204,13 +205,22 @@ def _outweighs(driving: _Own, own: list[_Own], p: ParameterFile) -> bool:
     unit = speed if driving.motion in LINEAR else speed / p.scaling.length
     motion = np.linspace(0.05, 1.0, 20) * (np.sin(largest) if driving.motion in "vw" else largest) * unit
     mine = [o.term for o in own if o.odd and o.term.component == driving.term.component]
-    force = sum(t.coefficient * speed**t.speed_power * motion**t.term.degree for t in mine)
+    force = sum(t.coefficient * speed**t.speed_power * motion**t.product.degree for t in mine)
     return bool(np.any(force > 0.0))
+
+
+def driving_terms(p: ParameterFile) -> list[ForceTerm]:
+    """Terms of a motion on itself that drive it somewhere; below zero they damp."""
+    return [o.term for o in _driving(_own_terms(p), p)]
+
+
+def _driving(own: list[_Own], p: ParameterFile) -> list[_Own]:
+    return [o for o in own if o.odd and o.term.coefficient > 0.0 and _outweighs(o, own, p)]
 
 
 def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     out = []
-    drives = [o for o in own if o.odd and o.term.coefficient > 0.0 and _outweighs(o, own, p)]
+    drives = _driving(own, p)
     if drives:
         it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
         out.append(_damping_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
@@ -238,8 +248,8 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
             continue
         for a in own:
             for b in own:
-                n = a.term.term.degree
-                same = n == b.term.term.degree and a.term.speed_power == b.term.speed_power and a.odd and b.odd
+                n = a.term.product.degree
+                same = n == b.term.product.degree and a.term.speed_power == b.term.speed_power and a.odd and b.odd
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
@@ -334,7 +344,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice, what the file was written with; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -351,6 +361,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *sign_findings(parameters),
         *law_findings(parameters),
         *twice_findings(parameters),
+        *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),
     )
 
 
@@ -372,9 +383,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
                 f"rms {100.0 * x.rms / largest:.3g} %, worst {100.0 * x.worst / largest:.3g} %" for x in (f, before)
             )
             means = "A coefficient was changed after the file was written: this is not the law that was compared."
-            out.append(
-                Check("law at points", f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)
-            )
+            out.append(Check(LAW, f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means))
         said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
         if f.beyond and not f.small and not f.missed:
             said = (
@@ -397,7 +406,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             comment = (
                 X_APART if f.component == "X" else "The law ends before these points, and so do exports and motions."
             )
-        out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
+        out.append(Check(LAW, f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)
 
 

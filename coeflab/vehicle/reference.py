@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import in_digits_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
@@ -84,11 +85,21 @@ class Reference:
     reference_point: NDArray[np.float64] | None
     indices: tuple[PublishedValue, ...] = ()
     datum: Datum | None = None
+    inferred: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "inferred", MappingProxyType(dict(self.inferred)))
         object.__setattr__(self, "uncertainties", MappingProxyType(dict(self.uncertainties)))
         if self.reference_point is not None:
             object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    @property
+    def assumed(self) -> tuple[Finding, ...]:
+        """What of the column its source does not print."""
+        return tuple(
+            Finding.of("published.inferred", self.name, Severity.NOTE, key=key, why=why)
+            for key, why in self.inferred.items()
+        )
 
     def printed(self, symbol: str) -> PublishedValue | None:
         """The published value of a symbol, if there is one."""
@@ -207,6 +218,7 @@ def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> 
 
 
 Printed = dict[str, takes.Text]
+INFERRED = ("body", "length", "reference_point")  # what a source may leave unsaid of a column
 
 
 def _values(printed: Mapping[str, str], table: str, known: tuple[str, ...] = ()) -> tuple[PublishedValue, ...]:
@@ -277,7 +289,7 @@ class ReferenceKeys(takes.Declaration):
     relation : {"re-analysis", "cross-body", "quoted"}
         What it is to ours: the authors' own evaluation of the tables in campaigns, with a verdict; another body or another method; quoted from another column. The latter two have no verdict.
     campaigns : tuple of str
-        Whose tables a re-analysis evaluates.
+        Whose tables a re-analysis evaluates; it needs them.
     length : float
         Of its primes.
     length_name : str
@@ -302,6 +314,8 @@ class ReferenceKeys(takes.Declaration):
         Id of the point that the reference point counts from; unless given that of the tables.
     datum_note : str
         Where that is.
+    inferred : mapping of str to str
+        Keys of this column that the source does not print, body or length, and what they are inferred from, in words.
     """
 
     name: takes.Text
@@ -322,6 +336,7 @@ class ReferenceKeys(takes.Declaration):
     indices: Printed = field(default_factory=dict)
     datum: takes.Text | None = None
     datum_note: takes.Words | None = None
+    inferred: dict[str, takes.Text] = field(default_factory=dict)
 
     def check(self) -> None:
         """Keys that go together, derivatives and numbers."""
@@ -330,6 +345,14 @@ class ReferenceKeys(takes.Declaration):
                 raise InputError("nothing", f"what goes with {key}", column=other, advice=f"Add {other}.")
         if self.other_length_name is not None and self.other_length is None:
             raise InputError("a name without a length", "other_length", column="other_length_name")
+        for key in self.inferred:
+            if key not in INFERRED:
+                raise InputError(shown(key), f"one of {', '.join(INFERRED)}", column=f"inferred.{key}")
+        if self.relation == Relation.RE_ANALYSIS and not self.campaigns:
+            raise InputError(
+                "a re-analysis without campaigns", 'campaigns = ["NAME"], the campaigns whose tables it evaluates', column="campaigns",
+                advice='Add campaigns, or say relation = "cross-body" for another body or method.',
+            )  # fmt: skip
         _ = self.made
 
     @property
@@ -354,6 +377,7 @@ class ReferenceKeys(takes.Declaration):
             uncertainties=self.uncertainties,
             reference_point=self.reference_point,
             indices=_values(self.indices, "indices", STABILITY),
+            inferred=self.inferred,
             datum=None if self.datum is None else Datum.named(self.datum, self.datum_note or ""),
         )
 

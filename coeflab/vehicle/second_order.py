@@ -88,9 +88,9 @@ Slot = tuple[str, int, int]
 
 def slot(term: ForceTerm) -> Slot | None:
     """Where a term stands: ``linear``, ``signed`` or ``absolute`` with its velocities; None where the form has no place."""
-    signed = sorted(MOTIONS.index(v) for v, n, a in term.term.factors for _ in range(n) if not a and v in MOTIONS)
-    bars = sorted(MOTIONS.index(v) for v, n, a in term.term.factors for _ in range(n) if a and v in MOTIONS)
-    if len(signed) + len(bars) != term.term.degree:
+    signed = sorted(MOTIONS.index(v) for v, n, a in term.product.factors for _ in range(n) if not a and v in MOTIONS)
+    bars = sorted(MOTIONS.index(v) for v, n, a in term.product.factors for _ in range(n) if a and v in MOTIONS)
+    if len(signed) + len(bars) != term.product.degree:
         return None
     match signed, bars, term.speed_power:
         case [j], [], 0:
@@ -113,7 +113,7 @@ def slot(term: ForceTerm) -> Slot | None:
 
 def resists(term: ForceTerm) -> bool:
     """Whether a term is the resistance X0 U^2."""
-    return term.component == "X" and term.term.degree == 0 and term.speed_power == 2
+    return term.component == "X" and term.product.degree == 0 and term.speed_power == 2
 
 
 def second_order(law: ForceLaw) -> SecondOrder:

@@ -5,39 +5,29 @@ What a plan names, read: tables about one reference point, bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
-from coeflab.core.errors import CoeflabError, InputError, ScalingMismatchError, shown
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.files import stem
-from coeflab.core.finding import Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Check
-from coeflab.core.wording import Verbatim
-from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
-from coeflab.fits.uncertainty.model_budget import with_model_budgets
+from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import MOTIONS, derivative
+from coeflab.law.symbols import derivative
 from coeflab.motion.simulation import manoeuvres_of
-from coeflab.report.content import document
-from coeflab.report.formats import REPORTERS
-from coeflab.study.checks import CHECKS
-from coeflab.study.plan import plan_at, read_plan, table_at
+from coeflab.study.checking import checked
+from coeflab.study.fitting import FEWEST, fitted
+from coeflab.study.plan import plan_at, read_plan
 from coeflab.study.study import Conversion, Plan, PlannedConversion, PlannedJoint, Study
-from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.tables.planar_motion import PlanarMotionTable
-from coeflab.tables.reading import read_tables
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
@@ -91,11 +81,9 @@ def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
     return read
 
 
-__all__ = ["checked", "read_body", "read_tables", "rendered", "run"]
+__all__ = ["checked", "fitted", "read_body", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
-FEWEST = 3
-COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once
 
 
 @one_thread()
@@ -137,23 +125,23 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         enough = [t for t in read if _has_points(t)] if is_ours else read
         for name in planned.fits if enough else ():
             try:
-                fitted, found = _fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+                made, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
             except InputError as why:
                 if not is_ours:
                     raise
                 unfitted.setdefault(read[0].campaign, why.found)
                 continue
             budgets += found
-            fits.append(fitted)
+            fits.append(made)
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     for joint in plan.joint:
         read = together(joint, plan)
         progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
-        fitted, found = _fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        made, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
         budgets += found
-        fits.append(fitted)
-        progress(f"fitted {fitted.campaign} by {joint.fit}")
+        fits.append(made)
+        progress(f"fitted {made.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
     body = read_body(_body_file(plan.body)) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
@@ -222,112 +210,9 @@ def _body_file(path: Path) -> Path:
     return path / "body.toml" if path.is_dir() else path
 
 
-def checked(study: Study, progress: Progress = lambda _: None) -> Study:
-    """The study with what every check finds."""
-    findings = [c for name in CHECKS.names() for c in _findings(name, study)]
-    progress(f"{len(findings)} checks")
-    return study.with_checks(tuple(findings))
-
-
 def _has_points(table: ForceTable) -> bool:
     """Whether a component of a tow has points enough for a fit, as runs that did not converge do not count."""
     return any(len(np.unique(table.setting[mask])) >= FEWEST for mask in table.usable.values())
-
-
-def _findings(name: str, study: Study) -> tuple[Check, ...]:
-    """What one check finds; of another package's that raises, the finding is that it did."""
-    try:
-        with CHECKS.guarded(name):
-            found = tuple(CHECKS.load(name).check(study))
-            if not all(isinstance(c, Check) for c in found):
-                raise TypeError("a finding that is no Check")
-    except CoeflabError as why:
-        if CHECKS.is_shipped(name):
-            raise
-        return (
-            Check(name, "every campaign", Severity.WARN, Verbatim(why), "a check that ends with findings",
-                  "What this check looks at was not assessed. Mend or uninstall the package that it comes from."),
-        )  # fmt: skip
-    return found if CHECKS.is_shipped(name) else tuple(map(_in_their_words, found))
-
-
-def _in_their_words(c: Check) -> Check:
-    """Another package's finding: nothing in its texts is taken for a symbol."""
-    said = map(Verbatim, (c.statistic, c.rule, c.comment))
-    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *said)
-
-
-def _fitted(
-    name: str,
-    tables: Sequence[ForceTable],
-    scaling: Scaling,
-    options: Mapping[str, Any],
-    earlier: Sequence[FitResult] = (),
-) -> tuple[FitResult, tuple[Budget, ...]]:
-    """One fit with its budgets in it, and these; one that completes another is given that, budgets and all."""
-    _refuse_several(name, tables)
-    _refuse_unsuited(name, tables)
-
-    def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
-        with FITS.guarded(name):
-            plugin = FITS.load(name)
-            if isinstance(plugin, CompletingFit):
-                own = [f for f in earlier if (f.fit, f.campaign) == (plugin.completes, tables[0].campaign)]
-                if own:
-                    return plugin.complete(own[-1], some, by, options)
-            return plugin.fit(some, by, options)
-
-    fit = once(tables, scaling)
-    _refuse_starved(fit, tables)
-    found = budgets_of(fit, {t.name: t for t in tables})
-    fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
-    if all(t.source.kind == "estimate" for t in tables):
-        return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
-    return fit, (*found, *more)
-
-
-def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
-    """Refuse several campaigns in a fit that knows nothing of their intercepts and scatter."""
-    campaigns = joint_name(t.campaign for t in tables)
-    if len({t.campaign for t in tables}) > 1 and not FITS.load(name).joins_campaigns:
-        able = [n for n in FITS.usable() if FITS.load(n).joins_campaigns]
-        raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
-                         column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
-
-
-def _refuse_unsuited(name: str, tables: Sequence[ForceTable]) -> None:
-    """Refuse a fit of steady forces to oscillating runs, and the reverse."""
-    with FITS.guarded(name):
-        series = FITS.load(name).reads_series
-    odd = next((t for t in tables if isinstance(t, PlanarMotionTable) != series), None)
-    if odd is not None:
-        what = "steady forces" if series else "oscillating runs"
-        able = [n for n in FITS.usable() if FITS.load(n).reads_series != series]
-        few = ", ".join(able) if len(able) < FEWEST else "slope_at_origin, tied_law or another fit of steady forces"
-        raise InputError(f"{name} over {what}", f"fits of those: {few}", file=odd.name, column="fits")
-
-
-def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
-    """Refuse a sweep in which no force component has more points than the simplest form has parameters."""
-    sweeps = [s for s in fit.sweeps if s.parity == "odd" and s.variable in MOTIONS]
-    for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
-        points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))
-        if points < FEWEST:
-            combined = next((_combined(t) for t in tables if t.name == table), 0)
-            joined = f"{combined} rows combine motions: --fit {COMBINES} fits them as one model. Or run"
-            raise InputError(
-                f"{points} usable point{'s' * (points != 1)} of the sweep over {variable}'",
-                f"at least {FEWEST} for an intercept, a slope and an error",
-                file=table,
-                advice=f"{joined if combined >= FEWEST else 'Run'} more settings, or leave the table out of the plan.",
-            )
-
-
-def _combined(table: ForceTable) -> int:
-    """Rows in which more than one of v, w, p, q, r is not at rest."""
-    sizes = [np.abs(table.motion[m]) for m in MOTIONS[1:]]
-    moving = [size > AT_REST * float(np.max(size, initial=0.0)) for size in sizes]
-    return int(np.sum(np.sum(moving, axis=0) > 1))
 
 
 def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ...]:
@@ -382,6 +267,9 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
 @one_thread()
 def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
+    from coeflab.report.content import document
+    from coeflab.report.formats import REPORTERS
+
     files: dict[str, bytes] = {}
     report = document(study, full=False)
     for name in formats:

@@ -9,9 +9,8 @@ from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import EXPORTERS, InertialExporter, PartialExporter, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import found_in, lacking_tables, without_law
 from coeflab.report.tables.formats import as_text, in_short
-from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -48,6 +47,7 @@ def export(
         files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
+        files |= _remarks(files, parameters, target, found_in(parameters))
         return Export(parameters.name, target, files, None, plugin.citations)
     left = _left_out(plugin, given, accept_loss)
     missing = tuple(Lost(Kind.MISSING, said) for said in plugin.missing(given))
@@ -59,12 +59,28 @@ def export(
         *_renamed(files, parameters),
     )
     found = loss_of(
-        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
+        target, parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
         plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip
+    files |= _remarks(files, parameters, target, (*lacking_tables(parameters), *found_in(parameters)))
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)
+
+
+def _remarks(
+    files: Mapping[str, bytes], parameters: ParameterFile, target: str, due: Sequence[str]
+) -> dict[str, bytes]:
+    """What files have to say of their numbers, beside those of a format that has no place for it."""
+
+    def letters(text: str) -> str:
+        return "".join(c for c in text if c.isalnum())
+
+    written = letters("\n".join(content.decode(errors="ignore") for content in files.values()))
+    found = [said for said in due if letters(said) not in written]
+    if not found:
+        return {}
+    return {f"{file_stem(parameters.name)}.{target}.remarks.txt": ("\n".join(found) + "\n").encode()}
 
 
 def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[Lost, ...]:
@@ -111,7 +127,7 @@ def parameter_files_rendered(several: Iterable[ParameterFile]) -> dict[str, byte
     """Every parameter file and its tables as CSV, by name. Nothing is written."""
     files: dict[str, bytes] = {}
     for parameters in several:
-        files[f"{parameters.name}.parameters.json"] = parameters.to_json()
+        files[f"{file_stem(parameters.name)}.parameters.json"] = parameters.to_json()
         files.update(EXPORTERS.load("csv").render(parameters))
     return files
 

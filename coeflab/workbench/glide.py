@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.files import located
 from coeflab.core.machine import one_thread
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.types import brief
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide, steady_glides, steady_spirals
 from coeflab.motion.glider.glider import GliderPhase, gliders_at
@@ -98,8 +99,8 @@ def files(flown: Sequence[Flown]) -> dict[str, bytes]:
 
 
 def _csv(header: Sequence[str], columns: Iterable[Any]) -> bytes:
-    rows = [",".join(f"{v:.9g}" for v in row) for row in zip(*columns, strict=True)]
-    return ("\n".join([",".join(header), *rows]) + "\n").encode()
+    rows = ([f"{v:.9g}" for v in row] for row in zip(*columns, strict=True))
+    return csv_text([header, *rows]).encode()
 
 
 def motion_csv(run: GlideRun) -> bytes:

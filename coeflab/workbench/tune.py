@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -13,14 +11,21 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
+from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
+from coeflab.core.text.csv_rows import csv_text
+from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import file_stem
 from coeflab.motion.steady_state import differences, level_forces, steady_motions, wrenches
 from coeflab.motion.tune.output_error import Estimate, Problem, by_likelihood, estimate, problem
 from coeflab.motion.tune.plan import SteadyCases, TuningPlan, moved
 from coeflab.motion.tune.tuning import (
+    TunedParameter,
     TunedQuantity,
     Tuning,
+    damps,
+    driving,
     statements,
     together_in_words,
     tuned_file,
@@ -54,7 +59,7 @@ class Tuned:
 
     def files(self) -> dict[str, bytes]:
         """Everything to write, by file name."""
-        name = self.plan.name
+        name = file_stem(self.plan.name)
         figure = agreement_figure(self.tuning, f"{name}-agreement")
         return {
             f"{name}.parameters.json": self.parameters.to_json(),
@@ -86,13 +91,26 @@ def tune(plan: TuningPlan) -> Tuned:
     said = list(statements(p, found))
     if plan.from_residuals:
         said.insert(0, "Standard errors are those of the residuals (maximum likelihood); none were stated.")
+    moved_parameters = tuned_parameters(names, [f.unit for f in plan.free], p, found)
+    drives = _driving(plan, moved_parameters)
+    said += [remark(f) for f in drives]
     tuning = Tuning(
-        plan.name, tuned_parameters(names, [f.unit for f in plan.free], p, found), found.correlation, found.covariance,
+        plan.name, moved_parameters, found.correlation, found.covariance,
         _quantities(plan.cases, p, found),
         tuple(together_in_words(names, c, found.parameters) for c in found.undetermined), found.singular, found.birge,
         found.freedom, found.converged, tuple(said),
     )  # fmt: skip
     return Tuned(plan, tuning, tuned_file(plan, tuning))
+
+
+def _driving(plan: TuningPlan, parameters: Sequence[TunedParameter]) -> tuple[Finding, ...]:
+    """Damping that came out driving, of all that is free."""
+    out = []
+    for f, p in zip(plan.free, parameters, strict=True):
+        signs = {w.sign for w in f.places if damps(w, plan.parameters)}
+        along = [replace(p, after=p.after * s) for s in sorted(signs)]
+        out += [found for one in along[:1] if (found := driving(one, plan.cases.file.name)) is not None]
+    return tuple(out)
 
 
 def write(tuned: Tuned, folder: Path) -> list[Path]:
@@ -222,12 +240,10 @@ def _quantities(cases: SteadyCases, p: Problem, found: Estimate) -> tuple[TunedQ
 def _motions(cases: SteadyCases, tuning: Tuning) -> bytes:
     """Every case: line, commands, measured, before and after."""
     commands = list(cases.commands[0])
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
     heads = [f"{q.name} {what} [{q.unit}]" for q in tuning.quantities for what in ("measured", "before", "after")]
-    writer.writerow(["line", *commands, *heads])
+    rows: list[list[object]] = [["line", *commands, *heads]]
     for i, line in enumerate(cases.lines):
         values = [a[i] for q in tuning.quantities for a in (q.measured, q.before, q.after)]
         shown = ["" if np.isnan(v) else f"{v:.6g}" for v in values]
-        writer.writerow([line, *(f"{cases.commands[i][c]:g}" for c in commands), *shown])
-    return out.getvalue().encode()
+        rows.append([line, *(f"{cases.commands[i][c]:g}" for c in commands), *shown])
+    return csv_text(rows).encode()

@@ -15,6 +15,7 @@ from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.file import SELF_DESCRIBED
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
+from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import BODY, mesh_body
 from coeflab.bodies.triangulation import Triangulation
@@ -26,19 +27,21 @@ from coeflab.core.units import positive_typed, three_typed
 from coeflab.formats.export import PlannedExport
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.approach import along, linear_growth, mirrored, yaw_acceleration
+from coeflab.law.symbols import CONTROLS
+from coeflab.motion.approach import along, mirrored, yaw_acceleration
 from coeflab.motion.manoeuvre import UPRIGHT, Simulation
 from coeflab.motion.simulation import manoeuvres_of, moved, simulate
+from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
-from coeflab.report.document import Document, Section, digest_of
-from coeflab.report.formats import REPORTERS
-from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
-from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.study import FromShape, Plan, Study
+from coeflab.tables.reading import table_at
 from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
+from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
 from coeflab.workbench.exports import exports_of, parameter_files_rendered
@@ -53,6 +56,7 @@ ASIDE = 1e-6
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
 ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
+STATES = 200  # of each manoeuvre, at which law and force model are compared
 REMAINING = 0.2  # of the speed, of a coast-down
 TURNS, LONGER = (
     1.25,
@@ -65,7 +69,51 @@ def from_shape(
     plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
     distances: Sequence[float] = (),
 ) -> Study:  # fmt: skip
-    """The study of a body without tables; checks and files are left to what takes it.
+    """The study of a body without tables, with exports, first manoeuvres and what the estimates do to these.
+
+    Checks and files are left to what takes the study.
+
+    Parameters
+    ----------
+    plan : Plan
+        Without tables: name, exports, manoeuvres, conditions, scaling.
+    body : Body
+        With a shape.
+    stated : Stated
+        What is known of its mass beside the body's file.
+    progress : callable
+        Takes what is being done, in words.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``; none where empty.
+    distances : sequence of float
+        From the reference point to the wall, m: added mass there, by the panel method, goes into the parameter files.
+    """
+    study = estimated(plan, body, stated, progress, wall, distances)
+    shape = study.shape
+    if shape is None:
+        return study
+    files: dict[str, ParameterFile] = dict(study.parameter_files)
+    heavy, vehicle = shape.weighed, next(iter(files.values()))
+    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
+    said = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
+    said.extend(by_series(heavy.body, shape.conditions.speed))
+    planned = manoeuvres_of(plan.manoeuvres, files, progress)
+    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
+    files = {name: compared(p, shape.estimates, moves) for name, p in files.items()}
+    vehicle = next(iter(files.values()))
+    exports, refused = exports_of(plan.exports, files.values(), progress)
+    carried, why = _carried(vehicle, moves, progress)
+    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
+    shape = replace(shape, said=tuple(said), missing=missing, carried=carried)
+    return replace(study, parameter_files=files, exports=exports, refused=refused, manoeuvres=moves, shape=shape)
+
+
+@one_thread()
+def estimated(
+    plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None, wall: str = "",
+    distances: Sequence[float] = (),
+) -> Study:  # fmt: skip
+    """Added mass, estimates and parameter files of a body without tables.
 
     Parameters
     ----------
@@ -88,6 +136,7 @@ def from_shape(
         No shape, no volume, a mass or an inertia that no body has, nothing that can be estimated.
     """
     shape = body.require_shape()
+    require_orientation(body)
     conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
     conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
     said = [*mesh_statements(body), *_assumed(plan, conditions)]
@@ -126,21 +175,28 @@ def from_shape(
                 first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
             files[group.name] = equipped(first, heavy.body, heavy.configuration)
         hulls[group.name] = found
-    exports, refused = exports_of(plan.exports, files.values(), progress)
-    vehicle = next(iter(files.values()))
-    said.extend(_drift_limit(vehicle))
-    standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
-    said.extend([standing.words] if standing is not None else [])
-    said.extend(by_series(heavy.body, conditions.speed))
-    planned = manoeuvres_of(plan.manoeuvres, files, progress)
-    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
-    carried, why = _carried(vehicle, moves, progress)
-    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
     return Study(
         plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
-        parameter_files=files, hulls=hulls, inputs=inputs, exports=exports, refused=refused, manoeuvres=moves,
-        shape=FromShape(heavy, made, conditions, (*heavy.said, *said), missing, carried),
+        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, made, conditions, (*heavy.said, *said)),
     )  # fmt: skip
+
+
+def compared(parameters: ParameterFile, made: methods.Estimates, moves: Sequence[Simulation]) -> ParameterFile:
+    """The file with what its law leaves out of the estimates' own forces, over the states of manoeuvres."""
+    over = [
+        Motions(s.manoeuvre.name.replace("_", " "), s.trajectory.velocity[rows], angles_at(s.trajectory, rows))
+        for s in moves
+        if len(s.trajectory.time)
+        for rows in [np.unique(np.linspace(0, len(s.trajectory.time) - 1, STATES).astype(int))]
+    ]
+    found = held_to_model(parameters, made.forces, "estimates", over)
+    return parameters.model_copy(update={"findings": (*parameters.findings, *found)}) if found else parameters
+
+
+def angles_at(trajectory: Trajectory, rows: Array) -> Array:
+    """Angles (n, 3) of dr, ds, db at some of the times; zero of what was not ordered."""
+    none = np.zeros(len(trajectory.time))
+    return np.column_stack([np.asarray(trajectory.controls.get(c, none))[rows] for c in CONTROLS])
 
 
 def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
@@ -252,6 +308,9 @@ def _carried(
     own = next((s for s in moves if s.manoeuvre.name == name), None)
     if own is None:
         return (), ()
+    ended = own.figures[0] if own.figures else None
+    if ended is not None and ended.status == "not reached":
+        return (), (f"no uncertainty of the {name.replace('_', ' ')}: its {ended.name} is not reached, {ended.why}",)
     progress(f"uncertainty of the {name.replace('_', ' ')}")
     longest = max(LONGER * float(own.trajectory.time[-1]), 1.0)
     options = {**options, "longest": longest / (2.0 if name == TURN else 1.0)} | (
@@ -424,6 +483,10 @@ def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[
     carried : sequence of Carried
         Of `replaced`.
     """
+    from coeflab.report.document import Document, Section, digest_of
+    from coeflab.report.formats import REPORTERS
+    from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
+
     p = made.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
     page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.simplify.source import mesh_body
+from coeflab.core.axes import DIRECTIONS
 from coeflab.core.errors import InputError
+from coeflab.core.units import factor
 from tests.bodies.twelve import TWELVE
 
 
@@ -124,3 +128,23 @@ def test_fins_ahead_or_oblique_are_named_and_no_control_is_drafted(tmp_path: Pat
 def test_a_body_without_fins_says_so(tmp_path: Path) -> None:
     _, file = made(tmp_path, "box_rov")
     assert "# No fin was found, so nothing can turn." in file.read_text()
+
+
+RIGHT = [d for d in permutations(DIRECTIONS, 3) if np.linalg.det([DIRECTIONS[k] for k in d]) > 0.5]
+
+
+@pytest.mark.parametrize("axes", [*(",".join(d) for d in RIGHT), "flu", "FRD", "CFD"])
+@pytest.mark.parametrize(("unit", "name"), [("mm", "a hull.stl"), ("in", "Rumpf_ä'1.stl"), ("ft", "0.9 m#2.stl")])
+def test_whatever_axes_unit_and_name_a_draft_has_it_reads_as_the_mesh_did(
+    tmp_path: Path, axes: str, unit: str, name: str
+) -> None:
+    mesh, file = tmp_path / name, tmp_path / "draft" / "body.toml"
+    trimesh.creation.cone(0.2, 1.0, sections=8).apply_scale(1.0 / factor(unit, "length")).export(mesh)
+    bare = mesh_body(str(mesh), unit, axes)
+    assert isinstance(bare.shape, TriangleMesh)
+    file.parent.mkdir()
+    file.write_text(drafted(bare, bare.shape, mesh, file.parent, unit, axes), encoding="utf-8")
+    found = read_body(file)
+    assert found.name == bare.name
+    assert found.axes == bare.axes
+    assert found.require_shape().centre_of_volume == pytest.approx(bare.shape.centre_of_volume, abs=1e-9)

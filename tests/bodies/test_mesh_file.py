@@ -158,7 +158,7 @@ def test_paths_to_nothing(tmp_path: Path) -> None:
     (tmp_path / "folder.stl").mkdir()
     refused(tmp_path / "folder.stl", "a folder")
     refused(written(tmp_path, "empty.stl", b""), "an empty file")
-    refused(written(tmp_path, "hull.iges", b"S 1"), ".iges", "stl, obj, ply, glb, step")
+    refused(written(tmp_path, "hull.iges", b"S 1"), ".iges", "stl, obj, ply, glb, dae, step")
     refused(written(tmp_path, "notes.stl", b"a letter, not a mesh"), "an STL")
     refused(written(tmp_path, "letter.obj", b"Dear sirs,\n"), "no vertices and faces")
     with pytest.raises(InputError):

@@ -9,7 +9,7 @@ import pytest
 
 from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panel_solver.influence import slivers
@@ -279,10 +279,23 @@ def test_a_thin_body_is_sent_to_the_plate_formulas(shape: Shape) -> None:
     assert "primitives" in found.advice
 
 
-def test_panels_larger_than_the_thickness_are_refused() -> None:
-    found = refused(Parts((part(Box(3.0, 1.0, 0.055)),)), panels=1000)
-    assert found.found.startswith("a body thinner than its panels are large on ")
-    assert "more panels" in found.advice
+THIN_BOX = Parts((part(Box(3.0, 1.0, 0.055)),))
+
+
+def test_panels_larger_than_the_thickness_are_refused_where_there_may_be_no_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(panel, "MOST_PANELS", 1000)
+    assert refused(THIN_BOX, panels=1000).found.startswith("a body thinner than its panels are large on ")
+
+
+def test_panels_are_raised_until_they_are_smaller_than_the_body_is_thin() -> None:
+    """Along its normal a box moves little less than the plate of its sides; with one and a half times its edges, little more."""
+    found = panel.added_mass(body(THIN_BOX), RHO, {"panels": 1000, "kernel": "numpy"})
+    assert int(found.statements[0].split()[0].replace(",", "")) > 1500
+    plate = plate_added_mass(3.0, 1.0, RHO)[2, 2]
+    assert found.error is not None
+    assert plate - found.error[2, 2] < found.matrix[2, 2] < 1.15 * plate
 
 
 def test_parts_that_touch_in_a_point_are_solved() -> None:

@@ -101,3 +101,12 @@ def test_differences_that_grow_with_refinement_have_no_order() -> None:
     exact = np.eye(6)
     assert refined([exact, 1.1 * exact, 1.11 * exact], (6000, 1500, 375)).observed == 0.0
     assert refined([exact, exact * (1.0 + 1e-9), 1.5 * exact], (6000, 1500, 375)).observed == 12.0
+
+
+def test_three_matrices_that_do_not_converge_take_three_times_their_range() -> None:
+    """The finer step, .01 of the slope, is the larger one in size; the coarser goes back further than it."""
+    sequence = [TRUE, TRUE + 0.01 * SLOPE, TRUE - 0.004 * SLOPE]
+    found = refined(sequence, COUNTS)
+    assert found.used is None
+    assert np.all(found.error >= 3.0 * np.ptp(sequence, axis=0) * (1.0 - 1e-12))
+    assert found.error[1, 1] == pytest.approx(3.0 * 0.014 * abs(SLOPE[1, 1]), rel=1e-9)

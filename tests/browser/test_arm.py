@@ -28,7 +28,7 @@ from coeflab.report.figures.arm import (
     path_figure,
     poses_figure,
 )
-from coeflab.report.figures.svg import COLOURS
+from coeflab.report.figures.palette import COLOURS
 
 
 @pytest.fixture(scope="module")

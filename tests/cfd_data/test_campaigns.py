@@ -14,7 +14,6 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import WORKS, sha256_of
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.to_frd import ASSUMED_POINT
 from coeflab.workbench import read_tables
 
 CFD_DATA = shipped("cfd_data")
@@ -119,7 +118,7 @@ def test_cfd_by_hand() -> None:
     arm = table("suboff_cfd_barehull", "rotating_arm.csv")
     assert arm.primed_motion("r", 4.26086)[1] == pytest.approx(0.1 * 4.26086 / 2.0)
     assert list(arm.usable["N"]) == [True] * 6 + [False] * 2
-    assert arm.notes == (ASSUMED_POINT,)
+    assert [f["key"] for f in arm.findings] == ["table.arm_point"]
 
 
 @pytest.mark.parametrize("campaign", ["suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_3"])

@@ -62,7 +62,7 @@ def test_slopes_of_an_arm_about_another_point_say_what_their_move_lacks(coeflab:
     assert "a move takes" not in flat(coeflab("fit", "mine/campaign").stdout)
     (campaign / "campaign.toml").write_text(f"{head}[[table]]{arm.replace(stated, '')}")
     said = flat(coeflab("fit", "mine/campaign").stdout)
-    assert "drift is zero at x = -0.8 m from nose, the reference point (assumed: no arm_point)" in said
+    assert "U and drift are taken to hold at the reference point, (-0.8, 0, 0) m" in said
 
 
 def test_a_reading_that_the_slope_leaves_out_is_left_out_of_the_law_and_named(coeflab: Run, tmp_path: Path) -> None:

@@ -454,4 +454,4 @@ def test_a_sign_inferred_from_the_slope_is_assumed_and_proves_nothing(
         assert ('assumed = ["beta"]' in (tmp_path / folder / "campaign.toml").read_text()) is (not said)
         shown = flat(coeflab("fit", folder, "--wide").stdout)
         assert ("Not independent: the sign of beta was inferred from it." in shown) is (not said)
-        assert ("the sign of beta is assumed" in shown) is (not said)
+        assert ("v = -U sin(beta), so that Yv' < 0: Yv' (assumed)" in shown) is (not said)

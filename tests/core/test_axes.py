@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import itertools
+from itertools import permutations
+from typing import Any
 
 import numpy as np
 import pytest
 
-from coeflab.core.axes import ANGLE_SIGNS, DIRECTIONS, FRAMES, angle_sign, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, DIRECTIONS, FRAMES, angle_sign, axes_of, parse_axes
 from coeflab.core.errors import AxesError
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 
@@ -69,7 +71,9 @@ def test_flu_parity_of_derivatives_by_brute_force() -> None:
     np.testing.assert_array_equal(rest, [0.0, 0.0, -1.0, 0.0, -1.0, 0.0])
 
 
-@pytest.mark.parametrize("declared", [None, "frd", "", 3, ["forward"], ["forward", "port", "sky"], {}, ["x", "y", "z"]])
+@pytest.mark.parametrize(
+    "declared", [None, "frx", "forward,port", "", 3, ["forward"], ["forward", "port", "sky"], {}, ["x", "y", "z"]]
+)
 def test_unknown_frames(declared: object) -> None:
     with pytest.raises(AxesError, match=r'c.toml, "axes.frame": found .*expected "FRD", "FLU", "CFD"'):
         parse_axes(declared, "c.toml")
@@ -88,3 +92,42 @@ def test_angle_signs_are_words() -> None:
         angle_sign("beta", "v = U sin(beta)")
     with pytest.raises(AxesError):
         angle_sign("alpha", "v = +U sin(beta)")
+
+
+def spellings(directions: tuple[str, str, str]) -> list[Any]:
+    """As TOML, options, forms and coeflab's own words have them."""
+    x, y, z = directions
+    return [
+        list(directions), directions, f"{x},{y},{z}", f"{x}, {y}, {z}", f"{x} {y} {z}", f"['{x}', \"{y}\", {z}]",
+        f"x {x}, y {y}, z {z}", f"{x};{y};{z}".upper(),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("directions", list(permutations(DIRECTIONS, 3)))
+def test_every_spelling_is_read_alike_and_what_is_declared_is_read_again(directions: tuple[str, str, str]) -> None:
+    matrix = np.array([DIRECTIONS[d] for d in directions]).T
+    right = np.isclose(np.linalg.det(matrix), 1.0)
+    for said in spellings(directions):
+        if not right:
+            with pytest.raises(AxesError):
+                parse_axes(said)
+            continue
+        found = parse_axes(said)
+        assert found.directions == directions
+        assert found.spelled
+        assert np.array_equal(found.rotation, matrix)
+        for again in (found.declared, found.typed, found.name):
+            assert parse_axes(again) == found
+        assert axes_of(found.rotation) == found
+
+
+def test_the_24_right_handed_triads_are_read() -> None:
+    right = [d for d in permutations(DIRECTIONS, 3) if np.linalg.det([DIRECTIONS[k] for k in d]) > 0.5]
+    assert len({parse_axes(list(d)) for d in right}) == 24
+
+
+@pytest.mark.parametrize("name", list(FRAMES))
+def test_a_frame_stays_named(name: str) -> None:
+    for said in (name, name.lower(), f" {name} "):
+        assert parse_axes(said).declared == name
+        assert not parse_axes(said).spelled

@@ -14,8 +14,7 @@ from coeflab.law.coefficient import Status
 from coeflab.published.estimates.acceptance import Row, acceptance, goals, ring_wing, rows, table
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.first_page import answer
-from coeflab.study.plan import table_at
-from coeflab.tables.reading import read_tables
+from coeflab.tables.reading import read_tables, table_at
 from coeflab.workbench import tow
 
 FOOT = 0.3048

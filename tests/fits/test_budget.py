@@ -8,17 +8,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from coeflab.core.declarations import declared_key
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import Source
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.slope_at_origin import fit
-from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, with_budget
-from coeflab.fits.uncertainty.grid_convergence import Convergence, gravest, grid_studies
+from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, open_parts, with_budget
+from coeflab.fits.uncertainty.grid_convergence import Convergence
+from coeflab.fits.uncertainty.grid_studies import gravest, grid_studies
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import derivative
 from coeflab.study.validation import validation
@@ -232,7 +236,54 @@ def test_the_bare_hull_computation() -> None:
         )
     by = {(s.table, s.component): s.convergence.relative for t in tables for c in "YN" for s in grid_studies(t, c)}
     assert list(by.values()) == pytest.approx([0.108, 0.0203, 0.279, 0.207], rel=0.01)
-    assert grid_studies(drift, "X")[0].convergence.half_width is None
+    diverging = grid_studies(drift, "X")[0].convergence
+    assert not diverging.convergence.converges
+    assert diverging.relative == pytest.approx(0.0938, rel=0.01)
+
+
+@given(st.floats(0.005, 0.2), st.sampled_from([-2, -1]), st.floats(-6.0, 6.0))
+@settings(max_examples=60, deadline=None)
+def test_u95_never_shrinks_as_the_grid_study_gets_worse(error: float, row: int, by: float) -> None:
+    """The rows in use stay as they are: only a coarser run, which no fit uses, is changed."""
+    table = gridded(error)
+    result = fit([table], LENGTH, {})
+    y = table.forces["Y"]
+    gap = y[-2] - y[FULL.index(4.0)]
+
+    def judged(shift: float) -> tuple[float, bool, tuple[str, ...]]:
+        changed = np.array(y)
+        changed[row] += shift * gap
+        moved = replace(table, forces={**table.forces, "Y": changed})
+        found = budgets_of(result, {moved.name: moved})
+        b = next(b for b in found if b.symbol == "Yv")
+        assert b.u95 is not None
+        assert b.grid is not None
+        return b.u95, b.grid.convergence.convergence.converges, tuple(f.code for f in open_parts(found))
+
+    before, converges, codes = judged(0.0)
+    assert converges
+    assert "budget.grid_not_converging" not in codes
+    after, converges, codes = judged(by)
+    if not converges:
+        assert after >= before * (1.0 - 1e-9)
+        assert "budget.grid_not_converging" in codes
+
+
+def test_a_study_without_a_limit_travels_with_the_numbers() -> None:
+    table = gridded()
+    y = np.array(table.forces["Y"])
+    y[-2] *= 1.5
+    table = replace(table, forces={**table.forces, "Y": y})
+    plain = fit([table], LENGTH, {})
+    found = budgets_of(plain, {table.name: table})
+    made = with_budget(plain, found)
+    (warned,) = (f for f in made.findings if f.severity is Severity.WARN)
+    assert warned.code == "budget.grid_not_converging"
+    assert warned.statistic == pytest.approx(found[0].part("grid") / abs(found[0].value))
+    assert warned["component"] == "Y"
+    (noted,) = (f for f in made.findings if f.code == "budget.not_assessed")
+    assert "turbulence model" in noted["parts"]
+    assert any(name.startswith("grid (study") for name in found[0].unassessed)
 
 
 def test_covariance_of_common_errors_cancels_in_the_centre_of_pressure() -> None:

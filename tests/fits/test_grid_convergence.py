@@ -78,15 +78,25 @@ def test_planted_order_and_limit_come_back_on_every_grid(
     assert found.values == pytest.approx(tuple(f))
 
 
-@pytest.mark.parametrize(("order", "by"), [(3.5, 2.0), (0.2, 0.5)])
-def test_an_order_out_of_range_is_replaced_and_said(order: float, by: float) -> None:
-    f = sequence(1.0, 0.1, order, GRIDS)
+def test_an_order_beyond_the_formal_one_is_replaced_and_said() -> None:
+    f = sequence(1.0, 0.1, 3.5, GRIDS)
     found = grid_convergence(f, GRIDS)
-    assert found.order == pytest.approx(order, rel=1e-6)
-    assert found.order_used == by
+    assert found.order == pytest.approx(3.5, rel=1e-6)
+    assert found.order_used == 2.0
     assert found.safety == 3.0
     assert "not in the asymptotic range" in found.statement
-    assert found.half_width == pytest.approx(3.0 * abs(f[1] - f[0]) / (GRIDS[1] ** by - 1.0))
+    assert found.half_width == pytest.approx(3.0 * abs(f[1] - f[0]) / (GRIDS[1] ** 2.0 - 1.0))
+
+
+def test_an_order_near_zero_takes_three_times_the_range_and_at_least_order_one_half() -> None:
+    f, wide = sequence(1.0, 0.1, 0.2, GRIDS), np.array([1.0, 4.0, 16.0])
+    found = grid_convergence(f, GRIDS)
+    assert found.convergence is Convergence.SLOW
+    assert found.order == pytest.approx(0.2, rel=1e-6)
+    assert found.extrapolated is None
+    assert found.half_width == pytest.approx(1.25 * abs(f[1] - f[0]) / (GRIDS[1] ** 0.5 - 1.0))
+    far = grid_convergence(sequence(1.0, 0.1, 0.2, wide), wide)
+    assert far.half_width == pytest.approx(3.0 * 0.1 * (16.0**0.2 - 1.0))
 
 
 def test_a_scheme_of_higher_order_may_have_a_higher_one() -> None:
@@ -106,8 +116,8 @@ def test_two_grids_take_the_formal_order_and_the_factor_three() -> None:
 @pytest.mark.parametrize(
     ("values", "kind", "half", "word"),
     [
-        ((1.0, 2.0, 2.5), Convergence.DIVERGENT, None, "diverging"),
-        ((1.0, 2.0, 1.5), Convergence.DIVERGENT, None, "growing differences"),
+        ((1.0, 2.0, 2.5), Convergence.DIVERGENT, 4.5, "diverging"),
+        ((1.0, 2.0, 1.5), Convergence.GROWING, 1.25 / (2.0**0.5 - 1.0), "growing differences"),
         ((1.0, 1.2, 0.6), Convergence.OSCILLATORY, 0.3, "half the range"),
         ((1.0, 1.0, 1.4), Convergence.OSCILLATORY, 0.2, "last digit"),
         ((1.0, 1.0, 1.0), Convergence.UNCHANGED, 0.0, "does not change"),
@@ -128,7 +138,8 @@ def test_what_does_not_converge_is_said_in_words(
 def test_divergence_takes_account_of_unequal_ratios() -> None:
     """A coarse step half as long in log h halves the difference at order zero: 1.9 to 1 converges, 1.1 to 1 of 2 not."""
     h = np.array([1.0, 2.0, 2.0 * 2.0**0.5])
-    assert grid_convergence(np.array([0.0, 1.0, 1.6]), h).convergence is Convergence.MONOTONIC
+    assert grid_convergence(np.array([0.0, 1.0, 1.8]), h).convergence is Convergence.MONOTONIC
+    assert grid_convergence(np.array([0.0, 1.0, 1.6]), h).convergence is Convergence.SLOW
     assert grid_convergence(np.array([0.0, 1.0, 1.4]), h).convergence is Convergence.DIVERGENT
     assert observed_order(np.array([0.0, 1.0, 1.4]), h) is None
 
@@ -172,3 +183,56 @@ def test_a_value_of_zero_has_no_relative_half_width() -> None:
     found: GridConvergence = grid_convergence(np.array([0.0, 0.1, 0.4]), np.array([1.0, 2.0, 4.0]))
     assert found.half_width is not None
     assert found.relative is None
+
+
+WORSE = (Convergence.DIVERGENT, Convergence.GROWING, Convergence.SLOW)
+
+
+@given(
+    order=st.floats(0.05, 6.0), sign=st.sampled_from([-1.0, 1.0]), r21=st.floats(1.1, 2.5), r32=st.floats(1.1, 2.5),
+    moved=st.sampled_from([(0, 0), (1, 0), (2, 0), (2, 1)]), by=st.floats(-8.0, 8.0),
+)  # fmt: skip
+@settings(max_examples=400, deadline=None)
+def test_a_force_that_stops_a_study_from_converging_never_narrows_it(
+    order: float, sign: float, r21: float, r32: float, moved: tuple[int, int], by: float
+) -> None:
+    """One value of a converging study is changed so that it does not converge; the value in use stays, or is the finest."""
+    h = np.array([1.0, r21, r21 * r32])
+    f = 3.0 + sign * 0.1 * h**order
+    before = grid_convergence(f, h, used=moved[1])
+    f[moved[0]] += by * float(np.ptp(f))
+    after = grid_convergence(f, h, used=moved[1])
+    assert before.half_width is not None
+    assert after.half_width is not None
+    if before.convergence.converges and not after.convergence.converges:
+        assert after.half_width >= before.half_width * (1.0 - 1e-9)
+    if not after.convergence.converges:
+        assert after.convergence in WORSE
+        assert after.half_width >= 3.0 * float(np.ptp(f)) * (1.0 - 1e-12)
+
+
+@given(st.floats(0.1, 6.0), st.floats(1.0, 5.0), st.floats(1.1, 2.5), st.floats(0.0, 2.0))
+@settings(max_examples=200, deadline=None)
+def test_differences_that_are_larger_all_over_never_narrow_it(
+    order: float, larger: float, ratio: float, noise: float
+) -> None:
+    h = np.array([1.0, ratio, ratio**2])
+    blur = np.full(3, noise * 0.1)
+    f = 0.1 * h**order
+    small, large = (grid_convergence(k * f, h, noise=blur).half_width for k in (1.0, larger))
+    assert small is not None
+    assert large is not None
+    assert large >= small * (1.0 - 1e-9)
+
+
+@given(st.integers(0, 2), st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3))
+@settings(max_examples=200, deadline=None)
+def test_half_the_range_at_least_where_three_values_differ(used: int, raw: list[float]) -> None:
+    """Whatever they do, three values that differ have a half-width, and one that oscillates has half their range."""
+    f = np.round(np.array(raw), 6)
+    found = grid_convergence(f, GRIDS, used=used)
+    assert found.half_width is not None
+    if found.convergence is Convergence.OSCILLATORY:
+        assert found.half_width == pytest.approx(0.5 * float(np.ptp(f)))
+    elif not found.convergence.converges:
+        assert found.half_width >= 3.0 * float(np.ptp(f)) * (1.0 - 1e-12)

@@ -61,3 +61,26 @@ def test_interval_covers_the_limit_under_small_noise() -> None:
 def test_too_few_or_impossible_grids_are_refused(sizes: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match=r"grids|cell sizes"):
         fitted_convergence(np.arange(float(len(sizes))), np.array(sizes))
+
+
+@given(st.floats(-3.0, -0.1), st.integers(0, 4), st.sampled_from([-1.0, 1.0]))
+@settings(max_examples=25, deadline=None)
+def test_values_that_diverge_take_three_times_their_range(order: float, used: int, sign: float) -> None:
+    """h to a negative power: differences grow as the grid is refined."""
+    f = 2.0 + sign * 0.1 * SIZES**order
+    found = fitted_convergence(f, SIZES, used=used)
+    assert found.convergence is Convergence.SCATTERED
+    assert found.half_width is not None
+    assert found.half_width >= 3.0 * float(np.ptp(f)) * (1.0 - 1e-12)
+
+
+@given(st.floats(0.55, 1.9), st.floats(0.0, 3.0))
+@settings(max_examples=25, deadline=None)
+def test_a_finest_grid_that_departs_never_narrows_a_study_of_five(order: float, further: float) -> None:
+    f = 2.0 + 0.1 * SIZES**order
+    before = fitted_convergence(f, SIZES).half_width
+    f[0] -= further * float(np.ptp(f))
+    after = fitted_convergence(f, SIZES).half_width
+    assert before is not None
+    assert after is not None
+    assert after >= before * (1.0 - 1e-6)

@@ -14,8 +14,8 @@ from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.law.scaling import Conditions
 from coeflab.study.checks.data_gate import check as data_gate
 from coeflab.study.checks.straight_runs import check
-from coeflab.study.plan import table_at
 from coeflab.study.study import Plan
+from coeflab.tables.reading import table_at
 from coeflab.vehicle.merge import merged
 from coeflab.workbench import run
 from tests.motion.vehicles import made

@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
-from coeflab.fits.uncertainty.grid_convergence import grid_studies, variant_studies
+from coeflab.fits.uncertainty.grid_studies import grid_studies, variant_studies
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.report.tables.uncertainty import budget as budget_table
 from coeflab.report.tables.uncertainty import studies as study_table

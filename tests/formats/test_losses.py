@@ -217,9 +217,7 @@ def test_controls_are_among_what_is_compared(target: str) -> None:
     rendered = plugin.render(file)
 
     def apart(force: Callable[[Mapping[str, bytes], Array, Array], Array]) -> float:
-        loss = loss_of(
-            target, force_law(file), file, rendered, plugin.force, (), (), (), water_inertia(file), None, force
-        )
+        loss = loss_of(target, file, rendered, plugin.force, (), (), (), water_inertia(file), None, force)
         assert loss.controls[0] == (
             "controls: each state also with dr -0.35 and 0.35 rad, ds -0.35 and 0.35 rad, one at a time"
         )

@@ -22,11 +22,12 @@ KNOWN = ["lauv.urdf.xacro", "rexrov.urdf", "tethys_like.sdf", "nps_auv2.m", "blu
          "torpedo_imperial.m"]  # fmt: skip
 # The made-up glider's numbers: the plugin's reversed C_A makes dN/dv +81 where an ideal fluid has -121, and dY/dr +5 for -5,
 # beside a side force of 2 N/(m/s), whose lever would then be 100 m; see the test of what goes with it.
+# The cross-flow strips of nps_auv2.m are left out, and the file says so.
 # Healey and Lienard print Mvp' with the sign of Yrdot'; by Kirchhoff's equations it is -Yrdot'.
 FORMAT = {"<quadratic_damping>", "<disable_coriolis>"}
 WELL_KNOWN = {"rexrov.urdf": {"M_A Zr and Nw"}, "lauv.urdf.xacro": {"<quadratic_damping>"},
               "tethys_like.sdf": {"<disable_coriolis>", "Nv'", "Yur'"},
-              "nps_auv2.m": {"Mvp'"}}  # fmt: skip
+              "nps_auv2.m": {"Mvp'", "nps_auv2"}}  # fmt: skip
 
 
 def found(folder: Path, text: str, name: str = "model.txt") -> list[Check]:
@@ -43,7 +44,7 @@ def only(folder: Path, text: str, severity: Severity) -> Check:
 
 @pytest.mark.parametrize("name", KNOWN)
 def test_known_vehicles_raise_no_other_finding(name: str, tmp_path: Path) -> None:
-    told = {c.subject for c in found(tmp_path, (DATA / name).read_text(encoding="utf-8"))}
+    told = {c.subject for c in found(tmp_path, (DATA / name).read_text(encoding="utf-8"), name)}
     assert told == WELL_KNOWN.get(name, set())
 
 
@@ -109,7 +110,7 @@ def test_all_damping_negative_in_xdyn_is_one_finding(tmp_path: Path) -> None:
 def test_drag_without_added_mass(tmp_path: Path) -> None:
     alone = GLIDER
     for tag in ("xDotU", "yDotV", "zDotW", "mDotQ", "nDotR"):
-        alone = alone.replace(f"<{tag}>", f"<{tag}>0</{tag}><{tag}x>").replace(f"</{tag}>\n", f"</{tag}x>\n")
+        alone = alone.replace(f"<{tag}>", f"<{tag}>0</{tag}><!--").replace(f"</{tag}>\n", "-->\n")
     assert only(tmp_path, alone, Severity.WARN).subject == "added mass"
     sway = LAUV.replace("0 16 0 0 0 0", "0 0 0 0 0 0")
     check = only(tmp_path, sway, Severity.WARN)
@@ -160,7 +161,7 @@ def test_a_model_without_density_is_read_in_every_format(tmp_path: Path) -> None
     for text in (BLUEROV_M.replace("rho = 1000;", ""), GLIDER.replace("uniform_fluid_density", "something")):
         path = tmp_path / "model.txt"
         path.write_text(text, encoding="utf-8")
-        notes = [c for c in read_model_file(path).findings if c.severity is Severity.NOTE]
+        notes = [c for c in read_model_file(path).findings if c.severity is Severity.NOTE and c.name != "model"]
         assert ["is assumed" in c.statistic for c in notes] == [True]
         assert read_model_file(path, 1020.0).parameters.conditions.density == 1020.0
 

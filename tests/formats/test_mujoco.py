@@ -294,4 +294,4 @@ def test_a_table_is_a_loss_and_no_reason_to_refuse() -> None:
     hull = replace(SLENDER_ADDED, body="HUUV")
     file = huuv_file(read_huuv()).model_copy(update={"added_mass": hull})
     loss = export(file, "mujoco").loss
-    assert any("simulators get the coefficients only" in str(x) for x in loss.lost)
+    assert any("no force stands in its place" in str(x) for x in loss.lost)

@@ -59,8 +59,13 @@ def test_a_published_vehicle() -> None:
     assert len(file.coefficients) == 15
     assert file.mass.mass == 13.5
     np.testing.assert_allclose(file.mass.inertia_matrix, np.diag([0.26, 0.23, 0.37]))
-    notes = " ".join(file.provenance.notes)
-    for said in ("left out: gravity", "1 m: the file states none", "no C_A(nu) nu", "initial speed is zero"):
+    notes = " ".join(file.remarks)
+    for said in (
+        "Left out, weight and buoyancy: gravity",
+        "1 m: the file states none",
+        "no C_A(nu) nu",
+        "initial speed is zero",
+    ):
         assert said in notes
 
 

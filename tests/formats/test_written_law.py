@@ -35,7 +35,7 @@ def test_a_spelt_symbol_comes_back(symbol: str) -> None:
 @pytest.mark.parametrize(
     ("symbol", "law", "wanted"),
     [
-        ("X0", "motion", "r2*h.X0*U^2"),
+        ("X0", "motion", "r2*h.X0*U^2*course"),
         ("Yv", "motion", "r2*h.Yv*U*v"),
         ("Nr", "motion", "r4*h.Nr*U*r"),
         ("Yv|v|", "motion", "r2*h.Yvav*v*abs(v)"),

@@ -177,7 +177,7 @@ def test_an_unstable_one_without_such_a_term_is_not_determined(name: str, lost: 
     found = run(made(UNSTABLE), name, **BRIEF.get(name, {}))
     figure = figures(found)[lost]
     assert (figure.value, figure.status) == (None, "not determined")
-    assert "no nonlinear term such as Yr|r|" in figure.why
+    assert "no data on r'" in figure.why
 
 
 def test_a_dive_mirrors_a_rise() -> None:

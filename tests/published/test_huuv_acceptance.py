@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from coeflab.cli import as_json, show
-from coeflab.motion.tune.tuning import OPEN
+from coeflab.motion.tune.output_error import estimate
+from coeflab.motion.tune.tuning import OPEN, SIGN
 from coeflab.published.huuv.acceptance import acceptance
 from coeflab.published.huuv.model import read_huuv
-from coeflab.published.huuv.tuning import BASE, FREE, hidden, start_of, tuned, turning_problem
+from coeflab.published.huuv.tuning import BASE, ERRORS, FREE, NAMES, hidden, start_of, tuned, turning_problem
 from coeflab.report.acceptance import Acceptance
 
 # Steady turns of the constants, worked out independently: commands, u, |beta|, R.
@@ -82,6 +83,39 @@ def test_both_halves_reach_what_was_found_independently() -> None:
     assert np.isnan(matlab.correlation[FREE.index("n3")]).all()
 
 
+@SLOW
+def test_a_value_whose_interval_holds_zero_is_not_determined() -> None:
+    """Before: "n1: 3.3 +- 7.0 kg (determined)", and rate terms that drive the turn were determined yaw damping."""
+    huuv = read_huuv()
+    matlab, tracker = tuned(huuv, "matlab"), tuned(huuv, "tracker")
+    n1 = tracker.parameter("n1")
+    assert (n1.after, n1.u95) == pytest.approx((3.3, 7.0), abs=0.1)
+    assert (n1.status, tracker.parameter("nr").status) == (SIGN, SIGN)
+    for fit in (matlab, tracker):
+        for p in fit.parameters:
+            assert (p.status == SIGN) == (p.u95 is not None and abs(p.after) <= p.u95), p.name
+    assert matlab.parameter("nr").after + matlab.parameter("nr").u95 < 0.0  # taken off in the equations: it drives
+    assert sum("drives what it is called to damp" in s for s in matlab.statements) == 1
+    assert sum("no damping is determined" in s for s in matlab.statements) == 1
+    assert not any("along the motion" in s for s in tracker.statements)
+
+
+def test_the_slope_of_the_yaw_moment_is_known_only_beside_the_added_masses_that_were_chosen() -> None:
+    """n1 - (m_y - m_x) is what the turns show: with 3 kg more of m_y, n1 is 3 kg more, and the turns are the same."""
+    huuv = read_huuv()
+    start = start_of(huuv)
+    moved = start.copy()
+    moved[NAMES.index("my")] += 3.0
+    fits = []
+    for begin in (start, moved):
+        p = turning_problem(huuv, huuv.turns["matlab"], ERRORS["matlab"], BASE, begin)
+        found = estimate(p)
+        fits.append((found.parameters[BASE.index("n1")], p.outputs(found.parameters)))
+    (first, turns), (second, others) = fits
+    assert second - first == pytest.approx(3.0, abs=0.05)
+    np.testing.assert_allclose(others, turns, atol=2e-3)
+
+
 def test_the_constants_are_the_fit_of_seven_to_the_matlab_half() -> None:
     huuv = read_huuv()
     fit = tuned(huuv, "matlab", BASE)
@@ -97,7 +131,7 @@ def test_held_constants_that_the_turns_do_not_tell_apart() -> None:
     assert side.startswith("side force C_S (beta), side force C_S (beta^3) and mass m: only as ratios")
     for words in ("yaw moment C_m (beta)", "added mass m_y"):
         assert words in munk
-    for words in ("yaw moment C_m (beta^3)", "yaw damping M_mr (r)", "thruster arm y_ct"):
+    for words in ("yaw moment C_m (beta^3)", "yaw rate term M_mr (r)", "thruster arm y_ct"):
         assert words in arm
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.law.coefficient import COVERS
-from coeflab.report.figures.svg import COLOURS
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.sections.campaign import tornado_figure
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.tables import results

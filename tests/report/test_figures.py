@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from coeflab.report.figures.estimator import estimator_figure
+from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import drawing, limits, panel, tick_texts, ticks
 from coeflab.report.figures.series import on_axis
-from coeflab.report.figures.svg import COLOURS, power_of_ten
 from coeflab.report.figures.sweep import at_rest, sweep_figure
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 

@@ -9,14 +9,15 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.core.finding import Severity
 from coeflab.core.types import Array
 from coeflab.fits import FITS
 from coeflab.fits.rows.regression import Area, response
 from coeflab.fits.uncertainty.budget import budgets_of
-from coeflab.fits.uncertainty.grid_convergence import grid_studies
+from coeflab.fits.uncertainty.grid_studies import grid_studies
 from coeflab.law.symbols import MOTIONS
+from coeflab.tables.assumptions import CODE
 from coeflab.tables.force_table import COARSER, ForceTable
-from coeflab.tables.to_frd import ASSUMED_POINT
 from tests.conftest import SECTIONS
 
 Read = Callable[..., ForceTable]
@@ -83,13 +84,22 @@ def test_a_point_ahead_of_the_arm_point_drifts_by_x_r(read_table: Read) -> None:
     np.testing.assert_allclose(velocity(by_rate), velocity(table), rtol=1e-14)
 
 
-def test_rows_that_turn_without_drift_say_which_point_is_assumed(read_table: Read) -> None:
+def assumed_keys(table: ForceTable) -> list[str]:
+    return [f["key"] for f in table.findings if f.code == CODE]
+
+
+def test_rows_that_turn_say_which_point_is_assumed(read_table: Read) -> None:
     csv, own = "r [rad/s],Y [N],N [N*m]\n0.1,1,-1\n0.2,2,-2\n", "contains_inertia = false"
-    assert ASSUMED_POINT in read_table(csv, table=own).notes
-    assert ASSUMED_POINT not in read_table(csv, table=f"{own}\narm_point = [-2.0, 0.0, 0.0]").notes
-    assert ASSUMED_POINT not in read_table(csv.replace("0.1,", "0,").replace("0.2,", "0,"), table=own).notes
+    found = read_table(csv, table=own).findings
+    assert [(f["key"], f["motions"], f.severity) for f in found] == [
+        ("table.arm_point", ("p", "q", "r"), Severity.WARN)
+    ]
+    assert not assumed_keys(read_table(csv, table=f"{own}\narm_point = [-2.0, 0.0, 0.0]"))
+    assert not assumed_keys(read_table(csv.replace("0.1,", "0,").replace("0.2,", "0,"), table=own))
     drifting = "v [m/s],r [rad/s],Y [N]\n0.2,0.1,1\n0.2,0.2,2\n"
-    assert ASSUMED_POINT not in read_table(drifting, table=own).notes
+    assert assumed_keys(read_table(drifting, table=own)) == ["table.arm_point"]
+    accepted = f'{own}\narm_point = [-2.0, 0.0, 0.0]\nassumed = ["table.arm_point", "axes.reference_point"]'
+    assert assumed_keys(read_table(csv, table=accepted)) == ["table.arm_point", "axes.reference_point"]
 
 
 def test_a_pitched_model_turns_about_the_vertical(read_table: Read) -> None:

@@ -178,7 +178,6 @@ def test_short_constant_and_single_histories() -> None:
     ("values", "status"),
     [
         ([], Convergence.EMPTY),
-        (np.zeros(100), Convergence.EMPTY),
         ([np.nan] * 5, Convergence.DIVERGED),
         ([1.0, 2.0, np.inf, 3.0], Convergence.DIVERGED),
         (np.where(np.arange(200) < 150, 1.0, 1.0 * 2.0 ** np.arange(-150, 50)), Convergence.DIVERGED),
@@ -188,6 +187,12 @@ def test_histories_without_numbers(values: Array, status: Convergence) -> None:
     found = plateau({"Y": np.asarray(values, dtype=float)})
     assert (found.status, found.start, dict(found.means)) == (status, -1, {})
     assert found.why
+
+
+def test_zero_is_a_number() -> None:
+    found = plateau({c: np.zeros(100) for c in "KMN"})
+    assert found.status is Convergence.CONVERGED
+    assert {m.value for m in found.means.values()} == {0.0}
 
 
 def test_blanks_at_the_beginning_are_left_out() -> None:

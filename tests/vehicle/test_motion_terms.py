@@ -81,7 +81,7 @@ def test_rudder_derivatives_stay_beside_tables() -> None:
 
 def test_two_tables_with_a_constant_of_one_force_are_refused() -> None:
     file = with_tables(table("N'", {"0": 1e-4, "v": -2e-2}), table("N'", {"0": 1e-4, "r": -1e-2}, ("r",)))
-    with pytest.raises(InputError, match="each with a force at rest of its own"):
+    with pytest.raises(InputError, match="both with a force of N at rest of its own"):
         vehicle(file, ("u", "v", "r"))
 
 

@@ -91,14 +91,21 @@ def test_the_covariance_is_of_standard_uncertainties():
 
 
 def test_refused_points_have_no_number():
-    values, half, inside = record(fitted()).evaluate(points([0, 24, 26, 0], [10, 24, 10, -1]))
+    values, half, inside = record(fitted()).evaluate(points([0, 24, 26, 0], [10, 24, 10, -26]))
     assert inside.tolist() == [True, True, False, False]
     assert np.isnan(values).tolist() == np.isnan(half).tolist() == [False, False, True, True]
 
 
+def test_a_form_that_is_even_or_odd_port_to_starboard_holds_the_mirror_image_of_its_data():
+    drag, side = (record(fitted(name)).evaluate(points([5, 5], [10, -10])) for name in ("C_D", "C_S"))
+    assert drag[2].tolist() == side[2].tolist() == [True, True]
+    assert drag[0][1] == pytest.approx(drag[0][0], rel=1e-12)
+    assert side[0][1] == pytest.approx(-side[0][0], rel=1e-12)
+
+
 def test_clamped_points_have_the_value_of_the_nearest_edge():
     model = record(fitted(rule=Extrapolation.CLAMP))
-    values, half, inside = model.evaluate(points([40, 25, -90, -25, 5], [10, 10, -30, 0, 5]))
+    values, half, inside = model.evaluate(points([40, 25, -90, -25, 5], [10, 10, -30, -25, 5]))
     assert inside.tolist() == [False, True, False, True, True]
     assert values[0] == pytest.approx(values[1], rel=1e-12)
     assert values[2] == pytest.approx(values[3], rel=1e-12)

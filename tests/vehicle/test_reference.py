@@ -17,6 +17,7 @@ name = "r"
 citation = "synthetic"
 body = "b"
 relation = "re-analysis"
+campaigns = ["c"]
 length = 2.0
 length_name = "L"
 values = { Yv = "-0.03" }
@@ -118,3 +119,31 @@ def test_a_column_may_have_values_for_the_parameter_file_alone(tmp_path: Path) -
     (column,) = read_references(path)
     assert column.values == ()
     assert [v.symbol for kind in column.literature for v in kind.values] == ["Yr"]
+
+
+def test_a_re_analysis_names_its_campaigns(tmp_path: Path) -> None:
+    """Before: the column was read, and the report said that there is no published evaluation."""
+    path = tmp_path / "published.toml"
+    path.write_text(SYNTHETIC.replace('campaigns = ["c"]\n', ""), encoding="utf-8")
+    with pytest.raises(InputError, match="a re-analysis without campaigns") as caught:
+        read_references(path)
+    assert "campaigns" in caught.value.expected
+    assert "published.toml" in str(caught.value)
+    assert "line 1" in str(caught.value)
+    path.write_text(SYNTHETIC.replace('campaigns = ["c"]\n', "").replace("re-analysis", "cross-body"), encoding="utf-8")
+    assert read_references(path)[0].campaigns == ()
+
+
+def test_what_the_paper_does_not_print_is_called_inferred(published: dict[str, Reference]) -> None:
+    """The steady-CFD paper prints a length over all, .718 m^3 and six numbers a column: no configuration, no ring wing, no LBP."""
+    for name in ("published CFD", "PMM CFD 2012"):
+        assert set(published[name].inferred) == {"body", "length"}
+        assert [f["key"] for f in published[name].assumed] == ["body", "length"]
+    assert published["Roddy configuration 2"].assumed == ()
+
+
+def test_only_what_a_source_may_leave_unsaid_is_inferred(tmp_path: Path) -> None:
+    path = tmp_path / "published.toml"
+    path.write_text(SYNTHETIC.replace("length = 2.0", 'length = 2.0\ninferred = { colour = "none" }'), encoding="utf-8")
+    with pytest.raises(InputError, match="colour"):
+        read_references(path)

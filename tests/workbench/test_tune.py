@@ -14,7 +14,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.steady_state import steady_motions, wrenches
 from coeflab.motion.tune.plan import moved, place, read_tuning_plan, value_at
-from coeflab.motion.tune.tuning import BOUND, OK, OPEN, PRIOR
+from coeflab.motion.tune.tuning import BOUND, OK, OPEN, PRIOR, SIGN, TunedParameter, driving
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.parameter_file import read_parameter_file
 from coeflab.workbench.tune import tune, tuning_problem, write
@@ -224,3 +224,13 @@ def test_only_what_cannot_be_a_vehicle_is_without_output(plan: Write, monkeypatc
     monkeypatch.setattr("coeflab.workbench.tune.steady_motions", fault)
     with pytest.raises(InputError, match="a fault"):
         p.outputs(p.start * 1.01)
+
+
+def test_damping_that_drives_is_called_so() -> None:
+    """Along the motion positive: -0.048 N m s taken off in the equations drives at +0.048."""
+    told = driving(TunedParameter("Nr", "N m s", 0.0, 0.048, 0.028, 0.0, OK))
+    left_open = driving(TunedParameter("Nr|r|", "N m s^2", -1.0, 0.21, None, 0.0, OPEN))
+    assert told is not None
+    assert left_open is not None
+    assert (told["case"], left_open["case"]) == ("told", "open")
+    assert driving(TunedParameter("Nr", "N m s", 0.0, -0.033, 0.033, 0.0, SIGN)) is None

@@ -45,7 +45,7 @@ from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
 from coeflab.workbench import run
 from coeflab.workbench import vehicle as workbench_vehicle
 from coeflab.workbench.exports import export, parameter_files_rendered
@@ -109,7 +109,7 @@ def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_pa
     path.write_bytes(made.to_json())
     back = read_parameter_file(path)
     assert back == made
-    assert back.schema_version == "1.5"
+    assert back.schema_version == SCHEMA_VERSION
     assert {(c.status, c.origin) for c in back.coefficients} == {(Status.ESTIMATE, "estimate")}
     assert {c.symbol.removesuffix("'"): c.u95 for c in back.coefficients} == pytest.approx(
         {s: SHARE * abs(v) for s, v in (VALUES | RUDDER).items()}
@@ -483,6 +483,20 @@ def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
         InputError, match=r"a centre of gravity 1\.6\d* m from .*; expected at most half the length of the body, 1\.5 m"
     ):
         weighed(bare, Stated(390.0, np.array([1.6, 0.0, 0.02])), 998.2)
+
+
+def test_a_coast_down_that_does_not_end_has_no_stopping_time_anywhere(
+    bare: Body, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of almost no resistance: `not reached` in the table, no figure in the headline, and why among what is missing."""
+    monkeypatch.setitem(VALUES, "Xu|u|", -4e-6)
+    found = from_shape(PLAN, bare, Stated(390.0))
+    assert found.shape is not None
+    (figure,) = (f for f in found.manoeuvres[0].figures if f.name == "stopping time")
+    assert (figure.value, figure.status) == (None, "not reached")
+    assert found.shape.carried == ()
+    assert main_spread(found.shape.carried) is None
+    assert any("stopping time is not reached" in line for line in found.shape.missing)
 
 
 def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Ellipsoid, Parts, Revolution, Shape, shadow
+from coeflab.bodies.volume_moments import second_moments
 from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.types import Array, brief, locked
@@ -75,7 +76,7 @@ def ellipsoid_misfit(shape: Shape, axes: Array) -> EllipsoidMisfit:
         That displaces something. Areas of parts and of faces that hide one another count in full.
     axes : (3,) array
     """
-    areas, spread = _areas(shape), _spread(shape)
+    areas, spread = _areas(shape), second_moments(shape)
     own = np.array([axes[1] * axes[2], axes[0] * axes[2], axes[0] * axes[1]]) * np.pi
     size = np.sqrt(np.diag(spread))
     return EllipsoidMisfit(own / areas - 1.0, (np.diag(axes**2 / 5.0) - spread) / np.outer(size, size))
@@ -88,25 +89,6 @@ def _areas(shape: Shape) -> Array:
         side = 2.0 * float(shape.weight @ shape.radius)
         return np.array([np.pi * float(np.max(shape.radius)) ** 2, side, side])
     return np.array([sum(shadow(p.form, p.rotation.T @ axis) for p in shape.parts) for axis in np.eye(3)])
-
-
-def _spread(shape: Shape) -> Array:
-    """(3, 3) second moments of the volume about its centre, over the volume, m^2."""
-    if isinstance(shape, TriangleMesh):
-        return np.asarray(shape.integrals.second_moments / shape.volume)
-    if isinstance(shape, Revolution):
-        section = np.pi * shape.weight * shape.radius**2 / shape.volume
-        along = float(section @ (shape.x - shape.centre_of_volume[0]) ** 2)
-        across = float(section @ shape.radius**2) / 4.0
-        return np.diag([along, across, across])
-    return _of_parts(shape)
-
-
-def _of_parts(shape: Parts) -> Array:
-    total, middle = np.zeros((3, 3)), shape.centre_of_volume
-    for p in shape.parts:
-        total += p.form.volume * (p.second_moments + np.outer(p.centre - middle, p.centre - middle))
-    return total / shape.volume
 
 
 summary = "Lamb's exact values for the ellipsoid of the body's length, volume and breadth-to-depth ratio"

@@ -31,6 +31,7 @@ takes_surface = True
 FEWEST_PANELS, MOST_PANELS = 1_000, 32_000
 OVERSHOOT = 1.1
 THIN, THIN_SHARE, SHARP = 0.05, 0.5, 0.5
+RESOLVED, RAISED = 0.05, 2.0  # of the surface may be left thinner than panels that were raised; by how much at a time
 COMPILE_FROM = 5_000
 MOST_SHEETS, RATIO, INSIDE = 4_096, 4, 2.0 * np.pi
 SAME, NOISE = 1e-6, 2e-3
@@ -44,7 +45,8 @@ class Options:
     Attributes
     ----------
     panels : int
-        On the finest mesh, about; 32,000 need 4.2 GiB.
+        On the finest mesh, about; 32,000 need 4.2 GiB. A body that is thinner than they are large on most of its surface gets
+        more, up to 32,000 or what memory holds.
     error : float
         Raise the panels, up to 32,000 or what memory holds, until the error estimate of every diagonal entry is below this
         share of it; 0: the panels as asked.
@@ -110,7 +112,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     """
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
-    panelled = _panelled(shape, chosen.panels, chosen)
+    panelled = _resolved(shape, chosen)
     _fits(panelled.count)
     while True:
         found, worst = _found(body, shape, panelled, density, chosen)
@@ -129,21 +131,43 @@ def _finer(shape: Shape, panelled: _Panelled, above: float, chosen: Options) -> 
     """Panels for an error so many times smaller, at first order; None where the machine or the method ends."""
     if not np.isfinite(above):
         return None
-    wanted = min(int(panelled.count * float(np.clip(above**2, 1.5, 4.0))), MOST_PANELS)
+    return _more(shape, panelled, float(np.clip(above**2, 1.5, 4.0)), chosen)
+
+
+def _more(shape: Shape, panelled: _Panelled, factor: float, chosen: Options) -> _Panelled | None:
+    """So many times the panels; None where the machine or the method ends."""
     there = physical_memory()
     most = MOST_PANELS if there is None else min(MOST_PANELS, int(np.sqrt(max(there - memory_needed(0), 0) / 4.0)))
-    if min(wanted, most) < 1.2 * panelled.count:
+    wanted = min(int(panelled.count * factor), most)
+    if wanted < 1.2 * panelled.count:
         return None
-    finer = _panelled(shape, min(wanted, most), chosen)
+    finer = _panelled(shape, wanted, chosen)
     # A family of similar meshes overshoots where panels are halved in sets of equals.
     return finer if 1.2 * panelled.count <= finer.count <= OVERSHOOT * most else None
+
+
+def _resolved(shape: Shape, chosen: Options) -> _Panelled:
+    """Panels as asked; more where the body is thinner than they are large on most of its surface, as a tube or a ring is."""
+    panelled = _panelled(shape, chosen.panels, chosen)
+    most = THIN_SHARE
+    while _thin_share(panelled) > most:
+        finer = _more(shape, panelled, RAISED, chosen)
+        if finer is None:
+            break
+        panelled, most = finer, RESOLVED
+    return panelled
+
+
+def _thin_share(panelled: _Panelled) -> float:
+    closed = panelled.meshes[0][0]
+    return influence.thin_share(influence.panels_of(closed)) if len(closed) else 0.0
 
 
 def _found(body: Body, shape: Shape, panelled: _Panelled, density: float, chosen: Options) -> tuple[AddedMass, float]:
     """The matrix, and its largest relative error on the diagonal."""
     wall = _wall(body, panelled, chosen)
     closed = [closed for closed, _ in panelled.meshes]
-    thin = _thin(closed[0]) if len(closed[0]) else 0.0
+    thin = _thin(panelled)
     # On the axis of a body of revolution, so that turning about it stays apart from all else.
     centre = shape.centre_of_volume
     solutions = []
@@ -280,15 +304,15 @@ def _gate(mesh: TriangleMesh, made: bool) -> None:
         )
 
 
-def _thin(corners: Array) -> float:
+def _thin(panelled: _Panelled) -> float:
     """Share of the surface on which panels are larger than the body is thick."""
-    share = influence.thin_share(influence.panels_of(corners))
+    share = _thin_share(panelled)
     if share > THIN_SHARE:
         raise InputError(
-            f"a body thinner than its panels are large on {share:.0%} of its surface",
+            f"a body thinner than its panels are large on {share:.0%} of its surface, of {panelled.count:,} panels",
             f"at most {THIN_SHARE:.0%} of such surface",
             column="panels",
-            advice="Ask for more panels, or describe thin parts as plates for the method primitives.",
+            advice="Describe thin parts as plates for the method primitives, or as open sheets of the mesh.",
         )
     return share
 

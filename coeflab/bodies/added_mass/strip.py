@@ -25,6 +25,7 @@ takes_surface = True
 
 NONE = "sections only: nothing along {}the axis, ends not corrected"
 POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-6
+WATER = 0.1  # of the volume, within closed rings: no ellipsoid of that volume has such ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +64,10 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         No shape, or another shape, or a mesh with a section of more than 40 separate contours.
     """
     chosen = parse_options(Options, options or {}, "strip")
-    shape = body.require_shape()
+    shape, rough = body.require_shape(), False
     corrected = chosen.end_correction == "lamb"
     if isinstance(shape, TriangleMesh):
-        *own, statements = _of_mesh(body, shape, chosen.stations, corrected)
+        *own, statements, rough = _of_mesh(body, shape, chosen.stations, corrected)
     else:
         revolution = as_revolution(shape)
         if revolution is None:
@@ -79,7 +80,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     fine, *coarse = (composed([density * m], [np.eye(3)], [shape.centre_of_volume], body.reference_point) for m in own)
     error = np.abs(fine - coarse[0]) if coarse else None
     method = "strip:lamb" if corrected else "strip"
-    return AddedMass(fine, body.reference_point, body.datum, body.name, method, statements, error, _short(shape))
+    return AddedMass(fine, body.reference_point, body.datum, body.name, method, statements, error, rough)
 
 
 def _of_revolution(shape: Revolution, corrected: bool) -> tuple[NDArray[np.float64], tuple[str, ...]]:
@@ -95,8 +96,8 @@ def _of_revolution(shape: Revolution, corrected: bool) -> tuple[NDArray[np.float
 
 def _of_mesh(
     body: Body, shape: TriangleMesh, count: int, corrected: bool
-) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[str, ...]]:
-    """The matrix about the centre of volume, a coarser one that tells its numerical error, and statements."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[str, ...], bool]:
+    """The matrix about the centre of volume, a coarser one that tells its numerical error, statements, whether it is rough."""
     points = shape.vertices - shape.centre_of_volume
     try:
         places = joints(points, shape.faces)
@@ -114,8 +115,9 @@ def _of_mesh(
         *_sections(found, shape),
         f"half the stations and {COARSE} elements change the diagonal by {change:.1e} at most",
     )
+    rough = _short(shape) or found.trapped > WATER * shape.volume
     if not corrected:
-        return found.matrix, coarse.matrix, (NONE.format(""), *said)
+        return found.matrix, coarse.matrix, (NONE.format(""), *said), rough
     half = shape.length / 2.0
     bc = 3.0 * shape.volume / (4.0 * np.pi * half)
     ratio = shape.breadth_over_depth
@@ -124,7 +126,7 @@ def _of_mesh(
         f"Lamb end correction: k1 {k.axial:.4f}, sway {k.sway:.4f}, heave {k.heave:.4f}, pitch {k.pitch:.4f}, yaw {k.yaw:.4f} "
         "of the ellipsoid of the same length, volume and breadth over depth; roll as the sections give it"
     )
-    return k.applied(found.matrix, shape.volume), k.applied(coarse.matrix, shape.volume), (end, *said)
+    return k.applied(found.matrix, shape.volume), k.applied(coarse.matrix, shape.volume), (end, *said), rough
 
 
 def _short(shape: Shape) -> bool:
@@ -144,5 +146,7 @@ def _sections(found: Strips, shape: TriangleMesh) -> tuple[str, ...]:
         slender = shape.length / float(shape.extents[1:].max())
         said.append(f"{slender:.2g} times as long as wide or deep: not slender, the sections are a rough guide")
     if found.trapped > 0.0:
-        said.append(f"{found.trapped:.4g} m^3 of water within closed rings moves sideways with the body")
+        ends = "; the ends of a ring are not those of an ellipsoid: along the axis a rough guide"
+        more = ends if found.trapped > WATER * shape.volume else ""
+        said.append(f"{found.trapped:.4g} m^3 of water within closed rings moves sideways with the body{more}")
     return tuple(said)

@@ -266,6 +266,31 @@ def _ply_least(words: list[str], binary: bool) -> int:
     return sizes[0] + 3 * sizes[-1] if "list" in words and sizes else sum(sizes)
 
 
+UNIT_OF_DAE = re.compile(rb"<unit\b[^>]*?\bmeter\s*=\s*[\"']([^\"']*)[\"']")
+
+
+def dae_faces(path: Path) -> int:
+    """1: a COLLADA does not say how many triangles it comes to; its size is bounded, and it declares no entities."""
+    text = _text(path)
+    if b"<COLLADA" not in text[:65_536]:
+        raise InputError("no <COLLADA>", "a COLLADA document", file=path, advice=EXPORT)
+    if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
+        raise InputError("a document that declares entities", "a plain COLLADA", file=path, advice=EXPORT)
+    return 1
+
+
+def metres_of_dae(path: Path) -> float:
+    """Metres of one unit of a COLLADA: ``<unit meter="0.001">``; 1 where it states none (COLLADA 1.4.1, asset)."""
+    found = UNIT_OF_DAE.search(path.read_bytes())
+    try:
+        unit = float(found[1]) if found else 1.0
+    except ValueError:
+        unit = 0.0
+    if not 0.0 < unit < float("inf"):
+        raise InputError("a <unit> of no length", 'meter="1" or another above zero', file=path)
+    return unit
+
+
 def _composed_faces(path: Path) -> int:
     """A model of links, or a STEP, does not say how many triangles it comes to; its size is bounded as that of a text."""
     _text(path)
@@ -277,9 +302,13 @@ FORMATS: dict[str, Callable[[Path], int]] = {
     "obj": obj_faces,
     "ply": ply_faces,
     "glb": glb_faces,
+    "dae": dae_faces,
     **dict.fromkeys(("step", "stp", "urdf", "sdf"), _composed_faces),
 }
-SELF_DESCRIBED = {"urdf": ("m", "FLU"), "sdf": ("m", "FLU"), "step": ("m", ""), "stp": ("m", "")}
+SELF_DESCRIBED = {"dae": ("m", ""), "urdf": ("m", "FLU"), "sdf": ("m", "FLU"), "step": ("m", ""), "stp": ("m", "")}
+PACKAGES = {  # that formats need: of the interpreter, the format's name, coeflab's extra
+    "dae": ("collada", "COLLADA", "collada"), "step": ("cascadio", "STEP", "step"), "stp": ("cascadio", "STEP", "step"),
+}  # fmt: skip
 STEP_ANGLE = 0.1  # rad, largest turn from facet to facet of a curved face of a STEP
 
 
@@ -356,9 +385,10 @@ def _only(scene: Scene) -> Trimesh:
 
 
 def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices (n, 3) and faces (m, 3) of an STL, OBJ, PLY, GLB, STEP, URDF or SDF; nothing is joined, dropped or mended.
+    """Vertices (n, 3) and faces (m, 3) of an STL, OBJ, PLY, GLB, DAE, STEP, URDF or SDF; nothing is joined, dropped or mended.
 
-    The shapes of a URDF or SDF are united; a STEP is triangulated and turned to m by the package cascadio.
+    The shapes of a URDF or SDF are united; a STEP is triangulated and turned to m by the package cascadio, a DAE is read by
+    pycollada and scaled to m by the unit that it states; its axes stay as they are, whichever it calls up.
 
     Polygons become triangles; placed copies within a GLB become one mesh. Materials are not read.
 
@@ -383,18 +413,21 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
 
         return robot_surface(path, load)
     extra: dict[str, Any] = {"skip_materials": True} if kind in ("obj", "glb") else {}
+    if kind in PACKAGES and find_spec(PACKAGES[kind][0]) is None:
+        package, name, group = PACKAGES[kind]
+        raise InputError(
+            f"a {name} without the package that reads it", package, file=path,
+            advice=f'Install "coeflab[{group}]", or save the body as STL or GLB.',
+        )  # fmt: skip
     if kind in ("step", "stp"):
-        if find_spec("cascadio") is None:
-            raise InputError(
-                "a STEP without the package that reads it", "cascadio", file=path,
-                advice='Install "coeflab[step]", or save the body as STL or GLB.',
-            )  # fmt: skip
         extra = {"tol_angular": STEP_ANGLE}
+    metres = metres_of_dae(path) if kind == "dae" else 1.0
     try:
         with path.open("rb") as stream:
             scene = trimesh.load_scene(stream, file_type=kind, process=False, **extra)
         found = _only(scene)
         vertices, faces = np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)
+        vertices *= metres
     # The parser meets files of any kind; whatever it stumbles over, the file is at fault.
     except Exception as why:
         if kind == "obj":

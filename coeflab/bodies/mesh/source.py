@@ -119,7 +119,7 @@ class MeshKeys(takes.Declaration):
     Attributes
     ----------
     path : str
-        STL, OBJ, PLY, GLB, STEP, URDF or SDF, from the folder of the body.toml.
+        STL, OBJ, PLY, GLB, DAE, STEP, URDF or SDF, from the folder of the body.toml.
     unit : str
         Of its numbers, such as m, mm or ft.
     axes : str or list of str

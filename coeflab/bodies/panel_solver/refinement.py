@@ -6,7 +6,7 @@ on a body with edges it is 4/3 at the most, and what the other order would have 
 What is left is estimated by the difference of the extrapolations from the finer and from the coarser pair. Were the true
 order p, that would be 2^p - 1 times the error when panels are halved: at least the error itself for every p from 1 on;
 below 1 the rest is made up for, and Roache's factor of 1.25 is kept. Two refinements show no order: his factor of 3 on
-the correction. It is never taken below a quarter of the correction,
+the correction. Three that do not converge: three times their range (Eca & Hoekstra 2014). It is never taken below a quarter of the correction,
 nor below a tenth of the largest of a diagonal entry, each over its size: differences can cross zero by chance. Of two
 refinements, which cannot tell, no entry has less than the median.
 
@@ -129,7 +129,7 @@ SMOOTH, EDGED, SHEETED = 2.0, 4.0 / 3.0, 1.0
 BETWEEN, LOWEST = 1.25, 0.5
 LEAST_SHARE, LEAST_OF_WORST, ROUNDING = 0.25, 0.1, 1e-5
 SUBSTANTIAL, NOISE = 0.01, 1e-7
-SAFETY, TWO_ONLY, FINEST_ONLY = 1.25, 3.0, 3.0
+SAFETY, TWO_ONLY, RANGES = 1.25, 3.0, 3.0
 
 
 @brief
@@ -200,12 +200,12 @@ def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = Fals
     # A motion that only facets resist would drown the order of the others.
     live = np.abs(np.diag(changes[0])) < 0.5 * np.diag(finest)
     if not np.any(live):
-        return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), None, None)
+        return Refinement(finest, _floored(RANGES * np.ptp(matrices, axis=0), finest, scale), None, None)
     shared = np.logical_and.outer(live, live)
     gain = np.linalg.norm((changes[1] / scale)[shared]) / np.linalg.norm((changes[0] / scale)[shared])
     observed = _order(float(gain), ratios)
     if observed < LOWEST:
-        return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), observed, None)
+        return Refinement(finest, _floored(RANGES * np.ptp(matrices, axis=0), finest, scale), observed, None)
     used = min(SMOOTH if observed >= BETWEEN else EDGED, most)
     limit, coarser = (m + c / (r**used - 1.0) for m, c, r in zip(matrices, changes, ratios, strict=False))
     spread = SAFETY * np.abs(limit - coarser) / (2.0 ** min(observed, 1.0) - 1.0)

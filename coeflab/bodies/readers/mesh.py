@@ -128,4 +128,5 @@ def read(path: Path) -> Body:
             *body.configurations[1:],
         ),
         files=(*body.files, source.input_file(body.name)),
+        axes=file.mesh.axes,
     )

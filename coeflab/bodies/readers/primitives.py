@@ -319,4 +319,4 @@ def read(path: Path) -> Body:
             "Put it back, or delete [mesh]: results are then as rough as the parts.",
         )  # fmt: skip
     files = dict.fromkeys((*body.files, source.input_file(body.name)))
-    return replace(body, mesh=source, files=tuple(files))
+    return replace(body, mesh=source, files=tuple(files), axes=file.mesh.axes)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed, require_plausible
 from coeflab.bodies.readers import read_body
-from coeflab.core.axes import FRAME_WORDS, FRAMES, Datum, parse_axes
+from coeflab.core.axes import FRAME_WORDS, Axes, Datum, parse_axes
 from coeflab.core.errors import AxesError, InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
@@ -57,8 +56,7 @@ def mesh_body(
     own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
     unit, axes = unit or own_unit, axes or own_axes
     _require_stated(unit, axes, path)
-    scale, turn = _factor(unit, path), _turn(axes, path)
-    return _bare(path, scale, turn, repair, fill, sheets)
+    return _bare(path, _factor(unit, path), _axes(axes, path), repair, fill, sheets)
 
 
 def names_body(name: str) -> bool:
@@ -97,9 +95,9 @@ def _require_stated(unit: str, axes: str, path: Path) -> None:
         )
 
 
-def _turn(axes: str, path: Path) -> np.ndarray[Any, Any]:
+def _axes(axes: str, path: Path) -> Axes:
     try:
-        return parse_axes(_declared(axes), file=path, key="--axes").rotation
+        return parse_axes(axes, file=path, key="--axes")
     except AxesError as why:
         if why.expected == FRAME_WORDS:  # as TOML writes them
             raise AxesError(why.found, AXES_TYPED, file=path, column="--axes") from None
@@ -113,15 +111,9 @@ def _factor(unit: str, path: Path) -> float:
         raise UnitsError(why.found, why.expected, file=path, column="--unit", advice=why.advice) from None
 
 
-def _declared(axes: str) -> Any:
-    """None, a frame's name, or three directions."""
-    words = [w.strip() for w in axes.split(",")]
-    return words if len(words) == 3 else axes.upper() if axes.upper() in FRAMES else axes or None
-
-
-def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool, fill: bool, sheets: bool) -> Body:
+def _bare(path: Path, unit: float, axes: Axes, repair: bool, fill: bool, sheets: bool) -> Body:
     found = sound(*load(path), path, repair=repair, fill=fill, open_sheets=sheets)
-    shape = TriangleMesh(unit * found.vertices @ turn.T, found.faces, sheets=found.sheets)
+    shape = TriangleMesh(unit * found.vertices @ axes.rotation.T, found.faces, sheets=found.sheets)
 
     def fail(found: str, expected: str, advice: str) -> InputError:
         return InputError(found, expected, file=path, column="--unit", advice=advice)
@@ -137,4 +129,5 @@ def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool, fil
         source=Source(path.name),
         files=(InputFile(path.name, sha256_of(path)),),
         shape=shape,
+        axes=axes,
     )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
+from coeflab.core.text.csv_rows import plain
 from coeflab.core.units import Header, parse_header
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
@@ -136,7 +137,7 @@ def _headers(path: Path, line: str, number: int) -> tuple[Header, ...]:
         names = next(csv.reader([line], strict=True))
     except csv.Error as why:
         raise InputError(f"a header that cannot be read ({why})", "a CSV header", file=path, line=number) from None
-    headers = tuple(parse_header(n) for n in names)
+    headers = tuple(parse_header(plain(n)) for n in names)
     seen: set[str] = set()
     for i, header in enumerate(headers, start=1):
         if not header.name or not header.text.isprintable():
@@ -213,7 +214,7 @@ def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> lis
         blank = 0 if row else blank + 1
         if blank > CSV_BLANK_LINES:
             raise InputError(f"{blank} empty lines", "rows of numbers", file=path, line=line, advice="Remove them.")
-        rows.append(tuple(cell.strip() for cell in row))
+        rows.append(tuple(plain(cell.strip()) for cell in row))
 
 
 def require_unit(header: Header, path: Path, line: int, example: str) -> str:

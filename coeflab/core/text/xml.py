@@ -11,6 +11,11 @@ from coeflab.core.limits import XML_BYTES, XML_DEEPEST, XML_ELEMENTS, bounded_nu
 from coeflab.core.text.toml import read_text
 
 _DECLARED = re.compile(r"<!\s*(DOCTYPE|ENTITY|ELEMENT|ATTLIST|NOTATION)", re.IGNORECASE)
+_UNBOUND = 27  # expat: unbound prefix
+_PREFIXED = re.compile(r"[<\s/]([A-Za-z_][\w.-]{0,80}):[A-Za-z_]", re.ASCII)
+_BOUND = re.compile(r"\sxmlns:([A-Za-z_][\w.-]{0,80})\s*=", re.ASCII)
+_ROOT = re.compile(r"<[A-Za-z_][\w.:-]*", re.ASCII)
+MOST_BEFORE_ROOT = 1000  # comments and instructions
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -29,15 +34,43 @@ def parse_xml(text: str, file: Path | str | None = None) -> ElementTree.Element:
             f"<!{declared[1]}", "XML without document types and entities", file=file,
             line=text.count("\n", 0, declared.start()) + 1, advice="Remove it; a model file needs none.",
         )  # fmt: skip
-    builder = _Bounded(file)
     try:
-        parser = ElementTree.XMLParser(target=builder)
-        parser.feed(text)
-        root: ElementTree.Element = parser.close()
+        root = _parsed(text, file)
     except ElementTree.ParseError as why:
+        if why.code == _UNBOUND and (declared_text := _prefixes_declared(text)) != text:
+            return parse_xml(declared_text, file)
         line, column = why.position
         raise InputError(shown(why), "well-formed XML", file=file, line=line, column=f"character {column}") from None
     return root
+
+
+def _parsed(text: str, file: Path | str | None) -> ElementTree.Element:
+    parser = ElementTree.XMLParser(target=_Bounded(file))
+    parser.feed(text)
+    root: ElementTree.Element = parser.close()
+    return root
+
+
+def _prefixes_declared(text: str) -> str:
+    """The text with every prefix that it uses and nowhere declares, such as ``gz:``, declared in its root element.
+
+    SDFormat reads without namespaces, so that its files have prefixes that stand for nothing.
+    """
+    known = {"xml", "xmlns", *_BOUND.findall(text)}
+    strange = sorted({p for p in _PREFIXED.findall(text) if p not in known})
+    at = 0
+    for _ in range(MOST_BEFORE_ROOT):
+        at = len(text) - len(text[at:].lstrip())
+        closing = "?>" if text.startswith("<?", at) else "-->" if text.startswith("<!--", at) else ""
+        end = text.find(closing, at) if closing else -1
+        if end < 0:
+            break
+        at = end + len(closing)
+    root = _ROOT.match(text, at)
+    if root is None or not strange:
+        return text
+    spaces = "".join(f' xmlns:{p}="undeclared:{p}"' for p in strange)
+    return text[: root.end()] + spaces + text[root.end() :]
 
 
 class _Bounded(ElementTree.TreeBuilder):

@@ -78,6 +78,15 @@ def words(finding: Finding) -> Wording:
     return Wording(*out)
 
 
+def known(finding: Finding) -> bool:
+    """Whether a finding, which may be of somebody else's file, has words here that fit."""
+    try:
+        words(finding)
+    except PluginError:
+        return False
+    return True
+
+
 def remark(finding: Finding) -> str:
     """Statement and advice in a line; code and subject where a file of somebody else holds a finding that is not known here."""
     try:

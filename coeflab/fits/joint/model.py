@@ -309,7 +309,7 @@ def _several(
                 fit=replace(
                     part_of(fit, shares, common, y, p.matrix), aicc=fit.aicc if len(parts) == 1 else float("nan")
                 ),
-                domain=Domain.of(rows.x),
+                domain=Domain.of(rows.x, terms=tuple(t.term for t in p.terms)),
                 table=", ".join(rows.tables),
                 campaign=rows.campaign,
                 body=rows.body,

@@ -11,7 +11,9 @@ from math import isinf, isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
@@ -365,6 +367,8 @@ class FitResult:
         Of oscillating runs, one a force component and motion.
     straight : tuple of StraightRuns
         Of tables in which nothing varies but the speed.
+    findings : tuple of Finding
+        What is assumed, left out or not assessed; they travel with its numbers.
     """
 
     fit: str
@@ -380,6 +384,7 @@ class FitResult:
     tied: Tied | None = None
     oscillations: tuple[Oscillation, ...] = ()
     straight: tuple[StraightRuns, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     @property
     def law(self) -> str:

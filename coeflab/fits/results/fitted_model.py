@@ -9,7 +9,7 @@ What a model is worth on rows that it has not seen, as a share of the response's
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import combinations
@@ -18,14 +18,14 @@ from math import isnan
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by
+from coeflab.core.cards import html_by
 from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
 from coeflab.law.coefficient import Parts, Status
 from coeflab.law.domain import half_spaces, inside
-from coeflab.law.symbols import ANGULAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, MOTIONS, PORT_STARBOARD
 from coeflab.law.terms import Term, canonical, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
@@ -116,9 +116,24 @@ class Domain:
             object.__setattr__(self, name, locked(getattr(self, name)))
 
     @classmethod
-    def of(cls, columns: Mapping[str, Array], rule: Extrapolation = Extrapolation.REFUSE) -> Domain:
-        """The domain of some data, one column a variable."""
+    def of(
+        cls, columns: Mapping[str, Array], rule: Extrapolation = Extrapolation.REFUSE, terms: Sequence[Term] = ()
+    ) -> Domain:
+        """The domain of some data, one column a variable.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+        rule : Extrapolation
+        terms : sequence of Term
+            Of the form. One that port-starboard symmetry leaves as it is, or turns around as a whole, holds the mirror images of
+            its data too.
+        """
         points = np.column_stack(list(columns.values()))
+        sided = [v == "beta" or v in PORT_STARBOARD for v in columns]
+        turns = {sum(t.odd_in(v) for v, at in zip(columns, sided, strict=True) if at) % 2 for t in terms}
+        if any(sided) and len(turns) == 1:
+            points = np.vstack([points, np.where(sided, -points, points)])
         return cls(tuple(columns), points.min(axis=0), points.max(axis=0), half_spaces(points), rule)
 
     def contains(self, columns: Mapping[str, Array]) -> NDArray[np.bool_]:

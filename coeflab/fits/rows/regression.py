@@ -240,7 +240,7 @@ def model_of(
         symbols=symbols,
         terms=terms,
         fit=fit,
-        domain=Domain.of(rows.x, rule),
+        domain=Domain.of(rows.x, rule, terms),
         table=", ".join(rows.tables),
         campaign=rows.campaign,
         body=rows.body,

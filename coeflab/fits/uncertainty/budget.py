@@ -13,14 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import html_by, plus_minus
+from coeflab.core.cards import html_by
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, in_angles
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
+from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status, transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS, primed
@@ -189,6 +192,8 @@ REMAINS = {
 }  # what is open without a study, and with one
 COUPLED = "error of the drift angle in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
+BOUND_ONLY = ": a bound only"  # of the grid, where the study does not converge: U95 holds a bound by the range
+ITERATIONS = STUDIES["iterations"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +240,8 @@ class Budget:
     unassessed : tuple of str
     studies : tuple of VariantStudy
         Of the domain, the turbulence model and the iterations, the gravest of each.
+    stated : str
+        What the source of its tables states of its uncertainty, in its own words.
     """
 
     symbol: str
@@ -251,6 +258,7 @@ class Budget:
     window: float | None
     unassessed: tuple[str, ...]
     studies: tuple[VariantStudy, ...] = ()
+    stated: str = ""
 
     def __repr__(self) -> str:
         largest = max(self.parts, key=lambda p: p.half_width, default=None)
@@ -364,29 +372,41 @@ def budget_of(
     value = 0.0 if c.value is None else c.value
     kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
     found = {name: part for name, part in fitted.items() if part is not None}
-    open_parts = [name for name, part in fitted.items() if part is None]
+    lacks = [name for name, part in fitted.items() if part is None]
     study = study or grid_study_of(tables, component)
     relative = None if study is None else study.convergence.relative
-    if relative is not None:
+    if relative is not None and study is not None:
         found["grid"] = relative * abs(value)
+        if not study.convergence.convergence.converges:
+            lacks.append(f"grid (study {study.convergence.convergence}{BOUND_ONLY})")
     elif "cfd" in kinds:
-        open_parts.append("grid" if study is None else f"grid (study {study.convergence.convergence})")
+        lacks.append("grid" if study is None else f"grid (study {study.convergence.convergence})")
     studies = tuple(variant_studies_of(tables, component) if variants is None else variants)
     found.update({s.name: s.relative * abs(value) for s in studies if s.name != MODEL})
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
+    noisy = any(t.source.kind == "cfd" and not _has_errors(t, component) for t in tables)
+    lacks += [ITERATIONS] * (noisy and ITERATIONS not in found)
     remains = dict(REMAINS[s.name] for s in studies if s.name in REMAINS)
     always = [remains.get(u, u) for kind in kinds for u in ALWAYS_OPEN[kind]]
-    unassessed = (*open_parts, *lacking, *always)
+    unassessed = (*lacks, *lacking, *always)
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
         c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed,
-        studies,
+        studies, "; ".join(dict.fromkeys(filter(None, (t.source.stated_uncertainty for t in tables)))),
     )  # fmt: skip
 
 
+def _has_errors(table: ForceTable, component: str) -> bool:
+    """Whether the rows in use state the error that the iterations left; one without the component says nothing of it."""
+    if component not in table.forces:
+        return True
+    errors = table.errors.get(component)
+    return errors is not None and bool(np.any(np.isfinite(errors[table.usable[component]])))
+
+
 def grid_study_of(tables: Sequence[ForceTable], component: str, variables: Sequence[str] = ()) -> GridStudy | None:
-    """The gravest grid study of a component in computed tables; one where the force is next to nothing has no relative
+    """The gravest grid study of a component; one where the force is next to nothing has no relative
     error to carry on.
 
     Parameters
@@ -398,7 +418,7 @@ def grid_study_of(tables: Sequence[ForceTable], component: str, variables: Seque
     """
     studies: list[GridStudy] = []
     for table in tables:
-        if table.source.kind != "cfd" or component not in table.forces:
+        if component not in table.forces:
             continue
         force = table.forces[component][table.usable[component]]
         least = TELLING * float(np.max(np.abs(force), initial=0.0))
@@ -413,7 +433,7 @@ def variant_studies_of(
     """Of each study of the domain, the turbulence model and the iterations the gravest, as `grid_study_of` does."""
     gravest_of: dict[str, VariantStudy] = {}
     for table in tables:
-        if table.source.kind != "cfd" or component not in table.forces:
+        if component not in table.forces:
             continue
         force = table.forces[component][table.usable[component]]
         least = TELLING * float(np.max(np.abs(force), initial=0.0))
@@ -444,7 +464,7 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
     """The fit with the parts of studies and inputs in the U95 and covariance of its coefficients."""
     mine = {b.symbol: b for b in found if b.campaign == fit.campaign}
     if not any(b.u95 is not None for b in mine.values()):
-        return fit
+        return replace(fit, findings=(*fit.findings, *open_parts(tuple(mine.values()))))
     among = fit.coefficients
     changed = []
     for c in among.coefficients:
@@ -457,7 +477,63 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
             status = Status.SIGN_OPEN if is_open else c.status
             changed.append(replace(c, u95=b.u95, status=status, parts=replace(c.parts, input=outside)))
     wider = replace(among, coefficients=tuple(changed), covariance=covariance(among, tuple(mine.values())))
-    return replace(fit, coefficients=wider)
+    return replace(fit, coefficients=wider, findings=(*fit.findings, *open_parts(tuple(mine.values()))))
+
+
+def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
+    """What no part of some budgets holds, campaign by campaign, and grid studies that do not converge.
+
+    Parameters
+    ----------
+    found : sequence of Budget
+
+    Returns
+    -------
+    tuple of Finding
+        ``budget.grid_not_converging`` and ``budget.grid_run_left_out``, warnings, once a study, the first a note where no
+        value is told from zero anyway; ``budget.not_assessed``, a note, once a campaign.
+    """
+    out = []
+    studies: dict[tuple[str, str, str], list[Budget]] = {}
+    for b in found:
+        if b.grid is not None:
+            studies.setdefault((b.campaign, b.grid.component, b.grid.setting), []).append(b)
+    for (campaign, component, setting), those in studies.items():
+        study = next(b.grid for b in those if b.grid is not None)
+        about = f"{campaign} {', '.join(primed(b.symbol) for b in those)}"
+        judged = study.convergence
+        where: dict[str, Any] = {"component": component, "setting": setting, "table": study.table}
+        if not judged.convergence.converges:
+            level = Severity.WARN if any(_is_told(b) for b in those) else Severity.NOTE
+            out.append(
+                Finding.of(
+                    "budget.grid_not_converging", about, level, statistic=judged.relative, how=judged.convergence.value,
+                    cells=study.cells, values=judged.values, **where,
+                )
+            )  # fmt: skip
+        if study.left_out:
+            out.append(
+                Finding.of(
+                    "budget.grid_run_left_out", about, Severity.WARN, cells=study.left_out, used=study.cells, **where
+                )
+            )
+    for campaign in dict.fromkeys(c for b in found for c in b.campaign.split(", ")):
+        mine = [b for b in found if campaign in b.campaign.split(", ")]
+        parts = tuple(dict.fromkeys(name for b in mine for name in b.unassessed))
+        stated = "; ".join(dict.fromkeys(filter(None, (b.stated for b in mine))))
+        if parts:
+            out.append(
+                Finding.of(
+                    "budget.not_assessed", campaign, Severity.NOTE, parts=parts, states="some" if stated else "none", stated=stated,
+                    symbols=tuple(dict.fromkeys(primed(b.symbol) for b in mine if b.unassessed)),
+                )
+            )  # fmt: skip
+    return tuple(out)
+
+
+def _is_told(b: Budget) -> bool:
+    """Whether a value is told from zero but for its grid study."""
+    return abs(b.value) > b.joined(*(p.name for p in b.parts if p.name != "grid"))
 
 
 def as_estimates(fit: FitResult) -> FitResult:

@@ -6,26 +6,26 @@ and the factor 3 outside them: Oberkampf & Roy (2010), section 8.7, with the ran
 values: half their range, ITTC 7.5-03-01-01. The formulas hold where the grids are geometrically similar and fine enough
 for the leading term of the error to dominate, which three values cannot prove.
 
+Values that do not converge (differences that do not shrink as the cells do, an oscillation that grows, an order below one
+half): three times the range of the values, Eca & Hoekstra (2014), and at least what the lowest order that is believed
+would give. So a study that gets worse never narrows its half-width.
+
 Discretisation uncertainty from four or more grids by least squares: Eca & Hoekstra (2014).
 
 Their section 5: the values are fitted by f0 + a h^p; where p lies outside 0.5 to 2, by expansions of fixed order; each
 once with equal weights and once with weights 1/h; of the fits that compete, the one with the smallest standard deviation
 counts. For schemes of second order on geometrically similar grids.
-
-Studies inside a force table: rows of one setting, computed on several grids, or with one thing changed at a time.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from coeflab.core.types import Array, brief
-from coeflab.law.symbols import LINEAR, MOTIONS
-from coeflab.tables.force_table import STUDIES, ForceTable
 
 LOWEST_ORDER, ORDER_SLACK, STEEPEST = 0.5, 0.1, 60.0
 WITHIN, OUTSIDE = 1.25, 3.0
@@ -38,11 +38,19 @@ class Convergence(StrEnum):
     MONOTONIC = "monotonic"
     OSCILLATORY = "oscillatory"
     DIVERGENT = "divergent"
+    GROWING = "growing oscillation"
+    SLOW = "order near zero"
     TWO_GRIDS = "two grids"
     NOISE = "within the iteration noise"
     UNCHANGED = "unchanged"
     ONE_GRID = "one grid"
     FITTED = "fitted"
+    SCATTERED = "fitted, without an order"
+
+    @property
+    def converges(self) -> bool:
+        """Whether the values approach a limit that can be told; a half-width of others is a bound by their range."""
+        return self not in (Convergence.DIVERGENT, Convergence.GROWING, Convergence.SLOW, Convergence.SCATTERED)
 
 
 @brief
@@ -176,7 +184,19 @@ def grid_convergence(
     if len(value) == 2:
         text = f"two grids: order {formal_order:g} assumed, factor {OUTSIDE:g}"
         return study.bounded(Convergence.TWO_GRIDS, None, formal_order, OUTSIDE, text, gap)
-    return _three(study, gap)
+    found = _three(study, gap)
+    # A difference hardly above the noise says no more of the error than the noise does.
+    least = OUTSIDE * blurred / float(np.expm1(formal_order * np.log(study.sizes[1])))
+    return found if found.half_width is None or found.half_width >= least else replace(found, half_width=least)
+
+
+RANGES = 3.0
+RANGE_OR_ORDER = f"{RANGES:g} times the range of the values, at least what order {LOWEST_ORDER:g} would give"
+WHY = {
+    Convergence.DIVERGENT: "the differences do not shrink as the cells do: diverging",
+    Convergence.GROWING: "oscillating with growing differences",
+    Convergence.SLOW: f"monotonic, but the observed order lies below {LOWEST_ORDER:g}: not in the asymptotic range",
+}
 
 
 @brief
@@ -196,6 +216,12 @@ class _Study:
             kind, tuple(map(float, self.values)), tuple(map(float, self.sizes)), self.used, order, None, None, None,
             half, text,
         )  # fmt: skip
+
+    def by_range(self, kind: Convergence, order: float | None, gap: float) -> GridConvergence:
+        """Three times the range of the values, at least what the lowest order that is believed makes of ``gap``."""
+        lowest = self.bounded(kind, order, LOWEST_ORDER, WITHIN, "", gap)
+        half = max(RANGES * float(np.ptp(self.values)), lowest.half_width or 0.0)
+        return self.without(kind, order, f"{WHY[kind]}: {RANGE_OR_ORDER}", half)
 
     def bounded(
         self, kind: Convergence, order: float | None, by: float, safety: float, text: str, gap: float
@@ -217,30 +243,27 @@ def _three(study: _Study, gap: float) -> GridConvergence:
     if gap == 0.0:
         text = "the two finest grids agree to the last digit, the third does not: half the range of the three"
         return study.without(Convergence.OSCILLATORY, None, text, half)
+    in_log_size = float(np.log(study.sizes[2] / study.sizes[1]) / np.log(study.sizes[1] / study.sizes[0]))
     if gap * further < 0.0:
         if abs(gap) >= abs(further):
-            return study.without(
-                Convergence.DIVERGENT, None, "oscillating with growing differences: no uncertainty can be given"
-            )
+            return study.by_range(Convergence.GROWING, None, max(abs(gap), abs(further) / in_log_size) * np.sign(gap))
         text = "oscillating with shrinking differences: half the range of the three finest grids, no extrapolation"
         return study.without(Convergence.OSCILLATORY, observed_order(study.values[:3], study.sizes[:3]), text, half)
     order = observed_order(study.values[:3], study.sizes[:3])
-    if further / gap <= np.log(study.sizes[2] / study.sizes[1]) / np.log(study.sizes[1] / study.sizes[0]):
-        return study.without(
-            Convergence.DIVERGENT, None,
-            "the differences do not shrink as the cells do: diverging, no uncertainty can be given",
-        )  # fmt: skip
+    if further / gap <= in_log_size:
+        return study.by_range(Convergence.DIVERGENT, None, gap)
     highest = study.formal + ORDER_SLACK
-    if order is not None and LOWEST_ORDER <= order <= highest:
+    if order is not None and order < LOWEST_ORDER:
+        return study.by_range(Convergence.SLOW, order, gap)
+    if order is not None and order <= highest:
         text = f"monotonic, observed order {order:.2f}, factor {WITHIN:g}"
         return study.bounded(Convergence.MONOTONIC, order, order, WITHIN, text, gap)
-    by = LOWEST_ORDER if order is not None and order < LOWEST_ORDER else study.formal
     seen = "beyond measure" if order is None else f"{order:.2f}"
     text = (
         f"monotonic, but the observed order {seen} lies outside {LOWEST_ORDER:g} to {highest:g}: not in the asymptotic "
-        f"range; order {by:g} and factor {OUTSIDE:g}"
+        f"range; order {study.formal:g} and factor {OUTSIDE:g}"
     )
-    return study.bounded(Convergence.MONOTONIC, order, by, OUTSIDE, text, gap)
+    return study.bounded(Convergence.MONOTONIC, order, study.formal, OUTSIDE, text, gap)
 
 
 LOWEST, HIGHEST, RELIABLE = 0.5, 2.0, 2.1
@@ -293,12 +316,22 @@ def fitted_convergence(values: Array, sizes: Array, *, used: int = 0) -> GridCon
         half = safety * error + best.deviation + beside
     else:
         half = OUTSIDE * best.deviation / per_grid * (error + best.deviation + beside)
-    seen = "no order found" if observed is None else f"observed order {observed:.2f}"
+    kind = Convergence.FITTED
+    slow = observed is not None and observed < LOWEST
+    if slow:
+        kind = Convergence.SCATTERED
+        lowest = _expansion(f, h, np.full(len(h), 1.0 / len(h)), (LOWEST,))
+        by_order = WITHIN * abs(float(lowest.on_grids[place]) - lowest.limit)
+        by_order += lowest.deviation + abs(float(f[place] - lowest.on_grids[place]))
+        half = max(half, RANGES * float(np.ptp(f)), by_order)
+    seen = "no order found" if observed in (None, SEARCHED[0]) else f"observed order {observed:.2f}"
     text = f"{len(f)} grids, {seen}, fitted by {best.form}, factor {safety:g}, standard deviation {best.deviation:.3g}"
     if not good and per_grid > 0.0:
         text += f": the values scatter by more than they change from grid to grid, {per_grid:.3g}"
+    if slow:
+        text += f": {RANGE_OR_ORDER}"
     return GridConvergence(
-        Convergence.FITTED, tuple(map(float, f)), tuple(map(float, h)), place, observed, best.order, best.limit, safety,
+        kind, tuple(map(float, f)), tuple(map(float, h)), place, observed, best.order, best.limit, safety,
         float(half), text,
     )  # fmt: skip
 
@@ -319,15 +352,17 @@ def _chosen(f: Array, h: Array) -> tuple[_Fit, float | None]:
 
 
 def _free(f: Array, h: Array, w: Array) -> _Fit | None:
-    """f0 + a h^p with the best p; None where it runs to an end of the range searched."""
+    """f0 + a h^p with the best p, the lowest where none is; None where it runs to the upper end of the range searched."""
 
     def misfit(p: float) -> float:
         return _expansion(f, h, w, (p,)).deviation
 
     grid = np.linspace(*SEARCHED, 60)
     at = int(np.argmin([misfit(float(p)) for p in grid]))
-    if at in (0, len(grid) - 1):
+    if at == len(grid) - 1:
         return None
+    if at == 0:
+        return _expansion(f, h, w, (SEARCHED[0],), free=True)
     found = minimize_scalar(misfit, bounds=(grid[at - 1], grid[at + 1]), method="bounded", options={"xatol": 1e-10})
     return _expansion(f, h, w, (float(found.x),), free=True)
 
@@ -341,180 +376,3 @@ def _expansion(f: Array, h: Array, w: Array, orders: tuple[float, ...], free: bo
     deviation = float(np.sqrt(np.sum(len(f) * w * (f - on_grids) ** 2) / max(freedom, 1)))
     form = " + ".join(["f0", *(f"a h^{p:.3g}" for p in orders)])
     return _Fit(float(coefficients[0]), deviation, on_grids, orders[0] if len(orders) == 1 else None, form)
-
-
-MANY = 3
-WITHOUT_PLATEAU = {"too short", "drifting", "unconverged"}
-AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
-
-
-@brief
-@dataclass(frozen=True, slots=True)
-class GridStudy:
-    """One force component at one setting on several grids.
-
-    Attributes
-    ----------
-    table, component : str
-    setting : str
-        Motion that is not zero, in words.
-    moving : tuple of str
-        Its variables.
-    cells : tuple of int
-        Finest grid first.
-    cells_used : int
-        Of the grid that the fit uses.
-    convergence : GridConvergence
-    """
-
-    table: str
-    component: str
-    setting: str
-    moving: tuple[str, ...]
-    cells: tuple[int, ...]
-    cells_used: int
-    convergence: GridConvergence
-
-
-def grid_studies(table: ForceTable, component: str, dimension: int = 3) -> tuple[GridStudy, ...]:
-    """Grid studies of a component: settings with two or more cell counts, one of them in use.
-
-    Cell sizes follow from the counts as (1/cells)^(1/dimension), so the grids must be refined alike everywhere.
-    """
-    cells = table.cells
-    if cells is None or component not in table.forces:
-        return ()
-    found, setting, judged_rows = [], table.setting, table.sound(component)
-    for group in (np.flatnonzero(setting == k) for k in range(int(setting.max(initial=-1)) + 1)):
-        rows = [int(i) for i in group if np.isfinite(cells[i]) and judged_rows[i] and not _changed(table, int(i))]
-        used = [i for i in rows if table.usable[component][i]]
-        if len(used) != 1 or len(np.unique(cells[rows])) != len(rows) or len(rows) < 2:
-            continue
-        noise = 2.0 * table.errors[component][rows] if component in table.errors else None
-        values, sizes, place = table.forces[component][rows], cell_sizes(cells[rows], dimension), rows.index(used[0])
-        if len(rows) > 3:
-            judged = fitted_convergence(values, sizes, used=place)
-        else:
-            judged = grid_convergence(values, sizes, used=place, noise=noise)
-        counts = tuple(sorted((int(cells[i]) for i in rows), reverse=True))
-        found.append(
-            GridStudy(
-                table.name, component, _setting(table, used[0]), _moving(table, used[0]), counts, int(cells[used[0]]), judged
-            )
-        )  # fmt: skip
-    return tuple(found)
-
-
-def gravest(studies: tuple[GridStudy, ...]) -> GridStudy | None:
-    """The study with the largest relative half-width; one without a half-width counts as the gravest."""
-    if not studies:
-        return None
-    return max(studies, key=lambda s: np.inf if s.convergence.relative is None else s.convergence.relative)
-
-
-@brief
-@dataclass(frozen=True, slots=True)
-class VariantStudy:
-    """One force component at one setting, with one thing changed at a time: the domain, the turbulence model, the iterations.
-
-    Attributes
-    ----------
-    name : str
-        Of the part of a budget: ``domain size``, ``turbulence model`` or ``iterations``.
-    table, component : str
-    setting : str
-        Motion that is not zero, in words.
-    moving : tuple of str
-        Its variables.
-    used : float
-        Force of the row that the fit uses.
-    changed : tuple of (str, float)
-        What was changed, and the force with it.
-    half_width : float
-        95 % half-width of the force in use.
-    statement : str
-    """
-
-    name: str
-    table: str
-    component: str
-    setting: str
-    moving: tuple[str, ...]
-    used: float
-    changed: tuple[tuple[str, float], ...]
-    half_width: float
-    statement: str
-
-    @property
-    def relative(self) -> float:
-        """Half-width over the absolute force in use; infinite where that is zero."""
-        return self.half_width / abs(self.used) if self.used else float("inf")
-
-
-def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ...]:
-    """Studies of a component in which something else than the grid was changed.
-
-    The half-width is that of a rectangular distribution about the value in use that reaches to the farthest of the others,
-    JCGM 100:2008, 4.3.7: 2 / sqrt 3 times the largest distance; a distance below the iteration noise of both values counts
-    as that noise. Rows of other grids than the row in use, where cells are known and the domain is the same, are not judged.
-    Nor are runs that did not converge, but for those that a study of the iterations ended sooner.
-    """
-    if component not in table.forces or not any(table.variants):
-        return ()
-    force, sound, setting = table.forces[component], table.sound(component), table.setting
-    noise = 2.0 * table.errors[component] if component in table.errors else np.zeros(len(table))
-    noise = np.nan_to_num(noise)
-    found = []
-    for row in (int(i) for i in np.flatnonzero(table.usable[component] & sound)):
-        alike = [int(i) for i in np.flatnonzero((setting == setting[row]) & sound)]
-        if any(i != row and not _changed(table, i) and table.usable[component][i] for i in alike):
-            continue
-        sooner = [int(i) for i in np.flatnonzero(setting == setting[row]) if _ended_sooner(table, component, int(i))]
-        for name, part in STUDIES.items():
-            rows = [
-                i
-                for i in (*alike, *sooner)
-                if _changed(table, i) == name and (name == "domain" or _one_grid(table, row, i))
-            ]
-            if not rows:
-                continue
-            apart = np.maximum(np.abs(force[rows] - force[row]), np.hypot(noise[rows], noise[row]))
-            half = 2.0 / 3.0**0.5 * float(np.max(apart))
-            said = ", ".join(f"{table.variants[i].partition('= ')[2]} {force[i]:.4g}" for i in rows)
-            changed = tuple((table.variants[i], float(force[i])) for i in rows)
-            text = f"{part}: {force[row]:.4g} in use, {said}"
-            own = (part, table.name, component, _setting(table, row), _moving(table, row))
-            found.append(VariantStudy(*own, float(force[row]), changed, half, text))
-    return tuple(found)
-
-
-def _changed(table: ForceTable, row: int) -> str:
-    """Name of the study that a row belongs to; ``several`` of one with several changes, empty for one of the matrix itself."""
-    names = table.variants[row].split(" = ") if table.variants else [""]
-    return names[0] if len(names) < MANY else "several"
-
-
-def _ended_sooner(table: ForceTable, component: str, row: int) -> bool:
-    """Whether a row of a study of the iterations has a force, but no plateau."""
-    states = {e.status for e in table.exclusions if e.row == row and e.status}
-    ended = bool(states) and states <= WITHOUT_PLATEAU
-    return ended and _changed(table, row) == "iterations" and bool(np.isfinite(table.forces[component][row]))
-
-
-def _one_grid(table: ForceTable, a: int, b: int) -> bool:
-    cells = table.cells
-    return cells is None or not np.all(np.isfinite(cells[[a, b]])) or bool(cells[a] == cells[b])
-
-
-def _moving(table: ForceTable, row: int) -> tuple[str, ...]:
-    scale = {m: table.speed[row] / (table.scaling.length if m in "pqr" else 1.0) for m in MOTIONS}
-    names = [m for m in table.varies if m in MOTIONS and abs(table.motion[m][row]) > AT_REST * scale[m]]
-    return (*names, *(c for c, a in table.controls.items() if a[row] != 0.0))
-
-
-def _setting(table: ForceTable, row: int) -> str:
-    names = _moving(table, row)
-    units = {m: "m/s" if m in LINEAR else "rad/s" for m in MOTIONS}
-    parts = [f"{m} = {table.motion[m][row]:.3g} {units[m]}" for m in names if m in units]
-    parts += [f"{c} = {np.degrees(table.controls[c][row]):.3g} deg" for c in names if c in table.controls]
-    return ", ".join(parts) or "at rest"

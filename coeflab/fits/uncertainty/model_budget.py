@@ -32,7 +32,7 @@ from coeflab.fits.uncertainty.budget import (
     variant_studies_of,
     with_budget,
 )
-from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest
+from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling

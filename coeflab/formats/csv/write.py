@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 
 from coeflab.core.provenance import work
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import file_stem, identifier
 from coeflab.formats.look_up import LookUp, look_up
 from coeflab.law.coefficient import Coefficient
@@ -34,14 +33,11 @@ HEADER = (
 def _cell(value: object) -> str:
     if value is None or value != value:  # noqa: PLR0124 - NaN alone differs from itself
         return ""
-    text = str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, float) else str(value)
-    return "'" + text if isinstance(value, str) and text[:1] in "=+-@\t\r" and text else text
+    return str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, float) else str(value)
 
 
 def _table(rows: Iterable[Sequence[object]]) -> bytes:
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows([_cell(v) for v in row] for row in rows)
-    return out.getvalue().encode()
+    return csv_text([_cell(v) for v in row] for row in rows).encode()
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:

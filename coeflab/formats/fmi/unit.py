@@ -111,6 +111,8 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu has no types
         out = [0.0] * 6
         for term in self.model["terms"]:
             value = self.values[term["value"]] * self.scale(term["length_power"]) * speed ** term["speed_power"]
+            if "course" in term:  # 1 ahead, -1 astern: X0 is drag astern too
+                value *= max(-1.0, min(1.0, term["course"] * nu[0] / speed))
             for index, power, absolute in term["factors"]:
                 value *= (abs(moving[index]) if absolute else moving[index]) ** power
             out[term["force"]] += value

@@ -11,6 +11,7 @@ import io
 import json
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, distribution
 from importlib.resources import files as resources
 from typing import Any
@@ -32,7 +33,8 @@ from coeflab.formats.exported_law import (
     written_changes,
     written_terms,
 )
-from coeflab.law.force_law import ForceLaw, ForceTerm
+from coeflab.formats.unspoken import in_header
+from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.terms import Factor, Term
@@ -131,13 +133,15 @@ def _model(parameters: ParameterFile) -> dict[str, Any]:
         "length_name": p.scaling.length_name,
         "reference_point": [*p.reference_point.point, p.reference_point.datum],
         "added_mass": source,
+        "read_me": list(in_header(p)),
         "terms": [
             {
                 "value": _place(t),
                 "force": COMPONENTS.index(t.component),
                 "length_power": t.length_power,
                 "speed_power": t.speed_power,
-                "factors": [[_MOVING.index(v), n, absolute] for v, n, absolute in t.term.factors],
+                **({"course": AHEAD.prime} if t.ahead else {}),
+                "factors": [[_MOVING.index(v), n, absolute] for v, n, absolute in t.product.factors],
             }
             for t in terms
         ],
@@ -183,6 +187,10 @@ def _description(parameters: ParameterFile, variables: list[Variable], guid: str
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode").encode() + b"\n"
 
 
+def _lines(texts: list[str]) -> bytes:
+    return ("\n".join(texts) + "\n").encode()
+
+
 def _runtime(name: str) -> dict[str, bytes]:
     """Files of the installed pythonfmu, where the unit looks for them.
 
@@ -223,6 +231,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "resources/model.json": content,
         "resources/coeflab_unit.py": unit,
         "resources/slavemodule.txt": b"coeflab_unit",
+        **({"documentation/read_me.txt": _lines(model["read_me"])} if model["read_me"] else {}),
         **_runtime(name),
     }
     made = io.BytesIO()
@@ -251,7 +260,11 @@ def steered_force(
         k = t["length_power"]
         value = values[t["value"]] * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
         term = Term(tuple(Factor(_MOVING[index], power, absolute) for index, power, absolute in t["factors"]))
-        terms.append(ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0))
+        made = ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0)
+        if "course" in t:
+            reading = AHEAD._replace(prime=t["course"])
+            made = replace(made, term=Term((Factor("u", 1),)), readings=(("u", reading),))
+        terms.append(made)
     return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu, controls)
 
 

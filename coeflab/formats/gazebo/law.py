@@ -2,22 +2,25 @@
 
 Everything here is in the link frame FLU, about the link's origin, as in the file. The law is that of gz-sim's head of 2026
 (commit 42d1720), src/systems/hydrodynamics: HydrodynamicsUtils.hh lines 43-70 (Coriolis of <xDotU>), 87-112 (damping), 148
-and below (Coriolis of <fluid_added_mass>), put together in Hydrodynamics.cc, Configure and PreUpdate.
+and below (Coriolis of <fluid_added_mass>), put together in Hydrodynamics.cc, Configure and PreUpdate; other systems: systems.py.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree.ElementTree import Element
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locked
+from coeflab.formats.gazebo.systems import GZ_SIM, System, system_of
 from coeflab.law.rigid_body import momentum_force
+from coeflab.law.transforms import rotation
 
 FORCES, VELOCITIES = "xyzkmn", "UVWPQR"
 SYSTEM = {"filename": "gz-sim-hydrodynamics-system", "name": "gz::sim::systems::Hydrodynamics"}
@@ -26,12 +29,6 @@ FLUID = tuple((i, j) for i in range(6) for j in range(i, 6))
 FLUID_TAGS = {(i, j): "xyzpqr"[i] + "xyzpqr"[j] for i, j in FLUID}
 DENSITY, LENGTH = "coeflab_density", "coeflab_length"
 DENSITIES = ("water_density", "waterDensity", "uniform_fluid_density", "default_density", DENSITY)
-# Row, column, sign, and index of diagonal entry and velocity, of every entry of buildCoriolisMatrix.
-CORIOLIS = (
-    (0, 4, -1, 2), (0, 5, 1, 1), (1, 3, 1, 2), (1, 5, -1, 0), (2, 3, -1, 1), (2, 4, 1, 0), (3, 1, -1, 2), (3, 2, 1, 1),
-    (3, 4, -1, 5), (3, 5, 1, 4), (4, 0, 1, 2), (4, 2, -1, 0), (4, 3, 1, 5), (4, 5, -1, 3), (5, 0, -1, 1), (5, 1, 1, 0),
-    (5, 3, -1, 4), (5, 4, 1, 3),
-)  # fmt: skip
 
 
 @brief
@@ -61,6 +58,10 @@ class GzLink:
         About the centre of gravity, kg m^2, in the same axes.
     density : float or None
         kg/m^3, where the file states one.
+    system : System
+        Whose law it is.
+    missing : tuple of str
+        Tags that the file has not, where the system then takes a value of its own, with that value.
     """
 
     model: str
@@ -77,6 +78,8 @@ class GzLink:
     inertia: Array | None
     density: float | None
     resistance: float = 0.0
+    system: System = GZ_SIM
+    missing: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("linear", "signed", "absolute", "plugin_mass", "fluid_mass", "centre"):
@@ -92,7 +95,7 @@ class GzLink:
         wrench = np.zeros_like(state)
         if not self.disable_coriolis:
             matrix = np.zeros((len(state), 6, 6))
-            for row, column, sign, entry in CORIOLIS:
+            for row, column, sign, entry in self.system.coriolis:
                 matrix[:, row, column] = sign * self.plugin_mass[entry, entry] * state[:, entry]
             wrench -= np.einsum("nij,nj->ni", matrix, state)
         for i in range(6):
@@ -101,14 +104,24 @@ class GzLink:
                 wrench[:, i] += damping * state[:, j]
         return np.asarray(-wrench + momentum_force(state @ self.fluid_mass.T, state))
 
+    @property
+    def coriolis(self) -> Array:
+        """(6, 6, 6) quadratics of the plugin's own Coriolis matrix, symmetric in the last two axes; zero where it is switched off."""
+        out = np.zeros((6, 6, 6))
+        for row, column, sign, entry in () if self.disable_coriolis else self.system.coriolis:
+            half = 0.5 * sign * self.plugin_mass[entry, entry]
+            out[row, entry, column] += half
+            out[row, column, entry] += half
+        return out
 
-def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
-    """The link of the one Hydrodynamics plugin of a document.
+
+def hydrodynamics(root: Element, file: Path | str | None = None) -> tuple[Element, System]:
+    """The one Hydrodynamics plugin of a document, and whose law it is.
 
     Raises
     ------
     InputError
-        No plugin or several, no link name, a tag that is no number.
+        No such plugin or several; one whose law is not known.
     """
     found = [e for e in root.iter("plugin") if "hydrodynamics" in (e.get("filename", "") + e.get("name", "")).lower()]
     if len(found) != 1:
@@ -116,32 +129,109 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
             f"{len(found)} Hydrodynamics plugins", "one <plugin> of the system Hydrodynamics", file=file,
             advice="Keep one vehicle in the file." if found else "",
         )  # fmt: skip
-    plugin = found[0]
+    return found[0], system_of(found[0].get("filename", ""), found[0].get("name", ""), file)
+
+
+def as_sdf(root: Element) -> Element:
+    """A document whose links are written as SDF writes them; those of a URDF state the same in attributes, which are copied here."""
+    for link in root.iter("link") if root.tag == "robot" else ():
+        for part in link.iter("inertial"):
+            if (origin := part.find("origin")) is not None and part.find("pose") is None:
+                SubElement(part, "pose").text = f"{origin.get('xyz', '0 0 0')} {origin.get('rpy', '0 0 0')}"
+            if (mass := part.find("mass")) is not None and mass.get("value") is not None:
+                mass.text = mass.get("value")
+        for part in (*link.iterfind("inertial/inertia"), *link.iterfind("collision/geometry/*")):
+            for name, value in part.attrib.items():
+                if part.find(name) is None:
+                    SubElement(part, name).text = value
+    return root
+
+
+def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
+    """The link of the one Hydrodynamics plugin of a document, as `as_sdf` leaves it.
+
+    Raises
+    ------
+    InputError
+        No plugin or several, one whose law is not known, no link name, a tag that is no number.
+    """
+    plugin, system = hydrodynamics(root, file)
     name = (plugin.findtext("link_name") or "").strip()
     if not name:
         raise InputError("no <link_name>", "the link that the plugin acts on", file=file)
     link = next((e for e in root.iter("link") if e.get("name") == name.rpartition("::")[2]), None)
     inertial = None if link is None else link.find("inertial")
-    pose = [0.0] * 6 if inertial is None or inertial.find("pose") is None else _numbers(inertial, "pose", 6, file)
+    pose = _pose(inertial, file)
     axes = {(i, j): _one(inertial, f"inertia/i{'xyz'[i]}{'xyz'[j]}", file) for i in range(3) for j in range(i, 3)}
-    model = next((e.get("name", "") for e in root.iter("model")), "")
+    inertia, turn = symmetric(axes), rotation(*pose[3:])
+    model = next((e.get("name", "") for e in root.iter("model")), root.get("name", "") if root.tag == "robot" else "")
     density = next((v for tag in DENSITIES for e in root.iter(tag) if (v := numbers(e.text, (1,), tag, file)[0])), None)
+    switch, on = system.switch
+    damping, missing = _damping(plugin, system, file)
     return GzLink(
         model=model,
         link=name,
-        linear=_tagged(plugin, (6, 6), lambda i, j: FORCES[i] + VELOCITIES[j], file),
-        signed=_tagged(plugin, (6, 6, 6), lambda i, j, k: FORCES[i] + VELOCITIES[j] + VELOCITIES[k], file),
-        absolute=_tagged(plugin, (6, 6, 6), lambda i, j, k: f"{FORCES[i]}{VELOCITIES[j]}abs{VELOCITIES[k]}", file),
-        plugin_mass=_tagged(plugin, (6, 6), lambda i, j: f"{FORCES[i]}Dot{VELOCITIES[j]}", file),
-        disable_coriolis=_flag(plugin, "disable_coriolis", file),
-        disable_added_mass=_flag(plugin, "disable_added_mass", file),
+        linear=damping[0],
+        signed=damping[1],
+        absolute=damping[2],
+        plugin_mass=damping[3],
+        disable_coriolis=_flag(plugin, switch, file, default=on) is not on,
+        disable_added_mass=system.defaults is None and _flag(plugin, "disable_added_mass", file),
         fluid_mass=_fluid(inertial, file),
         mass=_one(inertial, "mass", file),
         centre=np.array(pose[:3]),
-        inertia=symmetric(axes),
+        inertia=inertia if inertia is None or not any(pose[3:]) else turn @ inertia @ turn.T,
         density=density,
         resistance=_one(plugin, RESISTANCE, file) or 0.0,
+        system=system,
+        missing=missing,
     )
+
+
+def _pose(inertial: Element | None, file: Path | str | None) -> tuple[float, ...]:
+    """Place and angles of the centre of gravity, m and rad."""
+    element = None if inertial is None else inertial.find("pose")
+    if element is None or not (element.text or "").split():
+        return (0.0,) * 6
+    pose = numbers(element.text, (6,), "pose", file)
+    degrees = (element.get("degrees") or "").strip().lower() in ("true", "1")
+    return (*pose[:3], *map(math.radians, pose[3:])) if degrees else pose
+
+
+def _damping(
+    plugin: Element, system: System, file: Path | str | None
+) -> tuple[tuple[Array, Array, Array, Array], tuple[str, ...]]:
+    """Linear, signed and absolute damping and added mass by the system's own tags, and the tags that it fills itself."""
+    if system.defaults is None:
+        return (
+            _tagged(plugin, (6, 6), lambda i, j: FORCES[i] + VELOCITIES[j], file),
+            _tagged(plugin, (6, 6, 6), lambda i, j, k: FORCES[i] + VELOCITIES[j] + VELOCITIES[k], file),
+            _tagged(plugin, (6, 6, 6), lambda i, j, k: f"{FORCES[i]}{VELOCITIES[j]}abs{VELOCITIES[k]}", file),
+            _tagged(plugin, (6, 6), lambda i, j: f"{FORCES[i]}Dot{VELOCITIES[j]}", file),
+        ), ()
+    linear, absolute, mass = np.zeros((6, 6)), np.zeros((6, 6, 6)), np.zeros((6, 6))
+    missing = []
+    for i, (f, v) in enumerate(zip(FORCES, VELOCITIES, strict=True)):
+        values = []
+        for tag in (f"{f}{v}", f"{f}{v}{v}", f"{f}Dot{v}"):
+            stated = _one(plugin, tag, file)
+            values.append(system.defaults[tag] if stated is None else stated)
+            if stated is None and system.defaults[tag]:
+                missing.append(f"<{tag}> {system.defaults[tag]:g}")
+        linear[i, i], absolute[i, i, i], mass[i, i] = values
+    return (linear, np.zeros((6, 6, 6)), absolute, mass), tuple(missing)
+
+
+def read_tags(system: System) -> frozenset[str]:
+    """Every tag of the plugin that a law here reads."""
+    own = {"link_name", system.switch[0], *DENSITIES, LENGTH, RESISTANCE}
+    if system.defaults is not None:
+        return frozenset({*own, *system.defaults})
+    pairs = [(f, v) for f in FORCES for v in VELOCITIES]
+    return frozenset({
+        *own, "disable_added_mass", *(f + v for f, v in pairs), *(f"{f}Dot{v}" for f, v in pairs),
+        *(f + v + w for f, v in pairs for w in VELOCITIES), *(f"{f}{v}abs{w}" for f, v in pairs for w in VELOCITIES),
+    })  # fmt: skip
 
 
 def _numbers(parent: Element, tag: str, count: int, file: Path | str | None) -> tuple[float, ...]:
@@ -159,8 +249,8 @@ def _tagged(plugin: Element, shape: tuple[int, ...], name: Callable[..., str], f
     return out
 
 
-def _flag(plugin: Element, tag: str, file: Path | str | None) -> bool:
-    text = (plugin.findtext(tag) or "false").strip().lower()
+def _flag(plugin: Element, tag: str, file: Path | str | None, *, default: bool = False) -> bool:
+    text = (plugin.findtext(tag) or str(default)).strip().lower()
     if text not in ("true", "false", "1", "0"):
         raise InputError(shown(text), "true or false", file=file, column=tag)
     return text in ("true", "1")

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import XML_BYTES
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
@@ -20,7 +20,19 @@ from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
-from coeflab.formats.gazebo.law import DENSITIES, FORCES, LENGTH, VELOCITIES, GzLink, read_gz_link
+from coeflab.formats.gazebo.law import (
+    DENSITIES,
+    FORCES,
+    LENGTH,
+    VELOCITIES,
+    GzLink,
+    as_sdf,
+    hydrodynamics,
+    read_gz_link,
+    read_tags,
+)
+from coeflab.formats.gazebo.systems import GZ_SIM
+from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -60,7 +72,7 @@ def _volume(shape: Element, file: Path | str | None) -> float:
             return 0.0
 
 
-summary = "gz-sim SDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
+summary = "gz-sim SDF or URDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
 citations = ("fossen2011", "gz_sim")
 reads = "SDF with the Hydrodynamics plugin"
 signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> positive."
@@ -97,10 +109,9 @@ def read(
         No SDF with one Hydrodynamics plugin.
     NoDensityError
     """
-    root = read_xml(path)
+    root = as_sdf(read_xml(path))
+    once(hydrodynamics(root, path)[0], path)
     link = read_gz_link(root, path)
-    for plugin in root.iter("plugin"):
-        once(plugin if plugin.find("link_name") is not None else None, path)
     stated = [numbers(e.text, (1,), tag, path)[0] for tag in DENSITIES for e in root.iter(tag)]
     rho = stated[0] if stated else density
     if rho is None:
@@ -125,8 +136,36 @@ def read(
             "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
             "|u| v is read as U v: both agree on straight courses",
         ),
+        findings=_left_out(root, link),
     )
     return link_file(model, path, citations, length, speed)
+
+
+def _left_out(root: Element, link: GzLink) -> tuple[Finding, ...]:
+    """What the file says of the vehicle's motion and a parameter file does not hold, and what its plugin takes by itself."""
+    plugin, system = hydrodynamics(root)
+    name = link.model or link.link
+    hull = link.link.rpartition("::")[2]
+    links = tuple(root.iter("link"))
+    volume = [f"collisions of {hull}" for e in links if e.get("name") == hull and e.find("collision") is not None]
+    currents = ("default_current", "namespace", "lookup_current_x", "lookup_current_y", "lookup_current_z")
+    unread = unread_tags(plugin, (*read_tags(system), *currents))
+    joints = [j.get("name", "") for j in root.iter("joint") if j.get("type") != "fixed"]
+    out = [
+        *left_out(name, "terms", unread),
+        *left_out(name, "environment", [f"<{t}>" for t in currents if plugin.find(t) is not None]),
+        *left_out(name, "hydrostatics", volume),
+        *other_plugins(name, root.iter("plugin"), plugin),
+        *other_masses(name, links, hull),
+        *left_out(name, "joints", joints),
+    ]
+    if system is not GZ_SIM:
+        out.append(Finding.of("model.system", name, Severity.NOTE, name=system.name, source=system.source))
+    if link.missing:
+        out.append(Finding.of("model.defaults", name, Severity.WARN, names=link.missing))
+    if system.faces_aft:
+        out.append(Finding.of("model.ahead", name, Severity.WARN))
+    return tuple(out)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -136,7 +175,7 @@ def examine(path: Path) -> tuple[Check, ...]:
     ------
     InputError
     """
-    root = read_xml(path)
+    root = as_sdf(read_xml(path))
     link = read_gz_link(root, path)
     own = link.plugin_mass if not link.disable_added_mass else np.zeros((6, 6))
     out = [*_units(root, link, path)]
@@ -204,8 +243,6 @@ def _form(link: GzLink) -> SecondOrder:
 
 
 def _coriolis(link: GzLink) -> Array:
-    """What gz-sim adds of its own, FRD: the ideal fluid's of <fluid_added_mass>, the reverse of it for <xDotU>."""
-    out = ideal_quadratics(link.fluid_mass * np.outer(FLU, FLU))
-    if not link.disable_coriolis:
-        out = out - ideal_quadratics(-np.diag(np.diag(link.plugin_mass)))
-    return out
+    """What the system adds of its own, FRD: the ideal fluid's of <fluid_added_mass>, about the reverse of it for <xDotU>."""
+    turned = link.coriolis * FLU[:, None, None] * FLU[None, :, None] * FLU[None, None, :]
+    return np.asarray(ideal_quadratics(link.fluid_mass * np.outer(FLU, FLU)) + turned)

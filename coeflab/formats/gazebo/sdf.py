@@ -18,7 +18,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
 from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, SecondOrder, slot
@@ -91,7 +91,7 @@ def sdf(
                 inertia,
                 f"It needs a world with the system Buoyancy, as {water}.sdf is, and sinks without.",
                 shape,
-                *without_law(p),
+                *in_header(p),
             ),
         ),
         f"{water}.sdf": serialised(
@@ -101,6 +101,7 @@ def sdf(
                 f"A world of water without surface or bottom: gz sim {water}.sdf. The model is that of {name}.sdf.",
                 frame,
                 inertia,
+                *in_header(p),
             ),
         ),
     }

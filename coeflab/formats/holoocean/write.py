@@ -169,7 +169,7 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
     diam = float(np.sqrt(6.0 * p.mass.mass / (np.pi * p.conditions.density * length)))
     if diam >= length:
         raise InputError(f"{p.mass.mass:g} kg on {length:g} m", "a body longer than thick", column="mass.mass")
-    moving = tuple(t for t in law.terms if t.speed_power == 2 - t.term.degree)
+    moving = tuple(t for t in law.terms if t.speed_power == 2 - t.product.degree)
     of = {t.symbol: t.coefficient for t in moving if t.symbol == "Xww"}
     of |= straight_coefficients(replace(law, terms=moving), p.conditions.speed)
     rest = {t.symbol: t.coefficient for t in law.terms if t.speed_power == 0 and t.term.degree == 1}

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,6 +32,7 @@ from coeflab.vehicle.stated_numbers import FEET_PER_SECOND, FOOT, SLUG, SLUGS
 _ASSIGNMENT = re.compile(r"([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\s*=(?!=)\s*(.*\S)", re.ASCII | re.DOTALL)
 _QUOTED = re.compile(r"'((?:[^']|'')*)'")
 _DOUBLE_QUOTED = re.compile(r'"(?:[^"\\]|\\.|"")*"')
+_NAMED = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*", re.ASCII)
 _OPENING, _CLOSING = "([{", ")]}"
 
 
@@ -130,6 +131,10 @@ class MFile:
         Whether it computes C_A(nu).
     changes_coriolis : bool
         Whether it then sets entries of it.
+    uses : mapping of last name to last names
+        What the expression of a number names.
+    unread : mapping of last name to line
+        Assignments whose value is no plain arithmetic.
     """
 
     numbers: dict[str, float]
@@ -137,6 +142,18 @@ class MFile:
     derivatives: dict[str, tuple[str, float]]
     adds_coriolis: bool
     changes_coriolis: bool
+    uses: dict[str, frozenset[str]]
+    unread: dict[str, int]
+
+    def needed(self, names: Iterable[str]) -> set[str]:
+        """These names and all that their expressions name."""
+        out: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            if (name := waiting.pop()) not in out:
+                out.add(name)
+                waiting += self.uses.get(name, ())
+        return out
 
     def named(self, *names: str) -> tuple[str, float] | None:
         """The first of these that is a number, with its name."""
@@ -159,7 +176,7 @@ def read_m_file(path: Path) -> MFile:
     text = read_text(path, M_FILE_BYTES)
     lines = assignments(text)
     adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines)
-    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None)
+    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {})
     names: dict[str, float] = {"pi": math.pi}
     for a in lines:
         group, _, last = a.target.rpartition(".")
@@ -169,8 +186,10 @@ def read_m_file(path: Path) -> MFile:
         symbol = _symbol(last)
         value = _value(a, symbol, names, path)
         if value is None:
+            out.unread.setdefault(last, a.line)
             continue
         out.numbers.setdefault(last, value)
+        out.uses.setdefault(last, frozenset(n.rpartition(".")[2] for n in _NAMED.findall(a.expression)))
         if symbol and group.rpartition(".")[2] != "ideal":
             before = out.derivatives.setdefault(symbol, (group.rpartition(".")[2], value))
             if before[1] != value:
@@ -211,6 +230,11 @@ def _symbol(name: str) -> str:
         return derivative(sname(name)).text
     except InputError:
         return ""
+
+
+def is_derivative(name: str) -> bool:
+    """Whether a name is one of a SNAME derivative."""
+    return bool(_symbol(name))
 
 
 @brief

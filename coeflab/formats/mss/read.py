@@ -10,26 +10,30 @@ import numpy as np
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
+from coeflab.formats.left_out import left_out
 from coeflab.formats.mss.m_file import (
     DENSITIES,
     GRAVITIES,
+    LENGTHS,
     MASSES,
     MFile,
     MValues,
     added_mass,
     foreign_values,
     is_acceleration,
+    is_derivative,
     read_m_file,
 )
 from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, matrix_doubts, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import COMPONENTS
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stated_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
@@ -177,6 +181,7 @@ def _own(found: MFile, path: Path) -> Stated:
         matrix_method=method or "stated",
         mass=_own_mass(n),
         notes=doubts,
+        findings=left_behind(found, path.stem, OWN_NUMBERS),
     )
 
 
@@ -229,10 +234,42 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     if squares:
         both = ", ".join(f"{a} read as {b}" for a, b in squares.items())
         notes.append(f"{both}: damping in both directions")
+    mass = _mass(found, v)
     return Stated(
         name=path.stem[:200], body=path.stem[:200], scaling=v.scaling, conditions=v.conditions, coefficients=coefficients,
-        matrix=kept, mass=_mass(found, v), notes=tuple(notes),
+        matrix=kept, mass=mass, notes=tuple(notes),
+        findings=left_behind(found, path.stem, READ if mass is None else (*READ, *MASSES, *FORWARD, *TRANSVERSE)),
     )  # fmt: skip
+
+
+# What a name of a number that is not read means; the first that fits.
+MEANS = (
+    ("hydrostatics", re.compile(r"[WB]|Weight|Buoyancy|[xyz]_?[gbGB]|nabla|Vol\w*|BG\w*|r_?[bg]_?\w*")),
+    ("inertia", re.compile(r"m|mass|I_?[xyz]{1,2}|I\d\d|[Rr]\d\d|k_?[xyz]{2}")),
+    ("strips", re.compile(r"C_?[dD]_?[xyzc]?\w?")),
+    ("propulsion", re.compile(r"n_?prop\w*|n_?max|[Dd]_?prop\w*|w_?(ake|frac)?|t_?(hr|ded)\w*|[KTQ]_?[tqTQ]_?\w*|Tau\w*|tau\w*|prop\w*|eta|eps\w*|[XKMN]prop")),
+    ("terms", re.compile(r"[XYZKMN][a-z]\w*")),
+)  # fmt: skip
+FORWARD, TRANSVERSE = ("xG", "x_G", "xg"), ("Iy", "Iyy", "Iz", "Izz")
+READ = (*DENSITIES, *GRAVITIES, *LENGTHS, "U0", "U", "r2", "r3", "r4", "r5")
+OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity", "mxG", "xG", "yG", "zG", "I_transverse",
+               *(f"I{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))  # fmt: skip
+
+
+def left_behind(found: MFile, subject: str, read: tuple[str, ...]) -> tuple[Finding, ...]:
+    """What the file states and this reader has no place for."""
+    taken = found.needed([*(n for n in found.numbers if is_derivative(n)), *read])
+    kinds: dict[str, list[str]] = {}
+    for name in found.numbers:
+        if name not in taken:
+            kind = next((k for k, means in MEANS if means.fullmatch(name)), "numbers")
+            kinds.setdefault(kind, []).append(name)
+    own = "coeflab" in found.numbers  # its equations are the exporter's
+    equations = [f"{n} (line {line})" for n, line in found.unread.items() if n in COMPONENTS and not own]
+    return (
+        *(f for kind, names in kinds.items() for f in left_out(subject, kind, names)),
+        *left_out(subject, "equations", equations),
+    )
 
 
 def _coriolis_note(found: MFile, kept: bool) -> str:
@@ -247,7 +284,7 @@ def _coriolis_note(found: MFile, kept: bool) -> str:
 
 def _mass(found: MFile, v: MValues) -> MassProperties | None:
     """Mass where the centre of gravity is known too; in a file of primes a mass below one is a prime."""
-    mass, forward = found.first(*MASSES), found.first("xG", "x_G", "xg")
+    mass, forward = found.first(*MASSES), found.first(*FORWARD)
     if mass is None or forward is None or mass <= 0.0:
         return None
     mass_unit, length_unit = v.units

@@ -17,7 +17,10 @@ from coeflab.core.arithmetic import evaluate
 from coeflab.core.wording import identifier, matlab, one_line
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     propulsion,
     spelt,
@@ -27,7 +30,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.mss.m_file import assignments
-from coeflab.formats.unspoken import unstated, without_law
+from coeflab.formats.unspoken import in_header, unstated
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -40,7 +43,7 @@ adds_coriolis = False
 holds = frozenset({"hydrostatics"})
 not_held, missing = not_written, missing_water
 
-OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", *MOTIONS, *COMPONENTS, *CONTROLS})
+OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS})
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -59,7 +62,7 @@ _NAMES = {
 
 def _unspoken(parameters: ParameterFile) -> tuple[str, ...]:
     """Components without a law, and members of h that a loop about the function needs and the file does not give."""
-    return *without_law(parameters), *unstated(parameters, _NAMES)
+    return *in_header(parameters), *unstated(parameters, _NAMES)
 
 
 def _quoted(text: str) -> str:
@@ -163,6 +166,7 @@ def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> 
     lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
     lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
     lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
+    lines += [f"course = {COURSE};  % {COURSE_MEANS}"] * has_course(terms)
     lines += [f"r{k} = h.rho*h.L^{k}/2;" for k in sorted(scales) if k]
     for component in COMPONENTS:
         parts = [expression(t, _place, "^") for t in terms if t.component == component] or ["0"]

@@ -23,7 +23,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number, states_buoyancy, straight_coefficients
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import force_law, force_of_tables
@@ -360,7 +360,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
         f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
-        *without_law(parameters),
+        *in_header(parameters),
         "Body frame: x forward, y port, z up, origin at the reference point. Weight is balanced (gravcomp), nothing rights it.",
         *(f"Left out: {one_line(what)}" for what in geom.left_out),
     )

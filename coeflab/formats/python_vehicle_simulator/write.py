@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 from coeflab.core.wording import identifier, one_line, python
 from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     spelt,
     written_accelerations,
@@ -25,7 +28,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -139,7 +142,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {name}.py: {one_line(p.name)}, body: {one_line(p.body)}",
         f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
         f"from: {one_line(p.reference_point.datum)}",
-        *(f"# {said}" for said in without_law(p)),
+        *(f"# {said}" for said in in_header(p)),
         _HEAD.format(
             name=name,
             m=None if mass is None else mass.mass,
@@ -212,6 +215,7 @@ def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
         *(f"        {name} = nu[{k}]" for k, name in enumerate(MOTIONS)),
         *(f"        {name} = delta[{CONTROLS.index(name)}]" for name in written_controls(terms)),
         "        U = max((u**2 + v**2 + w**2) ** 0.5, 1e-9)",
+        *[f"        course = {COURSE}  # {COURSE_MEANS}"] * has_course(terms),
         *_scales({t.length_power for t in terms}),
     ]
     for component in COMPONENTS:
@@ -286,6 +290,8 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
             return np.abs(_value(first, names))
         case ast.BinOp(left=left, op=sign, right=right):
             a, b = _value(left, names), _value(right, names)
+            if isinstance(sign, ast.Sub):
+                return a - b
             return a + b if isinstance(sign, ast.Add) else a * b if isinstance(sign, ast.Mult) else (
                 a / b if isinstance(sign, ast.Div) else a**b
             )  # fmt: skip

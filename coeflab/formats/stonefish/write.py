@@ -36,7 +36,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import covered_grid, missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number
 from coeflab.formats.mujoco.law import ellipsoid_of_masses
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
@@ -371,7 +371,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
         f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
-        *without_law(parameters),
+        *in_header(parameters),
         "Frame of base_link: x forward, y starboard, z down, origin at the reference point. The drags belong to this mesh: another",
         "has other areas, and theirs are to be multiplied by the ratio.",
     )

@@ -8,6 +8,7 @@ from typing import Any
 from coeflab.core.text.toml import toml_text
 from coeflab.core.wording import file_stem
 from coeflab.formats.look_up import LookUp, look_up
+from coeflab.formats.unspoken import found_in
 from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "tables.toml: every coefficient, added mass, hydrostatics, thrusters, and each fitted model on a grid within its data"
@@ -30,6 +31,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "layout": _LAYOUT,
         "name": parameters.name,
         "body": parameters.body,
+        "found": list(found_in(parameters)) or None,
         **{k: p[k] for k in ("scaling", "reference_point", "conditions", "mass") if k in p},
         "added_mass": {k: p["added_mass"][k] for k in ("body", "method", "density", "matrix")}
         if "added_mass" in p

@@ -26,7 +26,7 @@ from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locked
 from coeflab.formats.gazebo.law import symmetric
 from coeflab.law.rigid_body import momentum_force
-from coeflab.law.transforms import force_transfer
+from coeflab.law.transforms import force_transfer, rotation
 
 SPACE = "{http://www.ros.org/wiki/xacro}"
 _PIECE = re.compile(r"\$\{([^{}]*)\}|\$\(arg\s+(\w+)\s*\)")
@@ -202,7 +202,9 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
         for i in range(3)
         for j in range(i, 3)
     }
-    inertia = symmetric(axes)
+    inertia, turn = symmetric(axes), rotation(*_angles(inertial, x, file))
+    if inertia is not None:
+        inertia = turn @ inertia @ turn.T
     return FossenLink(
         link=name,
         added_mass=read["added_mass"],
@@ -251,6 +253,13 @@ def _origin(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[
     element = None if parent is None else parent.find("origin")
     text = None if element is None else element.get("xyz")
     return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin xyz", file)
+
+
+def _angles(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
+    """Roll, pitch and yaw of the axes of inertia, rad."""
+    element = None if parent is None else parent.find("origin")
+    text = None if element is None else element.get("rpy")
+    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin rpy", file)
 
 
 def _reference(root: Element, link: str, x: Xacro, file: Path | str | None) -> tuple[float, ...]:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import XML_BYTES
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
+from coeflab.core.wording import one_line
+from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
 from coeflab.formats.stated_file import LinkModel, link_file
-from coeflab.formats.uuv_simulator.law import PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
+from coeflab.formats.uuv_simulator.law import MATRICES, PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import SURGE, SecondOrder
@@ -81,8 +84,40 @@ def read(
         length=link.length,
         length_name="length of the box",
         notes=tuple(notes),
+        findings=_left_out(root, link),
     )
     return link_file(stated, path, citations, length, speed)
+
+
+PLUGIN = re.compile(r"(lib)?(uuv|dave)\w*underwater_object\w*(\.so)?", re.IGNORECASE)
+CURRENT = ("flow_velocity_topic", "use_global_current", "default_current")
+
+
+def _left_out(root: Element, link: FossenLink) -> tuple[Finding, ...]:
+    """What the file says of the vehicle's motion and a parameter file does not hold."""
+    name = root.get("name", "") or link.link
+    links = [e for e in root.iter("link") if e.get("name") == link.link]
+    model = next(m for e in links if (m := e.find("hydrodynamic_model")) is not None)
+    plugins = tuple(root.iter("plugin"))
+    own = next((p for p in plugins if model in p.iter("hydrodynamic_model")), model)
+    weight = [
+        f"<{t}>" for e in links for t in ("volume", "center_of_buoyancy", "neutrally_buoyant") if e.find(t) is not None
+    ]
+    ignored = link.quadratic - np.diag(np.diag(link.quadratic))
+    off = [f"<quadratic_damping> row {i + 1} column {j + 1}" for i, j in np.argwhere(ignored)]
+    out = [
+        *left_out(name, "terms", unread_tags(model, (*MATRICES, "type"))),
+        *left_out(name, "ignored", off),
+        *left_out(name, "hydrostatics", weight),
+        *left_out(name, "environment", [f"<{t}>" for t in CURRENT if own.find(t) is not None]),
+        *other_plugins(name, plugins, own),
+        *other_masses(name, root.iter("link"), link.link),
+        *left_out(name, "joints", [j.get("name", "") for j in root.iter("joint") if j.get("type", "fixed") != "fixed"]),
+    ]
+    file = own.get("filename", "")
+    if not PLUGIN.fullmatch(file.rpartition("/")[2]):
+        out.append(Finding.of("model.by_type", name, Severity.WARN, file=one_line(file)[:80] or "no plugin"))
+    return tuple(out)
 
 
 def examine(path: Path) -> tuple[Check, ...]:

@@ -17,7 +17,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import ExportedLaw, common_changes, exported_law, number
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.formats.uuv_simulator.law import MATRICES, read_fossen_link
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
@@ -103,7 +103,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "The plugin turns Gazebo's x forward, y port, z up to x forward, y starboard, z down itself: the matrices are in the latter,",
         "about the centre of gravity, which is the origin of base_link. Damping is negative, added mass positive.",
         f"Inertia of the water: {one_line(water_inertia(p).source)}",
-        *without_law(p),
+        *in_header(p),
         "Neutrally buoyant with both centres in one point: the parameter file states neither weight nor buoyancy."
         if h is None
         else "Volume and centre of buoyancy, the latter x forward, y port, z up from the centre of gravity, are the file's.",

@@ -131,6 +131,8 @@ class XdynBody:
         Power 1 or 2, matrices positive.
     left_out : tuple of str
         Names of the other force models, the manoeuvring model ``buoyancy`` among them.
+    unread : tuple of str
+        Keys of the state at the start, of waves and the like that are not zero.
     """
 
     name: str
@@ -144,6 +146,7 @@ class XdynBody:
     manoeuvring: tuple[Manoeuvring, ...]
     damping: tuple[tuple[int, Array], ...]
     left_out: tuple[str, ...]
+    unread: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("centre", "damping_point", "mesh", "rigid", "added"):
@@ -270,7 +273,21 @@ def xdyn_body(content: Mapping[str, Any], file: Path | str) -> XdynBody:
             BUOYANCY if m["model"] == "maneuvering" else m["model"] for m in models
             if m not in shaped and m["model"] not in POWERS
         ),
+        unread=_unread(content, body),
     )  # fmt: skip
+
+
+def _unread(content: Mapping[str, Any], body: Mapping[str, Any]) -> tuple[str, ...]:
+    """What else moves the body: waves and wind, the state at the start beside u, blocked motions."""
+    environment = content.get("environment models") or []
+    named = [m for m in environment if isinstance(m, dict)] if isinstance(environment, list) else []
+    out = [str(m.get("model")) for m in named if m.get("model") != "no waves"]
+    velocity = body.get("initial velocity of body frame relative to NED")
+    for key in "vwpqr" if isinstance(velocity, dict) else "":
+        value = velocity.get(key) if isinstance(velocity, dict) else None
+        if isinstance(value, dict) and number(value.get("value")) not in (None, 0.0):
+            out.append(f"{key} at the start")
+    return (*out, *(k for k in ("blocked dof", "filtered states") if body.get(k)))
 
 
 def _turned(reading: Reading, frame: Mapping[str, Any]) -> bool:

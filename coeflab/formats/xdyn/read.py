@@ -20,6 +20,7 @@ import numpy as np
 from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding
 from coeflab.core.limits import JSON_BYTES, positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
@@ -28,9 +29,11 @@ from coeflab.core.text.yaml import number, read_yaml
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
+from coeflab.formats.left_out import left_out
 from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
+from coeflab.law.force_law import AHEAD
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
@@ -43,6 +46,8 @@ Product = tuple[tuple[str, int], ...]
 MOST = 4000
 HIGHEST = 12
 NOTHING = 1e-15
+SIGN, SIDES = "course", ("course + 1", "course - 1")
+RESISTANCE: Product = (("U", 2),)
 
 
 @brief
@@ -233,11 +238,13 @@ def _components(
         number = value.number
         if number is not None:
             return number
+        if dict(value.terms) == {((SIDES[0], 1),): 0.5, ((SIDES[1], 1),): -0.5}:
+            return Products.of(SIGN)
         at = next((m for m, form in expected.items() if not still and value.same(form)), None)
         return value if at is None else Products.of(at + marked)
 
     functions: dict[str, Callable[..., Any]] = {m: partial(state, m) for m in MOTIONS}
-    functions |= {"abs": abs, "sqrt": partial(_root, notes)}
+    functions |= {"abs": partial(_absolute, f"u{marked}"), "sqrt": partial(_root, notes)}
     functions |= {f: partial(_of_number, f) for f in ("exp", "log", "cos", "sin")}
     given = {**body.given(model), **{c: Products.of(c) for c in model.commands if c in CONTROLS}}
     try:
@@ -251,9 +258,23 @@ def _components(
     names = {n.strip("|") for c in out for p in c.terms for n, _ in p}
     if at_point and names & set(LINEAR):
         return None
-    return tuple(
-        Products({tuple(sorted((n.replace(MARK, ""), k) for n, k in p)): v for p, v in c.terms.items()}) for c in out
-    )
+    plain = [{tuple(sorted((n.replace(MARK, ""), k) for n, k in p)): v for p, v in c.terms.items()} for c in out]
+    if RESISTANCE in plain[0]:
+        notes.append("X with U^2 alone pushes ahead on a course astern in the file; here it is drag there too")
+    signed = tuple(sorted((*RESISTANCE, (SIGN, 1))))
+    if signed in plain[0]:
+        plain[0][RESISTANCE] = plain[0].get(RESISTANCE, 0.0) + plain[0].pop(signed)
+    return tuple(Products(c) for c in plain)
+
+
+def _absolute(ahead: str, value: Any) -> Any:
+    """An absolute value: of one product, or of the two of which the sign of the course is made (`formats.exported_law.COURSE`)."""
+    if isinstance(value, Products) and len(value.terms) == 2:
+        share = {p: v / AHEAD.prime if p else v for p, v in value.terms.items()}
+        for name, side in zip(SIDES, (1.0, -1.0), strict=True):
+            if share == {tuple(sorted(((ahead, 1), ("U", -1)))): 1.0, (): side}:
+                return Products.of(name)
+    return abs(value)
 
 
 def _velocities_at(shift: Array) -> tuple[Products, ...]:
@@ -348,7 +369,7 @@ def examine(path: Path) -> tuple[Check, ...]:
 
 
 def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
-    notes = [*law.notes, *(f"left out: {model}" for model in dict.fromkeys(body.left_out))]
+    notes = [*law.notes]
     named = next((n for n in LENGTHS if law.constants.get(n, 0.0) > 0.0), None)
     scaling = Scaling(law.constants[named], named) if named else Scaling(1.0, "1 m")
     notes.append(f"lengths made dimensionless by {scaling.length_name}" + ("" if named else ": the file states none"))
@@ -393,7 +414,43 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         matrix=matrix if kept else None,
         mass=mass,
         notes=(*notes, *doubt),
+        findings=_left_out(body, name),
     )
+
+
+# Force models of xdyn that are not of the hull's own hydrodynamics.
+STATICS = (
+    "gravity",
+    "buoyancy",
+    "non-linear hydrostatic (exact)",
+    "non-linear hydrostatic (fast)",
+    "linear hydrostatics",
+    "hydrostatic",
+)
+DRIVES = re.compile(
+    r"propeller|rudder|thruster|wageningen|kt\(j\)|controll?er|PID|constant force|sail|aero|linear stiffness",
+    re.IGNORECASE,
+)
+
+
+def _left_out(body: XdynBody, name: str) -> tuple[Finding, ...]:
+    """Force models that are not read, commands at zero, times, and the state at the start."""
+    models = tuple(dict.fromkeys(body.left_out))
+    statics = [m for m in models if m in STATICS]
+    drives = [m for m in models if m not in STATICS and DRIVES.search(m)]
+    commands = [c for m in body.manoeuvring for c in m.commands if c not in CONTROLS]
+    timed = [k for m in body.manoeuvring for k, v in m.expressions.items() if _TIME.search(_STATE.sub("", v))]
+    return (
+        *left_out(name, "hydrostatics", statics),
+        *left_out(name, "propulsion", drives),
+        *left_out(name, "forces", [m for m in models if m not in (*statics, *drives)]),
+        *left_out(name, "commands", commands),
+        *left_out(name, "time", timed),
+        *left_out(name, "environment", body.unread),
+    )
+
+
+_STATE, _TIME = re.compile(r"\(\s*t\s*\)"), re.compile(r"(?<!\w)t(?!\w)", re.ASCII)
 
 
 def _mass(body: XdynBody, point: Array) -> tuple[MassProperties | None, tuple[str, ...]]:

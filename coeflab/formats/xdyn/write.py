@@ -18,7 +18,10 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
+    COURSE,
+    COURSE_MEANS,
     expression,
+    has_course,
     not_written,
     propulsion,
     spelt,
@@ -26,7 +29,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import without_law
+from coeflab.formats.unspoken import in_header
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, XdynBody, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
@@ -132,7 +135,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
         f"# {propulsion(parameters)}",
-        *(f"# {said}" for said in without_law(parameters)),
+        *(f"# {said}" for said in in_header(parameters)),
         *(f"# {said}; rad" for said in control_signs(parameters)),
         *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",
@@ -209,6 +212,7 @@ def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Seq
         *(f"{n}_P: {float(v)!r}" for n, v in zip("xyz", offset, strict=True) if offset.any()),
         *(f"{m}: {text}" for m, text in velocities.items()),
         "U: sqrt(u^2 + v^2 + w^2 + 1e-18)",
+        *[f"course: {COURSE}  # {COURSE_MEANS}"] * has_course(kept),
         f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
         *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
         *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in kept),

@@ -198,13 +198,18 @@ def known(s: MotionSeries, vehicle: Vehicle) -> Array:
 
 
 def _sides(s: MotionSeries, vehicle: Vehicle, component: str, terms: Sequence[Candidate]) -> tuple[Array, Array, Array]:
-    """Values of terms and load (n, p + 1), momentum (n, 1) and velocities, whose rates belong to the balance."""
+    """Values of terms and load (n, p + 1), momentum (n, 1) and velocities, whose rates belong to the balance.
+
+    The vehicle's law is what is known of the hydrodynamic force: fitted tables that no term speaks of.
+    """
     i, nu = COMPONENTS.index(component), np.asarray(s.velocity)
     columns = dict(zip((*MOTIONS, *CONTROLS), np.hstack([nu, s.controls]).T, strict=True))
     values = [np.zeros(len(nu)) if t.rate else identification.column(component, t.term, columns, t.rest) for t in terms]
     load = (
         rigid_body_force(vehicle.mass, vehicle.centre, vehicle.inertia, nu) - vehicle.restoring(s.attitude) - s.wrench
     )
+    if vehicle.law.terms:
+        load = load - vehicle.force(nu, s.controls)
     added = vehicle.added * (0.0 if any(t.rate for t in terms) else 1.0)
     mass = rigid_body_inertia(vehicle.mass, vehicle.centre, vehicle.inertia) + added
     return np.column_stack([*values, load[:, i]]), nu @ mass[i], nu

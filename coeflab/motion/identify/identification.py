@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from coeflab.core.finding import Finding
 from coeflab.core.types import Array, brief
 from coeflab.fits.statistics.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
 from coeflab.law.force_law import AHEAD, CONTROLS, SLOWEST
@@ -521,6 +522,8 @@ class Identified:
     terms : tuple of IdentifiedTerm
     balances : tuple of Balanced
     statements : tuple of str
+    findings : tuple of Finding
+        Fitted tables of the file that are not used, for terms that were tried speak of the same.
     """
 
     name: str
@@ -532,6 +535,7 @@ class Identified:
     terms: tuple[IdentifiedTerm, ...]
     balances: tuple[Balanced, ...]
     statements: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
 
     def __getitem__(self, symbol: str) -> IdentifiedTerm:
         wanted = symbol.removesuffix("'") + "'"

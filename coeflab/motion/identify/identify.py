@@ -12,6 +12,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.texts import remark
 from coeflab.fits.sparse import scaled_optimizer
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
@@ -45,6 +46,7 @@ from coeflab.motion.identify.identification import (
 )
 from coeflab.motion.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.motion.vehicle import Vehicle, vehicle
+from coeflab.vehicle.force_law import EDGE, known_beside
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED, WaterInertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -164,6 +166,8 @@ def _identified(
         parameters, moving, o.terms, symmetric=o.symmetric == "yes", accelerations=fit_added,
         driven=frozenset(c for k, c in enumerate(COMPONENTS) if any(np.any(known(s, body)[:, k] != 0.0) for s in series)),
     )  # fmt: skip
+    law, found = known_beside(parameters, [(t.symbol, t.component, t.term) for t in library if not t.rate])
+    body = replace(body, law=law)
     terms: list[IdentifiedTerm] = []
     balances = []
     for c in COMPONENTS:
@@ -176,7 +180,8 @@ def _identified(
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
-        tuple(balances), (*_shared(shared), *_statements(series, body, moving, share, library, half, o)),
+        tuple(balances), (*map(remark, found), *_shared(shared), *_statements(series, body, moving, share, library, half, o)),
+        tuple(f for f in found if f.code != EDGE),
     )  # fmt: skip
 
 

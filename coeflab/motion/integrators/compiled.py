@@ -16,12 +16,14 @@ from coeflab.law.force_law import SLOWEST, ForceLaw, Ints
 from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
 from coeflab.law.transforms import along_body
 from coeflab.motion.dynamics import FIRST, FLAT, Dynamics
+from coeflab.motion.integrators import fixed_step
 from coeflab.motion.integrators.fixed_step import SECANTS
 from coeflab.motion.manoeuvre import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
 
 # Few arrays, because every call counts the references of each: the source column of each variable; its prime, low and high;
-# powers of V; rows of the pool and component of each term; whether incidence is needed; coefficients.
-Law = tuple[Ints, Array, Ints, NDArray[np.uint64], bool, Array]
+# powers of V; rows of the pool and component of each term; for which of X, Y, Z drag, side force and lift speak, nothing where no
+# incidence is needed; coefficients.
+Law = tuple[Ints, Array, Ints, NDArray[np.uint64], Array, Array]
 PAIRS = len(FIRST)
 INVERSE, LOAD, CURRENT = PAIRS, PAIRS + 6, PAIRS + 7  # rows of the body's array, below the forms of the pairs
 jitted = numba.njit(cache=True, error_model="numpy")
@@ -34,10 +36,10 @@ _kinematics, _weighed = inlined(kinematics), inlined(weighed)
 @inlined
 def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) -> None:
     """The terms' forces into ``out`` (6,); ``pool`` holds 1, powers of V, variables and their absolute values."""
-    source, bounds, powers, gathered, angled, coefficient = law
+    source, bounds, powers, gathered, wind, coefficient = law
     speed = math.sqrt(s[7] ** 2 + s[8] ** 2 + s[9] ** 2)
     alpha, beta = 0.0, 0.0
-    if angled:
+    if len(wind):
         alpha = math.atan2(s[9], s[7])
         beta = math.asin(min(max(s[8] / speed, -1.0), 1.0)) if speed > 0.0 else 0.0
     pool[0] = 1.0
@@ -71,9 +73,9 @@ def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) ->
     if drag != 0.0 or side != 0.0 or lift != 0.0:
         ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
         ahead, aside, below = _along_body(ca, sa, cb, sb, drag, side, lift)
-        out[0] += ahead
-        out[1] += aside
-        out[2] += below
+        out[0] += ahead * wind[0]
+        out[1] += aside * wind[1]
+        out[2] += below * wind[2]
 
 
 @inlined
@@ -261,7 +263,7 @@ def _member(
 
 @numba.njit(cache=True, parallel=True, error_model="numpy")
 def _all(
-    shared: tuple[Ints, Array, Ints, NDArray[np.uint64], bool], coefficient: Array, bodies: Array, angles: Array,
+    shared: tuple[Ints, Array, Ints, NDArray[np.uint64], Array], coefficient: Array, bodies: Array, angles: Array,
     begun_at: Array, rate: Array, wrenches: Array, watched: Ints, sign: Array, value: Array,
     longest: Array, start: Array, step: float, steps: int, every: int, fastest: float, records: Array,
     switch_time: Array, switch_state: Array, met: NDArray[np.bool_], ended: Ints, end_time: Array, end_state: Array,
@@ -269,9 +271,9 @@ def _all(
     """Every member on copies of its own: two cores that count the references of one array wait for each other."""
     for unsigned in numba.prange(len(start)):
         i = np.int64(unsigned)
-        source, bounds, powers, gathered, angled = shared
+        source, bounds, powers, gathered, wind = shared
         own = coefficient[i % len(coefficient)].copy()
-        law = (source.copy(), bounds.copy(), powers.copy(), gathered.copy(), angled, own)
+        law = (source.copy(), bounds.copy(), powers.copy(), gathered.copy(), wind.copy(), own)
         body = bodies[i % len(bodies)].copy()
         _member(
             i, law, body, angles, begun_at, rate, wrenches[i % len(wrenches)], watched, sign, value, longest,
@@ -283,7 +285,9 @@ def _all(
 def march(
     dynamics: Dynamics, orders: Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
 ) -> Marching:
-    """As `coeflab.motion.integrators.fixed_step.march`."""
+    """As `coeflab.motion.integrators.fixed_step.march`, which moves laws whose tables are no boxes."""
+    if dynamics.law.curved:
+        return fixed_step.march(dynamics, orders, start, step, every, fastest)
     steps = orders.steps(step)
     out = blank(len(start), orders, step, every)
     _all(
@@ -303,9 +307,10 @@ def rates(dynamics: Dynamics, state: Array, controls: Array, wrench: Array) -> A
     return out
 
 
-def _terms(law: ForceLaw) -> tuple[Ints, Array, Ints, NDArray[np.uint64], bool]:
+def _terms(law: ForceLaw) -> tuple[Ints, Array, Ints, NDArray[np.uint64], Array]:
     gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
-    return law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled
+    wind = np.array(law.wind if law.angled else (), dtype=np.float64)
+    return law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, wind
 
 
 def _bodies(dynamics: Dynamics) -> Array:

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, one_of, parse_options
-from coeflab.motion.approach import SURFACES, along, judged, propulsion, turning_sense, unlimited, within_limit
+from coeflab.motion.approach import SURFACES, along, judged, propulsion, turning_sense, within_limit
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 
 summary = "depth change by the stern or bow planes: time to execute, overshoot of pitch and of depth"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,15 +11,15 @@ import numpy as np
 from coeflab.core.options import bounded, measured, parse_options
 from coeflab.motion.approach import (
     along,
-    has_rotary_limit,
     judged,
-    linear_growth,
     propulsion,
     turning_sense,
+    undetermined,
     within_limit,
 )
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 
 summary = "pull-out from turns to either side: residual yaw rates, which differ where the vehicle is unstable"
@@ -81,10 +81,5 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         status, why = ("ok", "") if rate is not None else ("not reached", "the rate still changes in the last fifth")
         text = f"steady yaw rate, rudder amidships after a turn to {side} (IMO MSC/Circ.1053)"
         out.append(judged(Figure(f"residual yaw rate, {side}", rate, "rad/s", text, status, why), trajectory, end))
-    if (
-        has_rotary_limit(vehicle, "r", "YN")
-        or linear_growth(vehicle, ("v", "r"), float(trajectory.velocity[0, 0])) <= 0
-    ):
-        return tuple(out)
-    why = "unstable, and no nonlinear term such as Yr|r| or Nr|r| limits the rate"
-    return tuple(replace(f, value=None, status="not determined", why=why) for f in out)
+    lacking = unlimited(vehicle, "r", float(trajectory.velocity[0, 0]))
+    return tuple(undetermined(f, lacking) for f in out)

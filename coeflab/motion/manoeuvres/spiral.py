@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, parse_options
-from coeflab.motion.approach import along, judged, propulsion, turning_sense, undetermined, unlimited, within_limit
+from coeflab.motion.approach import along, judged, propulsion, turning_sense, undetermined, within_limit
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 
 summary = "direct spiral: steady yaw rate over rudder angle, height of the loop at rudder zero"

@@ -16,11 +16,11 @@ from coeflab.motion.approach import (
     thruster_orders,
     turning_sense,
     undetermined,
-    unlimited,
     within_limit,
 )
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, settled, value_at
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 
 summary = "turning circle: advance, transfer, tactical and steady turning diameter, drift angle and loss of speed"

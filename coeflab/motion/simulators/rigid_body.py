@@ -14,7 +14,7 @@ from coeflab.motion.approach import in_current
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.marching import march, march_by_tolerance
 from coeflab.motion.media import through_media
-from coeflab.motion.trajectory import WITHOUT_DATA, Ended, Trajectory
+from coeflab.motion.trajectory import WITHOUT_DATA, Trajectory
 from coeflab.motion.vehicle import Vehicle
 
 summary = "six degrees of freedom (Fossen), quaternion attitude; adaptive LSODA or fixed-step RK4, plain or compiled"
@@ -99,14 +99,7 @@ def _stopped_outside(motion: Trajectory) -> Trajectory:
     name = min(firsts, key=lambda n: firsts[n])
     row = firsts[name]
     values = " ".join(f"{v:.4g}" for v in motion.velocity[row])
-    kept = slice(0, row + 1)
     time = float(motion.time[row])
-    return replace(
-        motion, time=motion.time[kept], position=motion.position[kept], attitude=motion.attitude[kept],
-        velocity=motion.velocity[kept], heading=motion.heading[kept], phase=motion.phase[kept],
-        controls={n: x[kept] for n, x in motion.controls.items()},
-        outside={n: x[kept] for n, x in motion.outside.items()},
-        reached=tuple(t if t is not None and t <= time else None for t in motion.reached),
-        ended=Ended.OUT_OF_RANGE,
-        why=f"stopped at {time:.6g} s, outside of what the coefficients cover: {name}. u v w p q r = {values}",
-    )  # fmt: skip
+    return motion.ended_at(
+        row, f"stopped at {time:.6g} s, outside of what the coefficients cover: {name}. u v w p q r = {values}"
+    )

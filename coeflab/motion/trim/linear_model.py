@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.trim import Trim
 
@@ -84,6 +84,16 @@ class LinearModel:
     b: Slopes
     modes: tuple[Mode, ...]
     statements: tuple[str, ...]
+
+    @property
+    def A(self) -> Array:  # noqa: N802 - as every textbook has it
+        """(n, n) of the states."""
+        return self.a.matrix
+
+    @property
+    def B(self) -> Array:  # noqa: N802
+        """(n, m) of the commands."""
+        return self.b.matrix
 
     @property
     def rate_units(self) -> tuple[str, ...]:

@@ -13,14 +13,16 @@ from numpy.typing import NDArray
 
 from coeflab.core import limits
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Table, number
+from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
 from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
 from coeflab.law.transforms import incidence
 from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
-from coeflab.motion.trajectory import outside_in_words
+from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.vehicle import THRUST, Vehicle
 
@@ -266,12 +268,15 @@ class Trim:
         u v w p q r through the water at the reference point.
     others : tuple of (dict of str to float, str)
         Other solutions and their stability.
+    refused : tuple of Finding
+        That a table of the law has no value at the solution.
     """
 
     motion: SteadyMotion
     point: OperatingPoint
     velocity: Array
     others: tuple[tuple[dict[str, float], str], ...]
+    refused: tuple[Finding, ...] = ()
 
     @property
     def figures(self) -> dict[str, tuple[float | None, str]]:
@@ -345,16 +350,21 @@ def trim(
     found = operating_point(unknowns, steady.equations, steady.left, start, starts, seed)
     values = steady.modes(found.found.point)
     state = growth(values)
-    statements = (*_beyond(vehicle, steady, found), *_unstated(vehicle, unknowns), *vehicle.statements)
+    refused = _refused(vehicle, steady, found)
+    statements = (
+        *map(remark, refused),
+        *_beyond(vehicle, steady, found),
+        *_unstated(vehicle, unknowns),
+        *vehicle.statements,
+    )
     if found.outcome.solved:
         found = replace(found, modes=tuple(complex(v) for v in values), growth=state)
     others = tuple(
         ({u.name: float(x) + 0.0 for u, x in zip(unknowns, y, strict=True)}, growth(steady.modes(y)))
         for y in found.found.others
     )
-    return Trim(
-        steady, replace(found, statements=tuple(dict.fromkeys(statements))), steady.state(found.found.point)[0], others
-    )
+    found = replace(found, statements=tuple(dict.fromkeys(statements)))
+    return Trim(steady, found, steady.state(found.found.point)[0], others, refused)
 
 
 def _ruled(unknowns: tuple[Unknown, ...], near: Mapping[str, float]) -> tuple[Unknown, ...]:
@@ -374,6 +384,14 @@ def _first(u: Unknown, vehicle: Vehicle) -> float:
     else:
         start = u.high / 2.0 if np.isfinite(u.high) else u.scale
     return float(min(max(start, u.low), u.high))
+
+
+def _refused(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tuple[Finding, ...]:
+    """That tables which refuse to be read beyond their data have no value at the solution."""
+    (velocity, _), (angles, _) = steady.state(found.found.point), steady.commands(found.found.point)
+    if not found.outcome.solved or not vehicle.law.refused(velocity[None, :], angles[None, :])[0]:
+        return ()
+    return (refusal("law.refused_point", vehicle),)
 
 
 def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import number, plus_minus
 from coeflab.core.types import Array, brief, locked
@@ -18,6 +19,7 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Parts, Status
+from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.motion.tune.output_error import Estimate, Problem
 from coeflab.motion.tune.plan import Place, TuningPlan, moved
 from coeflab.vehicle.force_law import points_of
@@ -25,15 +27,17 @@ from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
-OK, PRIOR, BOUND, OPEN = "ok", "prior_only", "at_bound", "not_identifiable"
+OK, SIGN, PRIOR, BOUND, OPEN = "ok", "sign_open", "prior_only", "at_bound", "not_identifiable"
 STATUSES = {
     OK: "the data determine it",
+    SIGN: "its 95 % interval holds zero: the data do not tell its sign",
     PRIOR: "more than nine tenths of its information is the prior",
     BOUND: "it ended at a bound, so there is no interval",
     OPEN: "the data do not determine it: its 95 % half-width would exceed its own size; no interval",
 }
 WORDS = {
     OK: "determined",
+    SIGN: "sign open",
     PRIOR: "mostly prior",
     BOUND: "at its bound",
     OPEN: "not identifiable",
@@ -167,9 +171,10 @@ def tuned_parameters(
         elif found.open[i]:
             status = OPEN
         else:
-            status = PRIOR if found.prior_share[i] > MOSTLY else OK
+            holds_zero = abs(found.parameters[i]) <= 2.0 * float(errors[i])
+            status = PRIOR if found.prior_share[i] > MOSTLY else SIGN if holds_zero else OK
         u95 = None if status in (BOUND, OPEN) else 2.0 * float(errors[i])
-        share = float(found.prior_share[i]) if status in (OK, PRIOR) else 0.0
+        share = float(found.prior_share[i]) if status in (OK, SIGN, PRIOR) else 0.0
         out.append(TunedParameter(name, units[i], float(p.start[i]), float(found.parameters[i]), u95, share, status))
     return tuple(out)
 
@@ -189,6 +194,51 @@ def statements(p: Problem, found: Estimate) -> tuple[str, ...]:
     if int(np.isfinite(p.measured).sum()) <= len(p.start):
         out.append("There are no more measurements than parameters; the model cannot be judged.")
     return tuple(out)
+
+
+def driving(p: TunedParameter, source: str = "") -> Finding | None:
+    """That what is called damping drives its motion, for a parameter that is positive where it does; None where it damps.
+
+    Parameters
+    ----------
+    p : TunedParameter
+        Its value with the sign of the force along the motion.
+    source : str
+        Of the measurements.
+    """
+    if not p.after > 0.0:
+        return None
+    told = p.u95 is not None and p.after > p.u95
+    return Finding.of(
+        "tune.drives",
+        p.name,
+        Severity.WARN,
+        statistic=p.after,
+        case="told" if told else "open",
+        unit=p.unit,
+        source=source,
+    )
+
+
+def damps(place: Place, p: ParameterFile) -> bool:
+    """Whether a place holds the damping of a motion along itself: a coefficient such as Nr or Nr|r|, or such a term of a table."""
+    if place.kind == "coefficient":
+        d = derivative(place.key[0])
+        return bool(d.factors) and set(d.factors) == {_along(d.component)}
+    if place.kind == "term":
+        model = p.models[place.key[0]]
+        factors = model.terms[place.key[1]].factors
+        odd = sum(f.power for f in factors if not f.absolute) % 2 == 1
+        return (
+            model.response in COMPONENTS
+            and odd
+            and {f.variable.removesuffix("'") for f in factors} == {_along(model.response)}
+        )
+    return False
+
+
+def _along(component: str) -> str:
+    return MOTIONS[COMPONENTS.index(component)]
 
 
 def together_in_words(names: Sequence[str], change: Array, values: Array) -> str:

@@ -22,7 +22,7 @@ from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.marching import Ensemble
 from coeflab.motion.vehicle import Vehicle
-from coeflab.vehicle.force_law import open_places
+from coeflab.vehicle.force_law import sources_of
 from coeflab.vehicle.inertia import MEASURED, entry_of, stated_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import INDICES, stability_index
@@ -250,7 +250,7 @@ def drawn(
     deviations : (m, k) array
         In the units of the file.
     tables : bool
-        Whether fitted tables come before derivatives in the vehicle.
+        Whether fitted tables come first in the vehicle.
 
     Raises
     ------
@@ -267,7 +267,7 @@ def drawn(
         return Ensemble(vehicle, coefficients)
     ideal = None
     if parameters.added_mass is not None:
-        unspoken = open_places(parameters, tables)
+        unspoken = sources_of(parameters, tables).open_products()
         ideal = vehicle.law.ideal + np.array([np.where(unspoken, ideal_quadratics(c), 0.0) for c in change])
     return Ensemble(vehicle, coefficients, added=vehicle.added + change, ideal=ideal)
 

@@ -237,8 +237,8 @@ def _equations(huuv: Huuv) -> ComparedTable:
     return ComparedTable(
         "equations", "Equations 30 and 34 as corrected", tuple(rows), "equations 12, 28-34",
         (
-            f"Equation 12: C_m (beta) of the steady turns is {c['n1'] / (c['my'] - c['mx']):.3f} times m_y - m_x. The one is "
-            "fitted, the other chosen here, so that this is no comparison; it shows that C_m(beta) holds the Munk moment, see the errata.",
+            f"Equation 12: of C_m (beta) and the Munk moment that C_A adds the turns show the sum alone, n1 - (m_y - m_x) = "
+            f"{c['n1'] - (c['my'] - c['mx']):.3g} kg. m_x and m_y are chosen here: n1 moves as they do, and shows nothing of the Munk moment.",
             "Cylinders and plates of equations 28-32: coeflab added-mass BODY --method primitives:huuv.",
         ),
     )  # fmt: skip

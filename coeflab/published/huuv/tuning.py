@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
+from coeflab.core.texts import remark
 from coeflab.core.types import Array
 from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.motion.tune.output_error import Estimate, Problem, estimate, examine, problem
 from coeflab.motion.tune.tuning import (
     TunedQuantity,
     Tuning,
+    driving,
     moved_in_words,
     statements,
     together_in_words,
@@ -32,9 +35,10 @@ UNITS = {
 IN_WORDS = {
     "m": "mass m", "my": "added mass m_y", "arm": "thruster arm y_ct", "intercept": "thrust intercept",
     "d0": "drag C_D (constant)", "d2": "drag C_D (beta^2)", "s1": "side force C_S (beta)", "s3": "side force C_S (beta^3)",
-    "n1": "yaw moment C_m (beta)", "n3": "yaw moment C_m (beta^3)", "nr": "yaw damping M_mr (r)",
-    "nrr": "yaw damping M_mr (r|r|)",
+    "n1": "yaw moment C_m (beta)", "n3": "yaw moment C_m (beta^3)", "nr": "yaw rate term M_mr (r)",
+    "nrr": "yaw rate term M_mr (r|r|)",
 }  # fmt: skip
+DAMPING = ("nr", "nrr")  # the equations take them off: a negative one drives
 LEAST = {"d2": 20.0, "s3": 100.0, "n3": 30.0, "nr": 0.1, "nrr": 1.0}
 QUANTITIES = (("u", "m/s", 1.0), ("beta", "deg", 180.0 / np.pi), ("radius", "m", 1.0))
 ERRORS = {"matlab": (0.01, np.radians(0.3), 0.02), "tracker": (0.06, np.radians(1.1), 0.14)}
@@ -92,10 +96,17 @@ def tuned(huuv: Huuv, source: str, free: Sequence[str] = FREE, errors: Sequence[
     turns = huuv.turns[source]
     p = turning_problem(huuv, turns, errors or ERRORS[source], free, start_of(huuv))
     found = estimate(p)
+    parameters = tuned_parameters(free, [UNITS[n] for n in free], p, found)
+    drives = [
+        driving(replace(one, after=-one.after, name=IN_WORDS[one.name]), source)
+        for one in parameters
+        if one.name in DAMPING
+    ]
+    said = (*statements(p, found), *(remark(f) for f in drives if f is not None))
     return Tuning(
-        f"huuv_{source}", tuned_parameters(free, [UNITS[n] for n in free], p, found), found.correlation, found.covariance,
+        f"huuv_{source}", parameters, found.correlation, found.covariance,
         _quantities(p, found), tuple(together_in_words([IN_WORDS[n] for n in free], c, found.parameters) for c in found.undetermined),
-        found.singular, found.birge, found.freedom, found.converged, statements(p, found),
+        found.singular, found.birge, found.freedom, found.converged, said,
     )  # fmt: skip
 
 

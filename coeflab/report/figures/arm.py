@@ -38,9 +38,10 @@ from coeflab.report.figures.body_scene import (
     part_facets,
 )
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
 from coeflab.report.figures.series import STYLES
-from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text, text_width
+from coeflab.report.figures.svg import settings, sheet, svg_text, text_width
 
 TEMPLATE = Path(__file__).parents[1] / "formats" / "_html" / "arm.html"
 ALONG, AROUND = 10, 20  # facets of the hull that the page draws

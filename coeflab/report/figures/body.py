@@ -34,7 +34,8 @@ from coeflab.report.figures.body_scene import (
     part_facets,
     picture_surface,
 )
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])

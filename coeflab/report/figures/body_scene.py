@@ -23,7 +23,7 @@ from coeflab.bodies.mesh.meshing import form_surface
 from coeflab.bodies.mesh.solids import Surface, simplified, solid, surface
 from coeflab.bodies.shape import CLASSES, Box, Cylinder, Ellipsoid, Faceted, Form, Part, Parts, Plate, Turned
 from coeflab.core.types import Array
-from coeflab.report.figures.svg import COLOURS
+from coeflab.report.figures.palette import COLOURS
 
 AROUND, ALONG = 48, 24
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
 from coeflab.report.figures.series import (
     Style,
@@ -28,7 +30,7 @@ from coeflab.report.figures.series import (
     styles,
     tagged,
 )
-from coeflab.report.figures.svg import COLOURS, power_of_ten, settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.vehicle.reference import Comparison
 
@@ -76,16 +78,49 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
             figure, BOTTOM, TOP - BOTTOM, across=(0.0, reach * 1.06), up=(frame[0] * factor, frame[1] * factor),
             name_up=f"{name}{power}", name_across=across, most_up=5,
         )  # fmt: skip
-        _recommended(axes, sweep, published, factor)
-        found = []
-        for i, d in enumerate(drawn):
-            x = on_axis(sweep, d.window) + (0.0 if d.recommended else (i - 1.5) * reach * SIDESTEP)
-            _mark(axes, d, x, factor)
-            found.append(_inside(sweep, d, x, frame))
+        at = draw_forms(axes, sweep, published, factor)
+        found = [_inside(sweep, d, x, frame) for d, x in zip(drawn, at, strict=True)]
         panels = (numbers(axes, found, across, name, factor, "window"),)
         legend(figure, _handles(sweep, drawn, published))
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, _caption(sweep, published, frame), description, panels)
+
+
+def draw_forms(
+    axes: Axes,
+    sweep: Sweep,
+    published: tuple[Comparison, ...] = (),
+    factor: float = 1.0,
+    palette: Mapping[str, str] = COLOURS,
+) -> list[Array]:
+    """Every family in every window about the recommended value; where each of them stands along the axis.
+
+    Parameters
+    ----------
+    axes : Axes
+        With its limits up and down.
+    sweep : Sweep
+    published : tuple of Comparison
+    factor : float
+        Of the values.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    drawn = _drawn(sweep)
+    largest = max((float(d.window.max()) for d in drawn), default=0.0) or 1.0
+    reach = float(on_axis(sweep, np.array([largest]))[0])
+    _recommended(axes, sweep, published, factor, palette)
+    at = []
+    for i, d in enumerate(drawn):
+        x = on_axis(sweep, d.window) + (0.0 if d.recommended else (i - 1.5) * reach * SIDESTEP)
+        _mark(axes, d, x, factor, palette)
+        at.append(x)
+    return at
+
+
+def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[float, float]:
+    """Range of values that `draw_forms` shows."""
+    return _frame(sweep, published)
 
 
 def _drawn(sweep: Sweep) -> list[_Drawn]:
@@ -129,16 +164,19 @@ def _half(e: Estimate) -> float:
     return e.half_hc2 if np.isfinite(e.half_hc2) else 0.0
 
 
-def _recommended(axes: Axes, sweep: Sweep, published: tuple[Comparison, ...], factor: float) -> None:
+def _recommended(
+    axes: Axes, sweep: Sweep, published: tuple[Comparison, ...], factor: float, palette: Mapping[str, str]
+) -> None:
     if sweep.value is not None and sweep.u95 is not None:
         low, high = ((sweep.value + side * sweep.u95) * factor for side in (-1.0, 1.0))
-        axes.axhspan(low, high, color=COLOURS["band"], alpha=0.35, linewidth=0)
-        axes.axhline(sweep.value * factor, color=COLOURS["ink"], linewidth=0.9)
+        axes.axhspan(low, high, color=palette["band"], alpha=0.35, linewidth=0)
+        axes.axhline(sweep.value * factor, color=palette["ink"], linewidth=0.9)
     for c in published:
-        axes.axhline(c.published * factor, color=COLOURS["ink"], linewidth=1.1, linestyle=(0, (1.0, 2.0)))
+        axes.axhline(c.published * factor, color=palette["ink"], linewidth=1.1, linestyle=(0, (1.0, 2.0)))
 
 
-def _mark(axes: Axes, d: _Drawn, x: Array, factor: float) -> None:
+def _mark(axes: Axes, d: _Drawn, x: Array, factor: float, palette: Mapping[str, str] = COLOURS) -> None:
+    d = replace(d, style=replace(d.style, colour=recoloured(d.style.colour, palette)))
     low, high = axes.get_ylim()
     y, half = d.value * factor, d.half * factor
     seen, inside = (y - half <= high) & (y + half >= low), (y >= low) & (y <= high)

@@ -14,9 +14,10 @@ from coeflab.motion.glider.glider import Glider
 from coeflab.motion.glider.motion import glide
 from coeflab.report.document import Figure
 from coeflab.report.figures import series as plotted
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, LEGEND_ROW, Range, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, Style, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 FIELD, TALL, ROOM = 104.0, 164.0, 13.0

@@ -14,9 +14,10 @@ from coeflab.motion.identify.identification import Identified, IdentifiedTerm, O
 from coeflab.motion.identify.thruster import BenchTest
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import numbers, points
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 WIDTH, LEFT, MIDDLE, RIGHT = 340.0, 46.0, 14.0, 12.0

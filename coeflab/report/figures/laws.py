@@ -12,9 +12,10 @@ from matplotlib.lines import Line2D
 
 from coeflab.core.types import Array, brief, locked
 from coeflab.report.document import Figure, Panel
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, LEFT, LEGEND_ROW, RIGHT, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, Style, curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 
 SCALED = 26.0
 DOWNWARDS = ("depth", "down")

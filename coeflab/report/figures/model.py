@@ -24,10 +24,11 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.report.document import Figure, Panel, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.surface import curve_figure, is_surface, surface_figure
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,
@@ -97,6 +98,41 @@ def _alone(model: FittedModel, columns: Mapping[str, Array], variable: str) -> N
     return rows
 
 
+def draw_along(
+    axes: Axes, model: FittedModel, variable: str, factor: float = 1.0, palette: Mapping[str, str] = COLOURS
+) -> list[Any]:
+    """A law along one variable with the others at rest: band, curve, points, and those set aside.
+
+    Parameters
+    ----------
+    axes : Axes
+    model : FittedModel
+    variable : str
+        Of `along`.
+    factor : float
+        Of the response.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    mine, aside = _alone(model, model.x, variable), model.set_aside
+    fine = np.linspace(float(model.x[variable][mine].min()), float(model.x[variable][mine].max()), FINE)
+    columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
+    values, half, _ = model.evaluate(columns | {variable: fine})
+    values, half = values * factor, np.nan_to_num(half) * factor
+    shown = shown_values(variable, fine)
+    band = axes.fill_between(
+        shown, values - half, values + half, color=palette["band"], alpha=0.4, linewidth=0, zorder=1
+    )
+    tagged(band, "band")
+    drawn = tagged(axes.plot(shown, values, color=palette["a"], linewidth=1.4, zorder=2.5), "fit")
+    x, y = shown_values(variable, model.x[variable][mine]), model.y[mine] * factor
+    marks = tagged(used(axes, x, y), "points")
+    marks[0].set_markerfacecolor(palette["ink"])
+    if aside is not None and np.any(out := _alone(model, aside.x, variable)):
+        tagged(hollow(axes, shown_values(variable, aside.x[variable][out]), aside.y[out] * factor), "aside")
+    return [*drawn, *marks]
+
+
 def _panel(
     figure: Drawing, model: FittedModel, variable: str, bottom: float, factor: float, name: tuple[str, str]
 ) -> Panel:
@@ -117,15 +153,8 @@ def _panel(
         up=limits(np.concatenate([y, values - half, values + half, beside]), 0.06) or (-1.0, 1.0), name_up=f"{name[0]}{name[1]}  {unit}",
         name_across=axis_name(variable, model), most_up=4,
     )  # fmt: skip
+    draw_along(axes, model, variable, factor)
     shown = shown_values(variable, fine)
-    band = axes.fill_between(
-        shown, values - half, values + half, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1
-    )
-    tagged(band, "band")
-    tagged(axes.plot(shown, values, color=COLOURS["a"], linewidth=1.4, zorder=2.5), "fit")
-    tagged(used(axes, x, y), "points")
-    if len(beside):
-        tagged(hollow(axes, at, beside), "aside")
     told = (
         points("points", "points", x, model.y[mine], [f"point {model.labels[i]}" for i in np.flatnonzero(mine)]),
         points("aside", "rejected or doubtful", at, beside / factor),

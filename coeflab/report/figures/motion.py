@@ -14,9 +14,10 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, LEFT, LEGEND_ROW, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 FLAT = 1e-9

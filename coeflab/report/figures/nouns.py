@@ -15,7 +15,7 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, MOTIONS
 from coeflab.report.document import Figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
-from coeflab.report.figures.svg import power_of_ten
+from coeflab.report.figures.palette import power_of_ten
 from coeflab.report.notation import as_users_wrote
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.force_law import motion_law

@@ -18,7 +18,8 @@ from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.report.document import Panel, Series
-from coeflab.report.figures.svg import COLOURS, POINTS
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS
 
 _AXIS_NAMES = {
     "v": "sideslip asin v'  [deg]",

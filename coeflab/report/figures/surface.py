@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.report.document import Axis, Figure, Layer, Scene, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legend, limits, panel, tick_texts, ticks
 from coeflab.report.figures.series import curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     BEYOND,
     axis_name,

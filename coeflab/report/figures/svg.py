@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from html import escape, unescape
@@ -29,22 +29,11 @@ from matplotlib.textpath import text_to_path
 from numpy.typing import ArrayLike
 
 from coeflab.report.document import Figure as Drawing
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.notation import drawn
 from coeflab.report.printable import visible
 
 POINTS = 72.0
-# Every colour of a drawing is one of these. The values are what a renderer without style sheets shows: dark on white,
-# the series from the palette of Okabe & Ito, darkened so that thin lines keep a contrast of 3 to 1.
-COLOURS = {
-    "ink": "#1c2126",
-    "muted": "#5d666f",
-    "rule": "#c9cfd5",
-    "band": "#9aa5b1",
-    "a": "#0067a8",
-    "b": "#c04f00",
-    "c": "#007a58",
-    "d": "#a3437f",
-}
 _FONT = "DejaVu Sans"
 _SETTINGS: dict[Any, object] = {
     "svg.fonttype": "none",
@@ -59,11 +48,37 @@ _SETTINGS: dict[Any, object] = {
     "legend.fontsize": 8.75,
     "path.simplify": False,
 }
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _DECIMALS = re.compile(r"-?\d+\.\d{3,}")
 _MARKED = re.compile(r' id="data-([a-z]+)=([^"]*)"')
 _LABELS = re.compile(r"(<text [^>]*>)([^<]*)(?=</text>)")
 _REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
+
+
+_OWN: dict[Any, object] = {}
+_COLOURS: dict[str, str] = {}
+
+
+@contextmanager
+def overridden(parameters: Mapping[Any, object], colours: Mapping[str, str]) -> Iterator[None]:
+    """Draw with other settings and colours, until left.
+
+    Parameters
+    ----------
+    parameters : mapping
+        Of Matplotlib, in the place of the report's.
+    colours : mapping of str to str
+        By names of `COLOURS`.
+    """
+    before = dict(_OWN), dict(_COLOURS)
+    _OWN.update(parameters)
+    _COLOURS.update(colours)
+    try:
+        yield
+    finally:
+        _OWN.clear()
+        _OWN.update(before[0])
+        _COLOURS.clear()
+        _COLOURS.update(before[1])
 
 
 @contextmanager
@@ -77,25 +92,8 @@ def settings() -> Iterator[None]:
         return
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update(_SETTINGS)
+        mpl.rcParams.update({**_SETTINGS, **_OWN})
         yield
-
-
-def power_of_ten(largest: float) -> tuple[float, str]:
-    """Factor that brings numbers of that size to 1 ... 1000, and its text for an axis label (``x 10^3``)."""
-    if not 0.0 < largest < float("inf"):
-        return 1.0, ""
-    exponent = 0
-    while largest * 10.0**exponent < 1.0 and exponent < 30:
-        exponent += 3
-    while largest * 10.0**exponent >= 10_000.0:
-        exponent -= 3
-    return 10.0**exponent, f" × 10{superscript(exponent)}" if exponent else ""
-
-
-def superscript(exponent: int) -> str:
-    """A whole number as an exponent."""
-    return str(exponent).translate(_SUPERSCRIPT)
 
 
 def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
@@ -127,7 +125,7 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
     text = _LABELS.sub(lambda m: m[1] + drawn(unescape(m[2])), text)
     text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
     for name, colour in COLOURS.items():
-        text = text.replace(colour, f"var(--fig-{name}, {colour})")
+        text = text.replace(colour, f"var(--fig-{name}, {_COLOURS.get(name, colour)})")
     text = _styled_once(_without_bare_groups(re.sub(r"\n\s*", "\n", text)))
     box = re.search(r'viewBox="[^"]*"', text)
     head = (

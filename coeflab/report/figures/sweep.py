@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,10 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legend, limits, panel
 from coeflab.report.figures.series import axis_name, curve, numbers, on_axis, points, tagged
-from coeflab.report.figures.svg import COLOURS, power_of_ten, settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
 
 RESIDUALS = 70.0
@@ -54,7 +56,7 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
             up=limits(ys * factor, 0.08) or (-1.0, 1.0), name_up=f"{sweep.component}'{power}",
         )  # fmt: skip
         fine = fine_curve(sweep) if sweep.value is not None else None
-        legend(figure, _points(main, sweep, left_out, factor) + _curves(main, sweep, fine, factor))
+        legend(figure, draw_points(main, sweep, factor) + draw_curves(main, sweep, factor))
         lower, left, below = _residuals(figure, sweep, across)
         panels = (
             numbers(main, _series(sweep, left_out, fine), axis_name(sweep), f"{sweep.component}'", factor),
@@ -93,44 +95,57 @@ def fine_curve(sweep: Sweep) -> Fine:
     return x, bent[0], bent[1]
 
 
-def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> list[Any]:
+def draw_points(axes: Axes, sweep: Sweep, factor: float = 1.0, palette: Mapping[str, str] = COLOURS) -> list[Any]:
+    """Points of a sweep, and crosses for those left out; returns what a legend shows.
+
+    Parameters
+    ----------
+    axes : Axes
+    sweep : Sweep
+    factor : float
+        Of the force.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    left_out = [p for p in sweep.left_out if np.isfinite(p.y)]
     x, y = on_axis(sweep, sweep.x), sweep.y * factor
     if sweep.se is not None:
         reach = 2.0 * sweep.se * factor
-        bars = strokes(axes, (x, x), (y - reach, y + reach), color=COLOURS["ink"], linewidth=0.8, zorder=3)
+        bars = strokes(axes, (x, x), (y - reach, y + reach), color=palette["ink"], linewidth=0.8, zorder=3)
         tagged(bars, "points")
     handles: list[Any] = axes.plot(
-        x, y, linestyle="none", marker="o", markersize=3.6, markerfacecolor="none", markeredgecolor=COLOURS["ink"],
+        x, y, linestyle="none", marker="o", markersize=3.6, markerfacecolor="none", markeredgecolor=palette["ink"],
         markeredgewidth=0.9, zorder=4, label="points" if sweep.se is None else "points, ± 2 standard errors",
     )  # fmt: skip
     tagged(handles, "points")
     if left_out:
         at = on_axis(sweep, np.array([p.x for p in left_out]))
         crosses = axes.plot(
-            at, [p.y * factor for p in left_out], linestyle="none", marker="x", markersize=5.0, color=COLOURS["ink"],
+            at, [p.y * factor for p in left_out], linestyle="none", marker="x", markersize=5.0, color=palette["ink"],
             markeredgewidth=1.1, zorder=4, label=f"left out ({len(left_out)})",
         )  # fmt: skip
         handles += tagged(crosses, "left")
     return handles
 
 
-def _curves(axes: Axes, sweep: Sweep, fine: Fine | None, factor: float) -> list[Any]:
+def draw_curves(axes: Axes, sweep: Sweep, factor: float = 1.0, palette: Mapping[str, str] = COLOURS) -> list[Any]:
+    """The recommended curve with its band, and the slope with U95, as `draw_points`; nothing without a value."""
     handles: list[Any] = []
-    if fine is None:
+    if sweep.value is None:
         return handles
-    x, y, half = fine
+    x, y, half = fine_curve(sweep)
     at = on_axis(sweep, x)
     handles += tagged(
-        axes.plot(at, y * factor, color=COLOURS["b"], linewidth=1.4, label="recommended curve", zorder=2.5), "curve"
+        axes.plot(at, y * factor, color=palette["b"], linewidth=1.4, label="recommended curve", zorder=2.5), "curve"
     )
     for side in (-1.0, 1.0):
         edge = (y + side * half) * factor
-        tagged(axes.plot(at, edge, color=COLOURS["b"], linewidth=0.6, linestyle=(0, (3.0, 2.0)), zorder=2.4), "curve")
+        tagged(axes.plot(at, edge, color=palette["b"], linewidth=0.6, linestyle=(0, (3.0, 2.0)), zorder=2.4), "curve")
     y, half = at_rest(sweep, x)
     kind = {"x": "slope at rest", "x2": "curvature at rest"}.get(sweep.target, "value at rest")
-    tagged(axes.plot(at, y * factor, color=COLOURS["ink"], linewidth=0.9, zorder=2), "rest")
+    tagged(axes.plot(at, y * factor, color=palette["ink"], linewidth=0.9, zorder=2), "rest")
     low, high = (y - half) * factor, (y + half) * factor
-    band = axes.fill_between(at, low, high, color=COLOURS["band"], alpha=0.35, linewidth=0, zorder=1)
+    band = axes.fill_between(at, low, high, color=palette["band"], alpha=0.35, linewidth=0, zorder=1)
     tagged(band, "rest")
     band.set_label(f"{kind}, band U95")
     return [*handles, band]

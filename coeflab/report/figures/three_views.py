@@ -21,7 +21,8 @@ from coeflab.core.types import Array
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import FRONT, SIDE, TOP, Sheet, rulers
 from coeflab.report.figures.body_scene import part_facets, picture_surface
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, sheet, svg_text
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS, settings, sheet, svg_text
 
 WIDTH, MARGIN, GAP = 720.0, 16.0, 26.0
 LEFT, BELOW, CAPTION, SIZES, KEY = 36.0, 26.0, 20.0, 24.0, 40.0
@@ -59,7 +60,7 @@ def three_views(body: Body) -> dict[str, bytes]:
     return {"svg": sheet([[Figure("views", svg, title, said, said)]], said), "png": png.getvalue()}
 
 
-def _surfaces(body: Body) -> Iterator[tuple[str, Surface]]:
+def surfaces_of(body: Body) -> Iterator[tuple[str, Surface]]:
     """Every piece with its name; plates are facets."""
     shape = body.require_shape()
     if isinstance(shape, Parts):
@@ -83,7 +84,7 @@ def _surfaces(body: Body) -> Iterator[tuple[str, Surface]]:
 
 
 def _drawn(body: Body) -> Drawing:
-    surfaces = list(_surfaces(body))
+    surfaces = list(surfaces_of(body))
     points = np.concatenate([vertices for _, (vertices, _) in surfaces])
     if not len(points):
         raise InputError(f"{body.name}, which shows nothing", "a shape")

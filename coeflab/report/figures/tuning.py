@@ -15,9 +15,10 @@ from coeflab.core.types import Array, brief
 from coeflab.core.wording import listed
 from coeflab.motion.tune.tuning import TunedQuantity, Tuning
 from coeflab.report.document import Figure, Panel, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
 TALL, APART, NAMED, HEAD, ROW = 118.0, 26.0, 40.0, 12.0, 12.2

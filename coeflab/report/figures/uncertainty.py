@@ -15,9 +15,10 @@ from coeflab.core.types import Array
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, WIDTH, drawing, legend, panel, tick_texts, ticks
 from coeflab.report.figures.series import numbers, points
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.tables.uncertainty import SMALL, shown_unit
 

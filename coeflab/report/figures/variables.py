@@ -7,16 +7,18 @@ What captions of fitted models say.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from coeflab.core.table import number
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, chance
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, primed
-from coeflab.report.figures.svg import COLOURS, power_of_ten, superscript
+from coeflab.report.figures.palette import COLOURS, power_of_ten, superscript
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _NAMES = {
     "alpha": "angle of attack",

@@ -19,9 +19,10 @@ from coeflab.core.types import Array
 from coeflab.report import acceptance as acceptance_tables
 from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable, overview, share
 from coeflab.report.document import Document, Figure, Panel, Section, digest_of, published_reproduction
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
 from coeflab.report.figures.series import numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.first_page import answer
 from coeflab.report.sections.conventions import published_conventions
 

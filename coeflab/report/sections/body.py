@@ -31,7 +31,8 @@ from coeflab.law.coefficient import CoefficientSet
 from coeflab.report.document import Axis, Figure, Layer, Scene, Section
 from coeflab.report.figures.body import MARGIN, SIDE, TOP, Sheet, View, body_figure
 from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poor, part_facets, picture_surface
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.sections.campaign import filled
 from coeflab.report.tables import added_mass as tables

@@ -26,9 +26,10 @@ from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.incidence import ACROSS, incidence_figure
 from coeflab.report.figures.model import distinct, model_figures, over_what
+from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import numbers, points
-from coeflab.report.figures.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
 from coeflab.report.sections.coefficients import in_one_line

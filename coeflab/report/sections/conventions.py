@@ -14,7 +14,8 @@ from matplotlib.patches import Arc, FancyArrowPatch, Polygon
 
 from coeflab.core.types import Array
 from coeflab.report.document import Figure, Section
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.study.study import Study
 
 WIDTH, HEIGHT = 340.0, 248.0

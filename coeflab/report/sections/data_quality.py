@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure as Drawing
 
 from coeflab.report.document import Figure, Section
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import tick_texts, ticks
-from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.tables import data_quality as quality
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable

@@ -83,6 +83,9 @@ def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
     if hull is not None:
         along, about = np.diag(hull.matrix)[:3], np.diag(hull.matrix)[3:]
         rows += [("added mass along x, y, z", _three(along), "kg"), ("added inertia x, y, z", _three(about), "kg m^2")]
+    if hull is not None and hull.u95 is not None:
+        half = np.diag(hull.u95)
+        rows += [("U95 of added mass", _three(half[:3]), "kg"), ("U95 of added inertia", _three(half[3:]), "kg m^2")]
     by = f"; added mass by {hull.method}" if hull is not None else ""
     notes = (
         f"points from the {datum}, FRD; inertia about {_three(shape.weighed.body.reference_point)} m{by}",

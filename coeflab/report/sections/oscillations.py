@@ -17,9 +17,10 @@ from coeflab.fits.results.oscillation import Oscillation, describing
 from coeflab.fits.statistics.harmonics import AtZero
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section, Series
+from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
-from coeflab.report.figures.svg import COLOURS, power_of_ten, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables import oscillations as tables
 from coeflab.study.study import Study
 

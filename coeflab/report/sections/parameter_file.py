@@ -26,9 +26,10 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section, Series
 from coeflab.report.figures.motion import motion_figures
+from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, tagged
-from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
@@ -358,10 +359,26 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
 
 def without_u95(study: Study) -> str:
     """Why the quantities of the manoeuvres have no U95, or that there is none to have one."""
+    if drawn := _drawn(study):
+        names = list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres))
+        single = [n for n in names if n not in drawn]
+        rest = f" The {listed(single)} is computed once: coeflab uncertainty FILE gives intervals." if single else ""
+        members = ", ".join(f"{name} {count}" for name, count in drawn.items())
+        return f"The 95 % ranges on the first page are of draws of the coefficients: {members}.{rest}"
     if any(f.value is not None for made in study.manoeuvres for f in made.figures):
         return WITHOUT_U95
-    names = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
-    return f"{names[:1].upper()}{names[1:]} could not be computed, so there is no U95."
+    every = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
+    return f"{every[:1].upper()}{every[1:]} could not be computed, so there is no U95."
+
+
+def _drawn(study: Study) -> dict[str, int]:
+    """Manoeuvres of a vehicle from its shape that were repeated with random coefficients, and how often."""
+    carried = study.shape.carried if study.shape is not None else ()
+    return {
+        c.question.manoeuvre.replace("_", " "): c.question.members
+        for c in carried
+        if any(s.low is not None for s in c.spreads)
+    }
 
 
 def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:

@@ -16,7 +16,8 @@ import numpy as np
 
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
-from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
+from coeflab.core.texts import known, remark
+from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -47,6 +48,8 @@ def forces(loss: Loss) -> Table:
         f"0: below {LOSSLESS:g} of the largest value.",
         *loss.controls,
     ]
+    if (rare := in_rare_states(loss)) and loss.rare is not None:
+        notes.append(rare)
     if loss.accelerations is not None:
         notes.append(
             "du/dt to dr/dt: accelerations of the file's rigid body in these states, and from rest under a force along each axis as "
@@ -67,6 +70,15 @@ def forces(loss: Loss) -> Table:
     return Table(
         f"Force law of {loss.target} against the parameter file", headers, tuple(rows), tuple(notes), frozenset({0, 1})
     )
+
+
+def in_rare_states(loss: Loss) -> str:
+    """The differences astern, broadside and at rest, in words; empty where there is none."""
+    if loss.rare is None or not loss.rare.furthest[1] > LOSSLESS:
+        return ""
+    each = zip(COMPONENTS, loss.rare.worst, loss.rare.relative, strict=True)
+    said = [f"{c} {number(w, 3)} {'N*m' if c in 'KMN' else 'N'} ({percent(s)})" for c, w, s in each if s > LOSSLESS]
+    return f"{RARE}, which the rows above do not hold, the largest differences are {', '.join(said)}"
 
 
 def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True) -> Table:
@@ -138,6 +150,9 @@ def in_short(loss: Loss) -> str:
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
+    if loss.rare is not None and loss.rare.furthest[1] > LOSSLESS and loss.furthest[1] <= LOSSLESS:
+        i, share = loss.rare.furthest
+        said.append(f"{COMPONENTS[i]} differs {RARE} by up to {percent(share)} of its largest")
     for i, share, names in found:
         if share > LOSSLESS or not said:
             by = percent(share).replace(">", "more than") if 100.0 * share > MOST_APART else f"up to {percent(share)}"
@@ -199,6 +214,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         if loss.lossless
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
+    lines += [f"Of the parameter file, {f.severity}: {remark(f)}" for f in parameters.findings]
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
     own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
@@ -223,8 +239,10 @@ def _aligned(table: Table) -> list[str]:
 
 
 def contents(parameters: ParameterFile, kind: str) -> Table:
-    """Every coefficient, primed and in SI."""
+    """Every coefficient, primed and in SI; findings of the file are printed with the checks."""
     p = parameters
+    noted = tuple(remark(f) for f in p.findings if not known(f))
+    remarks = tuple(dict.fromkeys((*p.provenance.notes, *noted)))
     rows = tuple(
         (c.symbol, with_u95(c.value, c.u95)[0], number(c.value_si), c.unit_si, with_u95(c.value, c.u95)[1], c.status.replace("_", " "),
          c.origin, c.estimator or ABSENT)
@@ -243,7 +261,7 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
             if is_later(p.schema_version, SCHEMA_VERSION)
             else ()
         ),
-        *p.remarks,
+        *remarks,
         *(
             ("values are totals: -C_A(nu) nu of the added mass is in them",)
             if p.added_mass is not None and kind != "coeflab"
@@ -306,6 +324,8 @@ JSON Schema. A program that reads these files should refuse a first digit of `sc
 - Primes: `Y' = Y / (1/2 rho U^2 L^2)`, `N' = N / (1/2 rho U^2 L^3)`, `v' = v/U`, `r' = r L/U`.
 - Values are totals: a measured velocity derivative contains its potential part, an entry of `-C_A(nu) nu`. A simulator that
   adds `C_A(nu) nu` itself must be given `value - potential`.
+- The force is a sum over coefficients, fitted tables, controls and the ideal fluid, each of the products of variables that it speaks
+  of: [which source speaks of what](force_law.md).
 - A fitted table in `models` holds whole forces, potential part and all, and a simulation leaves out the products of
   `-C_A(nu) nu` that it speaks of. Where only viscous parts are tabulated, `contains_potential` is false.
 - U95 is a 95 % half-width, twice the standard uncertainty of the covariances.

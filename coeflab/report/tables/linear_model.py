@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from coeflab.core.table import Table, folded, number
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import one_line
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
@@ -87,10 +88,10 @@ def files(model: LinearModel) -> dict[str, bytes]:
 
 def _csv(model: LinearModel, matrix: np.ndarray, columns: Sequence[Variable]) -> bytes:
     """Rates by row, variables by column, units with both; numbers as they read back."""
-    lines = [",".join(("rate", *(f"{c.name} [{c.unit}]" for c in columns)))]
+    rows = [["rate", *(f"{c.name} [{c.unit}]" for c in columns)]]
     for state, unit, row in zip(model.states, model.rate_units, matrix.tolist(), strict=True):
-        lines.append(",".join((f"{state.name}_dot [{unit}]", *(repr(v + 0.0) for v in row))))
-    return ("\n".join(lines) + "\n").encode()
+        rows.append([f"{state.name}_dot [{unit}]", *(repr(v + 0.0) for v in row)])
+    return csv_text(rows).encode()
 
 
 def _m_file(model: LinearModel) -> str:

@@ -9,13 +9,13 @@ What was identified from motions as tables and as CSV.
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Sequence
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.types import Array
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide
@@ -91,10 +91,11 @@ def motion_csv(trajectory: Trajectory) -> bytes:
     """One row a time, seventeen digits at most, so that reading gives back the numbers."""
     named = columns(trajectory)
     whole = {"phase [-]", "outside [-]"}
-    lines = [",".join(named)]
-    for row in zip(*named.values(), strict=True):
-        lines.append(",".join(f"{int(v)}" if k in whole else repr(float(v)) for k, v in zip(named, row, strict=True)))
-    return ("\n".join(lines) + "\n").encode()
+    rows = [
+        [f"{int(v)}" if k in whole else repr(float(v)) for k, v in zip(named, row, strict=True)]
+        for row in zip(*named.values(), strict=True)
+    ]
+    return csv_text([list(named), *rows]).encode()
 
 
 def motion_parquet(trajectory: Trajectory) -> bytes:
@@ -105,8 +106,6 @@ def motion_parquet(trajectory: Trajectory) -> bytes:
     ImportError
         No pyarrow.
     """
-    import io
-
     import pandas as pd
 
     buffer = io.BytesIO()
@@ -367,17 +366,15 @@ def balances(found: Identified) -> Table:
 
 def terms_csv(found: Identified) -> bytes:
     """One row a candidate; blank where there is no number."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(
+    rows = [
         ["term", "identified [-]", "low [-]", "high [-]", "inclusion frequency [-]", "file [-]", "U95 of file [-]",
          "source", "verdict", "outcome", "why"]
-    )  # fmt: skip
+    ]  # fmt: skip
     for t in found.terms:
         numbers = (t.value, t.low, t.high, t.frequency, t.file_value, t.file_u95)
         cells = ["" if x is None else f"{x:.9g}" for x in numbers]
-        writer.writerow([t.symbol, *cells, t.file_source, t.verdict.value, t.outcome.value, t.why])
-    return out.getvalue().encode()
+        rows.append([t.symbol, *cells, t.file_source, t.verdict.value, t.outcome.value, t.why])
+    return csv_text(rows).encode()
 
 
 def _interval(t: IdentifiedTerm) -> str:

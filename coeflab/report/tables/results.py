@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from coeflab.core.axes import point_in_words
+from coeflab.core.finding import Finding
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -21,6 +22,7 @@ from coeflab.core.table import (
     probability,
     with_u95,
 )
+from coeflab.core.texts import remark, words
 from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.results.fit_result import Sweep
@@ -34,12 +36,11 @@ from coeflab.report.tables.sources import halves
 from coeflab.study.study import Study
 from coeflab.study.towed import STATES
 from coeflab.study.validation import WIDE
+from coeflab.tables.assumptions import CODE, depends
 from coeflab.tables.force_table import Exclusion, ForceTable
-from coeflab.tables.to_frd import ASSUMED_POINT
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 NO_DATA, NO_VALUE = "no data", "no value"
-ASSUMED = {"alpha": "Zw", "beta": "Yv"}
 NO_WORK = "none"  # as a citation
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"
@@ -56,11 +57,22 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     """
     chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
     made = noun_tables.coefficients(chosen, covers=covers(study, chosen))
-    assumed = {(t.campaign, a): None for t in study.tables for a in t.assumed if campaign in (None, t.campaign)}
+    flags = [assumed_of(study, c) for c in chosen]
+    rows = tuple((f"{row[0]}{FLAG}", *row[1:]) if found else row for row, found in zip(made.rows, flags, strict=True))
     said = tuple(
-        f"{c}: the sign of {a} is assumed, so that {ASSUMED[a]}' < 0; no source states it." for c, a in assumed
+        f"{FLAG.strip()} {f.subject}: {words(f).statement}." for f in dict.fromkeys(f for some in flags for f in some)
     )
-    return Table(made.title, made.headers, made.rows, (*said, *made.notes), made.left)
+    return Table(made.title, made.headers, rows, (*said, *made.notes), made.left)
+
+
+FLAG = " *"  # behind a coefficient that hangs on something which no source states
+
+
+def assumed_of(study: Study, c: Coefficient) -> tuple[Finding, ...]:
+    """What a coefficient of a study hangs on that no source states."""
+    fits = [f for f in study.fits if f.campaign == c.campaign and c.value is not None]
+    found = dict.fromkeys(one for f in fits for one in f.findings if one.code == CODE)
+    return tuple(f for f in found if primed(c.symbol) in f["symbols"] and depends(f, c.symbol, c.table))
 
 
 # What a table of coefficients does without where a line is too narrow, the first one first.
@@ -182,7 +194,7 @@ def straight_runs(found: StraightRuns) -> Table:
 
 
 def primed_about(study: Study) -> str:
-    """By which length the coefficients are primed, about which point, and where rotating tables are assumed not to drift."""
+    """By which length the coefficients are primed, and about which point."""
     by: dict[str, None] = {}
     for f in study.fits:
         c = f.coefficients
@@ -191,20 +203,7 @@ def primed_about(study: Study) -> str:
         point = point_in_words(c.reference_point, c.datum)
         by[f"{c.scaling.length_name} = {c.scaling.length:.5g} m, about {point}"] = None
     lines = [f"Primed by {'; by '.join(by)}."] if by else []
-    return " ".join([*lines, *halves(study), *drift_assumed(study)])
-
-
-def drift_assumed(study: Study) -> tuple[str, ...]:
-    """Of tables that turn and state no arm point, where their velocities are taken to be."""
-    found: dict[str, list[str]] = {}
-    for t in study.tables:
-        if t.arm_point is None and {"q", "r"} & set(t.varies):
-            own = t.reference_point if t.measured_about is None else t.measured_about
-            what = "drift is zero at" if ASSUMED_POINT in t.notes else "U and velocities are those of"
-            found.setdefault(f"{what} {point_in_words(own, t.datum)}", []).append(t.name)
-    return tuple(
-        f"{listed(names)}: {place}, the reference point (assumed: no arm_point)." for place, names in found.items()
-    )
+    return " ".join([*lines, *halves(study)])
 
 
 def lost_by_move(study: Study) -> tuple[str, ...]:
@@ -309,11 +308,14 @@ def side_by_side(study: Study) -> Table:
 
 def _published_in(r: Reference, ours: Collection[str]) -> str:
     """What a published column is, where it is printed and which body it is about."""
+    inferred = [remark(f) for f in r.assumed]
     if r.relation is Relation.QUOTED:
         digits = "The first page has the digits of the test report itself."
-        return f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits} {r.note}".strip()
+        return " ".join(
+            filter(None, (f"{r.name}, as quoted: {_printed_in(r)}. Body: {r.body}. {digits}", r.note, *inferred))
+        )
     another = "by another method for the same body" if r.body in ours else "for another body"
-    return f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}. {r.note}".strip()
+    return " ".join(filter(None, (f"{r.name}: {another}, {r.body}. Source: {_printed_in(r)}.", r.note, *inferred)))
 
 
 def _printed_in(r: Reference) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.uncertainty.budget import COUPLED, Budget
@@ -149,10 +150,10 @@ def _narrower(share: float) -> str:
 
 def members_csv(carried: Carried) -> bytes:
     """One row a member: deviations of the coefficients in the file's units, and figures in SI; empty where it has none."""
-    lines = [",".join((*(f"d {s}" for s in carried.varied.symbols), *(f"{n}" for n in carried.names)))]
+    rows = [[*(f"d {s}" for s in carried.varied.symbols), *(f"{n}" for n in carried.names)]]
     for row, found in zip(carried.deviations, carried.values, strict=True):
-        lines.append(",".join([*map(repr, row.tolist()), *("" if np.isnan(v) else repr(v) for v in found.tolist())]))
-    return ("\n".join(lines) + "\n").encode()
+        rows.append([*map(repr, row.tolist()), *("" if np.isnan(v) else repr(v) for v in found.tolist())])
+    return csv_text(rows).encode()
 
 
 UNITS = {"angle": "rad", "reference point": "m"}

@@ -6,24 +6,25 @@ A table is cut into sweeps, rows in which one variable alone changes, and every 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import Check, number
+from coeflab.core.table import Check, as_check, number
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
 from coeflab.fits.statistics import data_gate, origin_slope
-from coeflab.fits.statistics.data_gate import FEWEST, Parity, Screened
+from coeflab.fits.statistics.data_gate import FEWEST, Gate, Parity, Screened
 from coeflab.fits.statistics.slopes import rest_and_curvature
-from coeflab.law.symbols import LINEAR, MOMENTS, MOTIONS, PORT_STARBOARD, primed
-from coeflab.law.transforms import incidence
+from coeflab.law.symbols import MOMENTS, PORT_STARBOARD, primed
+from coeflab.study.exchanged_rows import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
 from coeflab.study.study import Study
+from coeflab.study.table_sweeps import Sweep, ahead_counts, setting_in_words, sweeps_of
 from coeflab.tables.force_table import ForceTable
 
 summary = "every reading predicted from the others of its sweep; rows that decide a derivative; pasted rows"
@@ -32,32 +33,13 @@ citations = ("ittc_uncertainty",)
 # Share of clean campaigns in which a reading may fail, and in which a row may fail by all its components together.
 LEVEL, SHARED = 0.02, 0.005
 AHEAD = 0.02  # of the speed
-SAME = 0.006  # rad or primed: settings that count as one, 0.34 degrees
 ZEROS = 1e-9  # of the largest primed force or moment: readings below it are numerical zeros
 OPPOSITE = 0.05  # of what is expected: a reading so near to its opposite has the other sign
 LARGEST_SWEEP = 200
 SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("q", "ZM"), "p": ("p", "K"),
           "dr": ("dr", "YNK"), "ds": ("ds", "ZM"), "db": ("db", "ZM")}  # fmt: skip
-LATERAL = ("beta", "v", "r", "p", "dr")
 EVEN = {"beta": "v", "alpha": "w", "r": "r", "q": "q"}
 MOST_LINES, MIRRORED = 12, 2
-ANGLE_OF = {"beta": "asin(v/U)", "alpha": "alpha"}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Sweep:
-    """Rows of a table in which one variable changes; ``still``: all others are at rest."""
-
-    variable: str
-    rows: NDArray[np.intp]
-    x: Array
-    still: bool
-    lateral: bool
-
-    def parity(self, component: str) -> Parity:
-        if not self.lateral or self.variable not in LATERAL:
-            return Parity.ANY
-        return Parity.ODD if component in PORT_STARBOARD else Parity.EVEN
 
 
 @dataclass(slots=True)
@@ -70,53 +52,6 @@ class _Row:
     comments: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     used: list[str] = field(default_factory=list)
-
-
-def _levels(x: Array) -> NDArray[np.intp]:
-    """Labels of settings that agree; sorted neighbours within `SAME` of the first."""
-    order = np.argsort(x, kind="stable")
-    labels, label, start = np.empty(len(x), dtype=np.intp), -1, -np.inf
-    for i in order:
-        if x[i] - start > SAME:
-            label, start = label + 1, x[i]
-        labels[i] = label
-    return labels
-
-
-def _ahead_counts(table: ForceTable) -> bool:
-    """Whether the rows run at their speed U; not so in tables of damping about a state of rest."""
-    total = np.sqrt(np.sum([np.asarray(table.motion[m]) ** 2 for m in LINEAR], axis=0))
-    return bool(np.allclose(total, table.speed, rtol=0.05))
-
-
-def _settings(table: ForceTable) -> dict[str, Array]:
-    """Variables of the rows: angles in radians, rates primed, speed over the largest."""
-    length = table.scaling.length
-    if not _ahead_counts(table):
-        return {m: np.asarray(table.primed_motion(m, length)) for m in MOTIONS}
-    alpha, beta = incidence(*(np.asarray(table.motion[m]) for m in LINEAR))
-    out = {"alpha": alpha, "beta": beta} | {m: table.primed_motion(m, length) for m in "pqr"}
-    out |= {c: np.asarray(a) for c, a in table.controls.items()}
-    return out | {"speed": np.log(table.speed)}
-
-
-def _sweeps(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[_Sweep]:
-    settings = _settings(table)
-    labels = np.column_stack([_levels(x) for x in settings.values()])
-    names = list(settings)
-    for k, name in enumerate(names):
-        if len(np.unique(labels[kept, k])) < 3:
-            continue
-        others = np.delete(labels, k, axis=1)
-        for group in np.unique(others[kept], axis=0):
-            rows = np.flatnonzero(kept & (others == group).all(1))
-            x = settings[name][rows]
-            x = table.speed[rows] if name == "speed" else np.sin(x) if name in ("alpha", "beta") else x
-            rest = {
-                n: float(np.abs(settings[n][rows]).max(initial=0.0)) <= SAME for n in names if n not in (name, "speed")
-            }
-            lateral = all(still for n, still in rest.items() if n in LATERAL)
-            yield _Sweep(name, rows, x, all(rest.values()), lateral)
 
 
 def _copies(table: ForceTable) -> NDArray[np.bool_]:
@@ -137,10 +72,11 @@ def _about_own(table: ForceTable) -> ForceTable:
 class _Cell:
     """One reading as its best sweep sees it."""
 
-    sweep: _Sweep
+    sweep: Sweep
     at: int
     seen: Screened
     parity: Parity
+    gate: Gate | None = None
 
 
 def _largest(table: ForceTable) -> dict[str, float]:
@@ -154,7 +90,7 @@ def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[
     cells: dict[tuple[int, str], _Cell] = {}
     length = table.scaling.length
     zero = ZEROS * max(_largest(table).values(), default=0.0)
-    for sweep in _sweeps(table, kept):
+    for sweep in sweeps_of(table, kept):
         for component, usable in table.usable.items():
             inside = usable[sweep.rows]
             x = np.ascontiguousarray(sweep.x[inside], dtype=float)
@@ -168,15 +104,13 @@ def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[
             y = table.primed_force(component, length)[rows]
             if np.abs(y).max() <= zero:
                 continue
-            if len(rows) > LARGEST_SWEEP:
-                seen = data_gate.screen_many(x, y, limit)
-            else:
-                seen = data_gate.screen(data_gate.prepare(x, parity, variance), y, parity, limit)
+            gate = None if len(rows) > LARGEST_SWEEP else data_gate.prepare(x, parity, variance)
+            seen = data_gate.screen_many(x, y, limit) if gate is None else data_gate.screen(gate, y, parity, limit)
             for at, row in enumerate(rows):
                 best = cells.get((int(row), component))
                 if best is None or seen.scatter[at] < best.seen.scatter[best.at]:
-                    here = _Sweep(sweep.variable, rows, x, sweep.still, sweep.lateral)
-                    cells[int(row), component] = _Cell(here, at, seen, parity)
+                    here = Sweep(sweep.variable, rows, x, sweep.still, sweep.lateral)
+                    cells[int(row), component] = _Cell(here, at, seen, parity, gate)
     return cells
 
 
@@ -265,12 +199,12 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
         strange = data_gate.strange_settings(first.x, y, scatter, signs)
         for at, other in strange.items():
             said = rows.setdefault(int(first.rows[at]), _Row())
-            said.cells.append(f"{_setting(name, first.x[at])} is isolated")
+            said.cells.append(f"{setting_in_words(name, first.x[at])} is isolated")
             said.components += [c for c in by_component if c not in said.components]
             if other is not None:
-                partner, mirror = _setting(name, first.x[other]), _setting(name, -first.x[other])
+                partner, mirror = setting_in_words(name, first.x[other]), setting_in_words(name, -first.x[other])
                 said.comments.append(
-                    f"{mirror} instead of {_setting(name, first.x[at])} makes it the image of {partner}."
+                    f"{mirror} instead of {setting_in_words(name, first.x[at])} makes it the image of {partner}."
                 )
         p = data_gate.wrong_setting(first.x, y - expected, expected, scatter, probability)
         for at, row in enumerate(first.rows):
@@ -287,16 +221,33 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
                 suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter)
                 if suits is not None:
                     rows[int(row)].comments.append(
-                        f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} would fit all components."
+                        f"{setting_in_words(name, suits)} instead of {setting_in_words(name, first.x[at])} would fit all components."
                     )
 
 
-def _setting(name: str, x: float) -> str:
-    if name in ("alpha", "beta"):
-        return f"{ANGLE_OF[name]} = {np.degrees(np.arcsin(np.clip(x, -1.0, 1.0))):.1f} deg"
-    if name in ("dr", "ds", "db"):
-        return f"{name} {np.degrees(x):.1f} deg"
-    return f"{x:.3g} m/s" if name == "speed" else f"{name}' {x:.3g}"
+def _exchanged(
+    table: ForceTable,
+    about: ForceTable,
+    tables: Sequence[ForceTable],
+    length: float,
+    cells: Mapping[tuple[int, str], _Cell],
+) -> list[Exchanged]:
+    """Pairs of rows in each other's place, sweep by sweep; slopes as they stand and exchanged."""
+    by_sweep: dict[tuple[str, bytes], tuple[Sweep, dict[str, Gate]]] = {}
+    for (_, component), cell in cells.items():
+        if cell.gate is not None:
+            key = cell.sweep.variable, cell.sweep.rows.tobytes()
+            by_sweep.setdefault(key, (cell.sweep, {}))[1][component] = cell.gate
+    estimates: list[Slope] | None = None
+    out: list[Exchanged] = []
+    for sweep, gates in by_sweep.values():
+        for rows, gain, threshold in exchanged_rows(table, sweep, gates):
+            if estimates is None:
+                estimates = [
+                    Slope(e[2], e[3], *e[4:7], e[7].value, e[7].u95) for e in _estimates(about, tables, length)
+                ]
+            out.append(Exchanged.of(table, sweep, tuple(gates), rows, (gain, threshold), estimates))
+    return out
 
 
 def _slopes(
@@ -501,7 +452,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
     missed = 0
     for table, about in zip(own, turned, strict=True):
         again = _copies(table)
-        ahead = table.motion["u"] > AHEAD * table.speed if _ahead_counts(table) else np.ones(len(table), dtype=bool)
+        ahead = table.motion["u"] > AHEAD * table.speed if ahead_counts(table) else np.ones(len(table), dtype=bool)
         cells = _screened(table, ~again & ahead, LEVEL / readings)
         missed += sum(
             int(np.count_nonzero(mask & ~again)) - sum(c == component for _, c in cells)
@@ -514,6 +465,11 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
                 said.cells.append(_cell_text(table, component, row, cell))
                 said.components.append(component)
         _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
+        swapped = _exchanged(table, about, turned, length, cells)
+        for row in {row for one in swapped for row in one.rows}:
+            rows.pop(row, None)
+        out += [as_check("data_gate", one.finding) for one in swapped]
+        out += [as_check("data_gate", one) for one in grid_rows_elsewhere(table)]
         if len(rows) > MOST_LINES or (rows and len(table) > LARGEST_SWEEP):
             out.append(_together(about, turned, length, rows))
         else:

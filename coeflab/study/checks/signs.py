@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.study.study import Study
@@ -25,6 +25,7 @@ NEGATIVE = {
     "X0": "drag points aft",
 } | {f"{c}{m}dot": "water moves with the body" for c, m in zip(COMPONENTS, MOTIONS, strict=True)}
 SYMBOLS = {"alpha": "Zw", "beta": "Yv"}  # whose sign an angle was inferred from
+BY_PLACE = ("Nv", "Mw")  # signs that the place of a force on a known body shows
 TWINS = (("Nvdot", "Yrdot"), ("Mwdot", "Zqdot"))
 
 
@@ -41,7 +42,40 @@ def check(study: Study) -> Sequence[Check]:
             found = _signed(name, stated, f"Stated in {stated.estimator}. ")
             out += [] if found is None else [found]
         out += _twins(name, file)
-    return out
+    return [*out, *(as_check("signs", found) for found in unseen_columns(study))]
+
+
+def unseen_columns(study: Study) -> tuple[Finding, ...]:
+    """Columns whose sign, were it wrong all over, nothing would show: one note a campaign.
+
+    The slopes of a motion's own force have a sign that every hull has. Nv' and Mw' are seen where an added mass is known: a wrong one
+    moves the point where the force acts off the body (``coeflab params check``). Of others, such as Yr' or Kv', either sign is possible.
+    """
+    with_hull = {
+        c.campaign
+        for p in study.parameter_files.values()
+        if p.added_mass is not None
+        for c in p.coefficients
+        if c.campaign
+    }
+    sure = {
+        (c.campaign, c.symbol.removesuffix("'")) for c in study.coefficients
+        if c.origin == "fit" and c.value is not None and c.u95 is not None and abs(c.value) > c.u95
+    }  # fmt: skip
+    unseen: dict[str, list[str]] = {}
+    for t in study.tables:
+        for component in t.forces:
+            symbols = [f"{component}{v}" for v in t.varies if v in MOTIONS and (t.campaign, f"{component}{v}") in sure]
+            seen = any(s in NEGATIVE or (s in BY_PLACE and t.campaign in with_hull) for s in symbols)
+            if symbols and not seen:
+                unseen.setdefault(t.campaign, []).append(f"{component} of {t.name} ({', '.join(map(primed, symbols))})")
+    return tuple(
+        Finding.of(
+            "signs.column_not_seen", campaign, Severity.NOTE, columns=tuple(columns), hull="known" if campaign in with_hull else "unknown",
+            advice="" if campaign in with_hull else "hull under [[parameter_file]]",
+        )
+        for campaign, columns in unseen.items()
+    )  # fmt: skip
 
 
 def _inferred(c: Coefficient, angle: str) -> Check | None:

@@ -8,23 +8,16 @@ import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check, plus_minus
-from coeflab.core.types import Array
-from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.law.symbols import FORCES
 from coeflab.study.study import Study
-from coeflab.tables.campaign import CUTS, HALVES, Cut
+from coeflab.tables.campaign import CUTS, Cut
 from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.half_bodies import Along, forces_across, judged
 
-summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across the plane of a declared symmetry"
+summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across a plane of symmetry, in motions along it"
 citations = ("wahba1990",)
 ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
 NOTHING, LARGE = 1e-3, 0.05
-# Median over rows of a forbidden component, of the largest force or moment of the table. To half of a body the pressure on the other
-# side of the cut is missing, a force of the order of the others; meshes and balances of whole bodies stay well below a twentieth.
-FORCE, MOMENT = 0.05, 0.2
-LEVER = 0.02  # of the length: the largest moment is taken for the largest force at this lever at least
-NOISE = 4.0  # standard errors
 RULE = f"zero within U95; a note from {100 * NOTHING:g} % of the largest, a warning from {100 * LARGE:g} %"
 
 
@@ -58,14 +51,14 @@ def _motion(sweep: Sweep) -> str:
 
 
 def check(study: Study) -> Sequence[Check]:
-    """One finding per odd sweep of a port-starboard component; one per table with forces that a declared symmetry forbids."""
+    """One finding per odd sweep of a port-starboard component; one per table with forces across a plane of symmetry."""
     sweeps = [s for f in study.fits for s in f.sweeps]
     largest: dict[str, float] = {}
     for s in sweeps:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    found = [as_check("symmetry", f) for f in biases(sweeps)]
+    found = [as_check("symmetry", f) for f in biases([s for s in sweeps if not s.by_symmetry])]
     return [c for s in odd if (c := _intercept(s)) is not None] + found + across
 
 
@@ -88,48 +81,21 @@ def biases(sweeps: Sequence[Sweep]) -> tuple[Finding, ...]:
             Finding.of(
                 "symmetry.bias", s.table, Severity.WARN if share > LARGE else Severity.PASS, statistic=share, threshold=LARGE,
                 advice=f'matrix.pairs = ["{s.labels[least]}"]', component=f"{s.component}'", row=s.labels[least],
-                symbol=f"{s.symbol}'", of_value=of_value,
+                symbol=f"{s.symbol}'", of_value=of_value, judged="much" if share > LARGE else "little",
             )
         )  # fmt: skip
     return tuple(out)
 
 
 def _across(table: ForceTable, cut: Cut) -> Iterator[Check]:
-    if cut.symmetry not in table.symmetry:
+    """Forces across a plane in motions along it: of half of a body, or of one that is not as symmetric as it should be."""
+    declared = cut.symmetry in table.symmetry
+    if cut.symmetry not in judged(table.symmetry):
         return
     length = table.scaling.length
     moving = [table.primed_motion(m, length) for m in (*cut.across, *(c for c in cut.controls if c in table.controls))]
     along = np.all([np.abs(x) <= AT_REST for x in moving], axis=0)
     in_plane = abs(float(table.reference_point["xyz".index(cut.plane[0])])) <= AT_REST * length
-    force = _largest(table, [c for c in table.forces if c in FORCES])
-    moment = max(_largest(table, [c for c in table.forces if c not in FORCES]), LEVER * length * force)
-    found = {}
-    for c in (c for c in cut.lost if c in table.forces and (c in FORCES or in_plane)):
-        share = _beyond_noise(table, c, along & table.usable[c]) / max(force if c in FORCES else moment, 1e-300)
-        if share > (FORCE if c in FORCES else MOMENT):
-            found[c] = share
-    if found:
-        halves = " or ".join(f'"{half}"' for half, symmetry in HALVES.items() if symmetry == cut.symmetry)
-        rows = int(np.count_nonzero(along))
-        sizes = listed([f"{c} is {share:.0%}" for c, share in found.items()])
-        kind = "force" if set(found) <= set(FORCES) else "moment" if not set(found) & set(FORCES) else "force or moment"
-        yield Check(
-            "symmetry", table.name, Severity.WARN,
-            f"{sizes} of the largest {kind} in motions along {cut.plane} (median of {rows} row{'s' * (rows > 1)})",
-            f"none of {', '.join(cut.lost)}: the body is declared {cut.symmetry}",
-            f"Forces of half of the body? half_model = {halves} doubles {', '.join(cut.doubled)}, and {', '.join(cut.lost)} are left out. "
-            f"Else the body or the balance is not that symmetric.",
-        )  # fmt: skip
-
-
-def _largest(table: ForceTable, components: Sequence[str]) -> float:
-    return max((float(np.nanmax(np.abs(table.forces[c]), initial=0.0)) for c in components), default=0.0)
-
-
-def _beyond_noise(table: ForceTable, component: str, rows: Array) -> float:
-    """Median size of a component over rows; zero where there are none, or its standard errors explain it."""
-    values = np.abs(table.forces[component][rows])
-    middle = float(np.nanmedian(values)) if np.any(np.isfinite(values)) else 0.0
-    errors = table.errors.get(component)
-    noise = float(np.nanmedian(errors[rows])) if errors is not None and np.any(np.isfinite(errors[rows])) else 0.0
-    return middle if middle > NOISE * noise else 0.0
+    rows = Along(table.forces, table.errors, {c: along & mask for c, mask in table.usable.items()}, length)
+    if found := forces_across(table.name, cut, rows, declared=declared, in_plane=in_plane):
+        yield as_check("symmetry", found)

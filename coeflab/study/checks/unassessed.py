@@ -1,35 +1,17 @@
-"""What the printed U95 does not contain, so that nobody takes it for more than it is."""
+"""What the printed U95 does not contain, or only as a bound, so that nobody takes it for more than it is."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
+from coeflab.fits.uncertainty.budget import open_parts
 from coeflab.study.study import Study
 
-summary = "uncertainties that no part of U95 covers"
-citations = ("ittc_uncertainty",)
+summary = "uncertainties that no part of U95 covers, and grid studies that do not converge"
+citations = ("ittc_uncertainty", "eca2014")
 
 
 def check(study: Study) -> Sequence[Check]:
-    """One note per campaign that has budgets: what none of them assessed."""
-    out = []
-    for t in {t.campaign: t for t in study.tables}.values():
-        open_parts = dict.fromkeys(
-            u for b in study.budgets if t.campaign in b.campaign.split(", ") for u in b.unassessed
-        )
-        if not open_parts:
-            continue
-        stated = t.source.stated_uncertainty
-        out.append(
-            Check(
-                "unassessed",
-                t.campaign,
-                Severity.NOTE,
-                f"not in U95 of every coefficient: {', '.join(open_parts)}",
-                "a full budget",
-                f"The source states: {stated}." if stated else "The source states no uncertainty.",
-            )
-        )
-    return out
+    """One note per campaign that has budgets: what none of them assessed; one warning per grid study without a limit."""
+    return [as_check("unassessed", found) for found in open_parts(study.budgets)]

@@ -57,9 +57,10 @@ IMPORTERS = Registry("coeflab.importers", "importer", Importer, __name__)  # typ
 @brief
 @dataclass(frozen=True, slots=True)
 class PlannedTable:
-    """One ``[[table]]``: a campaign (a folder, a campaign.toml or one CSV of it), its fits and their options."""
+    """One ``[[table]]``: a campaign (a folder, a campaign.toml or one CSV of it), its fits, their options, the one speed wanted."""
 
     campaign: Path
     fits: tuple[str, ...]
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     only: str | None = None
+    speed: float | None = None

@@ -7,21 +7,28 @@ means has to be said by a person.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of
 from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
 
 summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
 reads = "monitor CSV of CFX (cfx5mondata)"
 citations = ("Ansys Inc. (2024): Ansys CFX-Solver Manager User's Guide, Release 2024 R2: cfx5mondata.",)
 
 _POINT = "USER POINT,"
+
+
+# Setups in CFX's command language stand in .ccl files and at the head of every .out file.
+_SYMMETRY = re.compile(r"(?i)^\s*Boundary Type\s*=\s*SYMMETRY\b")
+_BOUNDARY = re.compile(r"(?i)^\s*BOUNDARY\s*:\s*(.+)")
 
 
 def recognises(path: Path) -> bool:
@@ -76,6 +83,8 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name.removeprefix(_POINT), "", "" if j else "iteration") for j, name in enumerate(names)]
     dialect = {"format": "CFX monitor data", "delimiter": "comma", "decimal mark": "point"}
     remarks = (f"{file.name}: monitor data state no directions and no units",)
-    return Run(
-        path, path.stem, raw_table(monitor, path, columns, (file,), dialect, remarks=remarks), ended=ended, why=why
-    )
+    planes, texts = planes_beside(file, (".ccl", ".out", ".txt", ".log"), _SYMMETRY, _BOUNDARY)
+    half = stated_plane(planes)
+    stated = {HALF_MODEL: half} if half else {}
+    table = raw_table(monitor, path, columns, (file, *texts), dialect, stated, remarks)
+    return Run(path, path.stem, table, ended=ended, why=why)

@@ -19,9 +19,10 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import FORCE_TABLE, decoded, files_of, head, kind_of, lines_of, one_run
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import HALF_MODEL, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
 reads = "report files (.out) or a force report of Fluent"
@@ -96,7 +97,24 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name, *_meaning(name, j)) for j, name in enumerate(whole.names)]
     dialect = {"format": "Fluent report file", "delimiter": "blanks", "decimal mark": "point"}
     remarks = (f"{files[0].name}: report files state no directions and no units",)
-    return Run(path, path.stem, raw_table(whole, path, columns, files, dialect, remarks=remarks), ended=ended, why=why)
+    stated, texts = _half(path)
+    table = raw_table(whole, path, columns, (*files, *texts), dialect, stated, remarks)
+    return Run(path, path.stem, table, ended=ended, why=why)
+
+
+# Transcripts, journals, summaries of the setup and cases written as text name the type of every zone.
+_TEXTS = (".trn", ".jou", ".log", ".txt", ".cas", ".msh", ".sum", ".out")
+_SYMMETRY = re.compile(
+    r"(?i)\bsymmetry faces,?\s+zone\s+(?P<name>\d+)|\((?:39|45) \(\d+ symmetry (?P<zone>[^\s()]+)"
+    r"|\bzone-type\s+(?P<typed>\S+)\s+symmetry\b|^\s*(?P<listed>[\w.:-]+)\s+\d+\s+symmetry\s*$"
+)
+
+
+def _half(path: Path) -> tuple[dict[str, Stated], list[Path]]:
+    """Symmetry planes that texts of the same case name, and these texts."""
+    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY)
+    half = stated_plane(planes)
+    return ({HALF_MODEL: half}, texts) if half else ({}, [])
 
 
 def _meaning(name: str, j: int) -> tuple[str, str]:
@@ -248,7 +266,7 @@ def _force_report(path: Path) -> Run:
             f"{len(centres)} moment centres", "one moment centre", file=path,
             line=next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
         )  # fmt: skip
-    stated = {}
+    stated, texts = _half(path)
     if centres:
         line = next(t.line for t in tables if t.centre)
         stated["axes.reference_point"] = Stated(centres.pop(), f"{path.name}:{line}")
@@ -269,12 +287,12 @@ def _force_report(path: Path) -> Run:
         for zone, columns in per_zone.items()
     }
     net = next(zone for zone in made if zone.lower() == "net")
-    history = replace(made.pop(net), stated=stated, remarks=tuple(remarks))
+    history = replace(made.pop(net), stated=stated, remarks=tuple(remarks), files=(path, *texts))
     last = [c.values[-1] for c in history.columns]
     ended, why = (Ended.CRASHED, cut) if cut else (Ended.WHOLE, "")
     if not np.isfinite(last).all():
         ended, why = Ended.DIVERGED, f"{path.name}:{lines[-1]}: a force that is no number"
-    return Run(path, path.stem, history, patches=made, ended=ended, why=why)
+    return Run(path, path.stem, history, patches=made, ended=ended, why=why, is_final=True)
 
 
 def _shown(direction: tuple[float, ...] | None) -> str:

@@ -26,6 +26,7 @@ from coeflab.tables.openfoam_forces import (
     moved,
     oriented,
 )
+from coeflab.tables.openfoam_symmetry import mirror_patches
 from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
@@ -275,7 +276,7 @@ def _stated(
         out["conditions.density"] = Stated(*density)
     if point is not None:
         out["axes.reference_point"] = Stated(tuple(point[0]), point[1])
-    if mirrors := of.mirror_patches(case):
+    if mirrors := mirror_patches(case):
         place = mirrors.partition(": ")[0]
         out[HALF_MODEL] = Stated("symmetry plane", place, offered=True, contradicted=mirrors)
     speed = history.facts.get("magUInf")
@@ -283,6 +284,8 @@ def _stated(
         out["conditions.speed"] = conditions["U"]
     elif speed is not None and of.is_number(speed[0]):
         out["conditions.speed"] = Stated(float(speed[0]), speed[1])
+    if "u" in conditions and any(rate in conditions for rate in "pqr"):
+        out["table.arm_point"] = Stated("reference point", conditions["u"].place)
     if (length := history.facts.get("lRef")) is not None and of.is_number(length[0]):
         out["scaling.length"] = Stated(float(length[0]), length[1])
     for name in ("transportProperties", "physicalProperties"):

@@ -70,6 +70,6 @@ def raw(path: Path, options: Mapping[str, Any] | None = None) -> RawTable:
     return raw_table(
         monitor, path, columns, (path,),
         {"format": "SIMMAN captive test", "delimiter": DELIMITERS[delimiter], "units": "as written, else SI"},
-        {"axes.frame": Stated("FRD", "SIMMAN 2014, Coordinate Systems")},
+        {"axes.frame": Stated("FRD", "SIMMAN 2014, Coordinate Systems", convention=True)},
         (f"{path.name}: model scale and SI units, as {STATED} asks",),
     )  # fmt: skip

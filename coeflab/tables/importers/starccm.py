@@ -16,9 +16,10 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, head, header_cells, kind_of, lines_of
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"
 reads = "monitor CSV of STAR-CCM+, one file or a folder of one run"
@@ -29,6 +30,12 @@ _UNIT = re.compile(r"(?P<name>.+?)\s*\((?P<unit>[^()]*)\)")
 _STEPS = ("Iteration", "Time Step", "\u8fed\u4ee3")
 _TIMES = ("Physical Time", "Time", "Solution Time", "\u65f6\u95f4", "\u7269\u7406\u65f6\u95f4")
 _WITHOUT_UNIT = ("Force Coefficient", "Moment Coefficient")
+
+
+# Macros that Java plays back and summary reports name the kind of every boundary.
+_TEXTS = (".java", ".log", ".txt", ".html", ".htm", ".xml", ".out")
+_SYMMETRY = re.compile(r"SymmetryBoundary\b|(?i:\btype\W{1,20}symmetry(?:\s+plane)?\b)")
+_BOUNDARY = re.compile(r"(?:getBoundary\(\"|(?i:\bboundary(?:\s+name)?\s*:\s*))([^\"\n<]+)")
 
 
 def recognises(path: Path) -> bool:
@@ -80,7 +87,11 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         "delimiter": _DELIMITERS[delimiter],
         "decimal mark": "point" if delimiter == "," else "point or comma",
     }
-    return Run(path, path.stem, raw_table(whole, path, columns, files, dialect), ended=ended, why=why)
+    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
+    half = stated_plane(planes)
+    stated = {HALF_MODEL: half} if half else {}
+    table = raw_table(whole, path, columns, (*files, *texts), dialect, stated)
+    return Run(path, path.stem, table, ended=ended, why=why)
 
 
 def _label(name: str) -> tuple[str, str]:

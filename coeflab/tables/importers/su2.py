@@ -29,9 +29,10 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of, one_run, su2_names
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run, Stated
+from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
 reads = "history.csv or history.dat of SU2 with its .cfg"
@@ -78,7 +79,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     parse_options(NoOptions, options or {}, "importers.su2")
     files = _histories(path)
     pieces = [_read(f) for f in files]
-    config, remarks = _config(files)
+    config, beside, remarks = _config(files)
     files = (*files, config.path) if config else files
     if not any(p.names for p in pieces):
         return Run(path, path.stem, RawTable(path, (), files=files), ended=Ended.EMPTY, why=f"{files[0].name}: empty")
@@ -88,6 +89,10 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     ended, why = how_ended(pieces[-1], judged)
     monitor = pieced(pieces, index)
     conditions, stated, said = _stated(config, monitor)
+    planes, texts = _symmetry_planes(files[0], beside)
+    if half := stated_plane(planes):
+        stated[HALF_MODEL] = half
+        files = (*files, *texts)
     if config is not None and (change := _rescaled(config, conditions, monitor)):
         said = [*said, change]
     dialect = {
@@ -232,22 +237,36 @@ class _Config:
         return self.at(key, *(f"{key}_{axis}" for axis in "XYZ"))
 
 
-def _config(files: Sequence[Path]) -> tuple[_Config | None, list[str]]:
-    """The config file of a history: the only one beside it, or the only one whose CONV_FILENAME names it."""
+_SYMMETRY_IN_LOG = re.compile(r"(?i)^[\s|]*symmetry plane(?: boundary)?\s*[|:]\s*(?P<name>[^|]*)")
+
+
+def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[str], list[Path]]:
+    """Markers of symmetry planes in any config file beside a history, else in a log of the solver; and the logs."""
+    places = []
+    for config in configs:
+        for key in ("MARKER_SYM", "MARKER_SYMMETRY"):
+            names = [n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() != "NONE"]
+            places += [f"{config.at(key)}: marker {name} is a symmetry plane" for name in names]
+    return (places, []) if places else planes_beside(history, (".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
+
+
+def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], list[str]]:
+    """The config file of a history: the only one beside it, or the only one whose CONV_FILENAME names it; and all beside it."""
     folder = files[0].parent
     try:
         beside = sorted(p for p in folder.iterdir() if p.suffix.lower() == ".cfg" and p.is_file())[:MONITOR_FILES]
     except OSError:
         beside = []
-    configs = [_read_config(p) for p in beside]
+    every = configs = [_read_config(p) for p in beside]
     if len(configs) > 1:
         configs = [c for c in configs if (c.text("CONV_FILENAME") or "history").partition(".")[0] == files[0].stem]
     if len(configs) == 1:
-        return configs[0], []
+        return configs[0], configs, []
     if beside:
         names = shown(", ".join(p.name for p in beside), 200)
-        return None, [f"conditions not read: config files {names}, and CONV_FILENAME does not show which one is meant"]
-    return None, [f"conditions not read: no .cfg file beside {files[0].name}"]
+        why = f"conditions not read: config files {names}, and CONV_FILENAME does not show which one is meant"
+        return None, configs or every, [why]
+    return None, [], [f"conditions not read: no .cfg file beside {files[0].name}"]
 
 
 def _read_config(path: Path) -> _Config:
@@ -335,12 +354,16 @@ def _stated(config: _Config | None, monitor: Monitor) -> tuple[dict[str, Stated]
         "REF_ORIGIN_MOMENT_X",
         "MACH_NUMBER",
     )
-    _add_velocity(conditions, [float(v) for v in own], config.at(*keys), stated)
+    _add_velocity(conditions, [float(v) for v in own], config.at(*keys), stated, turns=rate is not None)
     return conditions, stated, remarks
 
 
-def _add_velocity(conditions: dict[str, Stated], own: Sequence[float], place: str, stated: dict[str, Stated]) -> None:
-    """Velocity of the body through the water, axes of the mesh."""
+def _add_velocity(
+    conditions: dict[str, Stated], own: Sequence[float], place: str, stated: dict[str, Stated], turns: bool = False
+) -> None:
+    """Velocity of the body through the water, axes of the mesh; of one that turns at the point of its moments."""
+    if turns:
+        stated["table.arm_point"] = Stated("reference point", place)
     speed = math.hypot(*own)
     conditions["U"] = stated["conditions.speed"] = Stated(speed, place)
     conditions |= {n: Stated(v + 0.0, place) for n, v in zip("uvw", own, strict=True)}

@@ -11,7 +11,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.tables.column_map import folded
 from coeflab.tables.dialect import Marks, Row, one_reading
-from coeflab.tables.raw_table import Stated
+from coeflab.tables.half_bodies import half_in_words
+from coeflab.tables.raw_table import HALF_MODEL, Stated
 from coeflab.tables.words.axes import BODY_AXES, along_body, frame_in_words, side_of_turns, signs
 from coeflab.tables.words.points import (
     ARM_FROM,
@@ -22,6 +23,7 @@ from coeflab.tables.words.points import (
     datum_in_words,
     moments_point,
 )
+from coeflab.tables.words.primes import prime_basis
 from coeflab.tables.words.water import APART, density_in_words, states_density, with_words_before
 
 _NAMES = {
@@ -133,6 +135,7 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         length = found.get("scaling.length", Stated("", volume, offered=True))
         found["scaling.length"] = replace(length, contradicted=against)
     told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
+    told |= prime_basis(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)
     if own and not (water and states_density(water.place)):  # a number without a unit, or in another one
@@ -169,6 +172,8 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
             one = found.setdefault(key, said)
             if one.value != said.value and not one.contradicted:
                 found[key] = replace(one, contradicted=f"{one.place}, but {said.place}")
+    if half := half_in_words(texts):
+        found[HALF_MODEL] = half
     if density := density_in_words(texts, marks):
         found["conditions.density"] = density
     if frame := frame_in_words(texts):

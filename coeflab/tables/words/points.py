@@ -53,10 +53,10 @@ _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "mi
 _ARM = re.compile(
     r"(?i)(?<![^\W_])(?:(?:(?:model|body|hull|vehicle|modell|k(?:ö|oe)rper|maquette)\b[^;.\d]{0,25})?(?<![^\W_])(?:held|mounted|attached|fixed|fastened|clamped|carried|"
     r"suspended|pivoted|befestigt|gehalten|eingespannt|aufgeh(?:ä|ae)ngt|fix[ée]e?|tenue?|attach[ée]e?)(?![^\W_]|\s+(?:ax[ei]s|frame|coord))[^;\d]{0,25}?(?<![^\W_])(?:at|in|by|bei|im|am|beim|[àa]u?|en)"
-    r"|(?:arm|pivot|attachment|towing|tow|held)[\s-]*point(?:\s+of\s+the\s+arm)?|arm\s+(?:attached|fixed|attaches)(?:\s+(?:at|to))?|point\s+of\s+the\s+arm"
+    r"|(?:path|arm|pivot|attachment|towing|tow|held)[\s-]*point(?:\s+of\s+the\s+arm)?|arm\s+(?:attached|fixed|attaches)(?:\s+(?:at|to))?|point\s+of\s+the\s+arm"
     r"|(?:R|U|radi(?:us|i)|speed)(?:\s+(?:and|und|et)\s+(?:R|U|radius|speed))?(?:\s+in\s+m)?,?\s+(?:(?:is|are|were|was)\s+)?(?:measured|taken|given|counted|those|that|gemessen|mesur[ée]e?s?)"
     r"(?:\s+(?:from\s+the\s+cent(?:re|er)(?:\s+of\s+the\s+\w+)?\s+)?(?:to|at|of|bis|zu|[àa]|jusqu'[àa]u?))?"
-    r"|(?:drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
+    r"|(?:bahn|drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
 )
 _OF_MOMENTS = re.compile(
     r"(?i)(?:the\s+|le\s+|dem\s+|der\s+)?(?:(?:moments?|momenten?|reference|balance)[\s-]*(?:reference[\s-]*)?(?:point|cent(?:re|er)|bezugspunkt)|bezugspunkt"

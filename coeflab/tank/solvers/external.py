@@ -6,8 +6,6 @@ blank cells. What is filled in is the fluid's force on the whole body; what stay
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -18,6 +16,7 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.files import write_atomically
+from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
@@ -199,24 +198,24 @@ def _require_positive(cells: Cells, header: Header, values: Array) -> None:
 
 def _run_list(tank: Tank) -> bytes:
     """Every condition in SI, all digits."""
-    out = io.StringIO()
     at, point = tank.conditions, ", ".join(f"{x:.6g}" for x in tank.reference_point)
     viscosity = "" if at.viscosity is None else f", kinematic viscosity {at.viscosity:g} m^2/s"
-    out.write(f"# Runs of {tank.name}. Density {at.density:g} kg/m^3{viscosity}; the body is in body/body.stl.\n")
-    out.write("# Velocities and rates of the body at the reference point, FRD (x forward, y starboard, z down),\n")
-    out.write(f"# at ({point}) m from the {tank.datum.id}. Half: what the domain may be cut to, at a symmetry plane.\n")
-    writer = csv.writer(out, lineterminator="\n")
+    comments = (
+        f"Runs of {tank.name}. Density {at.density:g} kg/m^3{viscosity}; the body is in body/body.stl.",
+        "Velocities and rates of the body at the reference point, FRD (x forward, y starboard, z down),",
+        f"at ({point}) m from the {tank.datum.id}. Half: what the domain may be cut to, at a symmetry plane.",
+    )
     controls = list(dict.fromkeys(name for c in tank.matrix for name in c.controls))
     studied = list(dict.fromkeys(name for c in tank.matrix for name in c.variant))
     heads = [CONDITION, "kind", "half", "grid", "cell size", *studied]
     heads += [f"{m} [m/s]" for m in LINEAR] + [f"{m} [rad/s]" for m in ANGULAR] + [f"{c} [rad]" for c in controls]
-    writer.writerow([*heads, "zero by symmetry"])
+    rows = [[*heads, "zero by symmetry"]]
     for c in tank.matrix:
         numbers = (*c.velocity, *c.rates, *(c.controls.get(name, 0.0) for name in controls))
         row = [c.name, str(c.kind), str(c.half) or "whole", c.grid, f"{tank.grid(c.grid).size:.6g}"]
         row += [c.variant.get(name, "") for name in studied]
-        writer.writerow([*row, *(f"{x + 0.0:.12g}" for x in numbers), BY_SYMMETRY[c.half]])
-    return out.getvalue().encode()
+        rows.append([*row, *(f"{x + 0.0:.12g}" for x in numbers), BY_SYMMETRY[c.half]])
+    return csv_text(rows, comments).encode()
 
 
 def _lines(tank: Tank, path: Path) -> bytes:
@@ -232,9 +231,9 @@ def _lines(tank: Tank, path: Path) -> bytes:
             there = set() if position is None else set(cells.texts(CONDITION))
             content = path.read_bytes()
             new = [name for name in names if name not in there] if position is not None else []
-            blank = ["," * (position or 0) + name + "," * (len(cells.headers) - 1 - (position or 0)) for name in new]
+            blank = [[name if i == position else "" for i in range(len(cells.headers))] for name in new]
             ended = content if content.endswith(b"\n") or not new else content + b"\n"
-            return ended + "".join(f"{line}\n" for line in blank).encode()
+            return ended + csv_text(blank).encode()
     units = {c: "N*m" if c in MOMENTS else "N" for c in COMPONENTS}
     heads = [
         CONDITION,
@@ -242,9 +241,8 @@ def _lines(tank: Tank, path: Path) -> bytes:
         *(f"se_{c} [{u}]" for c, u in units.items()),
         *COUNTS,
     ]
-    head = (
-        "# The fluid's force on the whole body (of a half: doubled), FRD, about the reference point, without the body's inertia.\n"
-        "# se_: standard error of the mean. What stays blank was not run, or is zero by symmetry.\n"
+    comments = (
+        "The fluid's force on the whole body (of a half: doubled), FRD, about the reference point, without the body's inertia.",
+        "se_: standard error of the mean. What stays blank was not run, or is zero by symmetry.",
     )
-    lines = [",".join(heads), *(name + "," * (len(heads) - 1) for name in names)]
-    return (head + "\n".join(lines) + "\n").encode()
+    return csv_text([heads, *([name, *[""] * (len(heads) - 1)] for name in names)], comments).encode()

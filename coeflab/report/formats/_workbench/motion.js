@@ -232,7 +232,7 @@ const zigzagOf = (v, coefficients) => {
     const bare = names.filter((n) => n.endsWith(UNCOVERED)), left = names.filter((n) => !n.endsWith(UNCOVERED));
     const said = (all) => all.map((n) => ANGLES[n] || n).join(", ");
     const beyond = [left.length ? `beyond the data in ${said(left)}` : "", bare.length ? `no data on ${said(bare.map((n) => n.slice(0, -2 - UNCOVERED.length)))}` : ""].filter(Boolean).join("; ");
-    if (turn && decisive(names, "r").length) return { name, value: null, unit, status: "not determined", why: `${beyond}; ${turn}` };
+    if (turn && decisive(names, "r").length) return { name, value: null, unit, status: "not determined", why: left.length ? `beyond the data in ${said(left)}; ${turn}` : turn };
     return { name, value, unit, status: "extrapolated", why: beyond };
   };
   const psi = m.state.map((s) => s[13]), north = m.state.map((s) => s[0]), reached = (i) => (m.met[i] ? m.switches[i] : null);
@@ -250,7 +250,7 @@ const zigzagOf = (v, coefficients) => {
   let determined = Infinity, why = "";
   for (const [rate, words] of missing) if (words && determined === Infinity) {
     const left = decisive([...flags].filter(([, f]) => f.includes(true)).map(([n]) => n), rate);
-    if (left.some((n) => n.endsWith(UNCOVERED))) { determined = 0; why = `no data on ${rate}'; ${words}`; }
+    if (left.some((n) => n.endsWith(UNCOVERED))) { determined = 0; why = words; }
     else if (left.length) { determined = m.time[Math.min(...left.map((n) => flags.get(n).indexOf(true)))]; why = words; }
   }
   return { time: m.time, state: m.state, controls: m.controls, figures, determined, why, ended: m.ended, switches: m.switches };

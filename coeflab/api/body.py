@@ -1,0 +1,240 @@
+"""`read_body` and `Body`: a shape, its added mass and its outline."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coeflab.api.questions import si
+from coeflab.bodies import body as plain
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.particulars import computed
+from coeflab.core.axes import Datum
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import located
+from coeflab.law import added_mass as law
+from coeflab.workbench.hulls import added_masses, methods
+from coeflab.workbench.vehicle import subject
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FRESH = 998.2
+NOSE = "nose"
+KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class AddedMass(law.AddedMass):
+    """The added-mass matrix of a body; see `Body.added_mass`.
+
+    Attributes
+    ----------
+    matrix : (6, 6) array
+        Symmetric, kg, kg m, kg m^2: what the water adds in surge, sway, heave, roll, pitch, yaw; Xudot = -matrix[0, 0].
+    reference_point : (3,) array
+        That it is about, m, FRD, from the body's datum.
+    method, body : str
+    density : float
+        kg/m^3.
+    error : (6, 6) array or None
+        What the method says of itself.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> added = cf.read_body("remus100").added_mass("ellipsoid")
+    >>> bool(added.matrix[1, 1] > 10 * added.matrix[0, 0])
+    True
+    """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The matrix, each entry the darker the larger it is beside its two diagonal ones.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            To draw into; by default that of a new figure.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_body("remus100").added_mass("ellipsoid").plot().get_title()
+        'remus100 by ellipsoid'
+        """
+        from coeflab.report.plots.matrix import plot_added_mass
+
+        return plot_added_mass(self, ax)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Body(plain.Body):
+    """A body: shape, particulars, configurations; see `coeflab.read_body`.
+
+    Attributes
+    ----------
+    name, title : str
+    reference_point : (3,) array
+        m, FRD, from `datum`.
+    shape : Shape or None
+        What it looks like; ``shape.length``, ``shape.volume`` in m and m^3.
+    configurations : tuple
+        Volume, wetted surface, centres and mass with each state of appendages.
+    place : Path or None
+        File that it was read from.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> body = cf.read_body("remus100")
+    >>> body.name, round(body.scaling.length, 3)
+    ('remus100', 1.33)
+    """
+
+    place: Path | None = None
+
+    def added_mass(self, method: str = "all", density: float | str = FRESH, **options: Any) -> AddedMass:
+        """The 6 x 6 added-mass matrix about the reference point, FRD, SI.
+
+        Parameters
+        ----------
+        method : str
+            ``all`` takes the recommended one of those that apply; else ellipsoid, primitives, strip, panel ...
+        density : float or str
+            Of the water, kg/m^3.
+        **options
+            Of the method.
+
+        Returns
+        -------
+        AddedMass
+            ``matrix``: (6, 6), kg, kg m, kg m^2.
+
+        Raises
+        ------
+        InputError
+            No shape, no such method, a shape that it does not take.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_body("remus100").added_mass("ellipsoid").matrix.shape
+        (6, 6)
+        """
+        if method != "all" and method not in methods():
+            raise InputError(f"the method {shown(method)}", f"all, or one of {', '.join(methods())}", column="method")
+        found = added_masses(self, si(density, "density", "density"), method, options or None).recommended
+        return AddedMass(**{f.name: getattr(found, f.name) for f in fields(law.AddedMass)})
+
+    def plot(self, view: str = "side", ax: Axes | None = None) -> Axes:
+        """The outline, m, FRD, from the datum.
+
+        Parameters
+        ----------
+        view : {"side", "top", "front"}
+        ax : Axes, optional
+            To draw into; by default that of a new figure.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_body("remus100").plot().get_xlabel()
+        'x [m]'
+        """
+        from coeflab.report.plots.body import plot_body
+
+        return plot_body(self, view, ax)
+
+    def counted_from(self, datum: str) -> Body:
+        """The body of a bare mesh with its places from its nose: the foremost point of the mesh, on the x axis of its file.
+
+        Parameters
+        ----------
+        datum : {"nose"}
+
+        Raises
+        ------
+        InputError
+            Another point, or a body whose file names its own.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_body("remus100").counted_from("nose").datum.id
+        'nose'
+        """
+        if self.datum.id == datum:
+            return self
+        if not isinstance(self.shape, TriangleMesh) or not self.datum.id.startswith("origin of ") or datum != NOSE:
+            raise InputError(
+                f"{self.name}, whose places count from {shown(self.datum.id)}", f"{datum} as datum under [body] of its body.toml",
+                column="datum",
+            )  # fmt: skip
+        fore = np.array([float(self.shape.vertices[:, 0].max()), 0.0, 0.0])
+        shape = replace(self.shape, vertices=self.shape.vertices - fore)
+        return replace(
+            self, datum=Datum(NOSE, f"foremost point of {self.title}, at x = {fore[0]:.6g} m of its axes"), shape=shape,
+            reference_point=self.reference_point - fore, configurations=(computed(shape, ()),),
+        )  # fmt: skip
+
+
+def read_body(
+    source: str | Path | plain.Body,
+    *,
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+) -> Body:
+    """A body from its body.toml, its folder, a shipped name or a mesh file.
+
+    Parameters
+    ----------
+    source : str, Path or Body
+        ``remus100``, ``hull/body.toml``, ``hull.stl``.
+    unit : str
+        Of a mesh file's numbers: mm, m, in ...
+    axes : str
+        Of a mesh file: FLU, FRD, CFD or three directions with commas.
+    repair, fill, sheets : bool
+        Mend a mesh that is not sound; close its small holes; take its open surfaces as walls.
+
+    Returns
+    -------
+    Body
+        Of a mesh about its centre of buoyancy.
+
+    Raises
+    ------
+    InputError
+        Nothing there; a mesh without unit or axes, or not sound; what its body.toml says wrong, by line.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> cf.read_body("suboff_bare_hull").name
+    'suboff_bare_hull'
+    """
+    if isinstance(source, plain.Body):
+        return source if isinstance(source, Body) else body_of(source)
+    if not isinstance(source, str | Path):
+        raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped body", column="source")
+    try:
+        return body_of(subject(str(source), unit, axes, repair, fill, sheets), located(source, "geometry"))
+    except InputError as why:
+        for one in (why, *why.others):
+            for option, keyword in KEYWORDS.items():
+                one.expected = one.expected.replace(f"{option} ", f"{keyword}=") if option != one.expected else keyword
+                one.found = one.found.replace(option, keyword)
+            one.column = KEYWORDS.get(one.column or "", one.column)
+            one.args = (str(one),)
+        raise
+
+
+def body_of(found: plain.Body, place: Path | None = None) -> Body:
+    """A body with the front door's methods."""
+    return Body(**{f.name: getattr(found, f.name) for f in fields(plain.Body)}, place=place)

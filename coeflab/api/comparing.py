@@ -1,0 +1,109 @@
+"""`compare` and `Comparison`: two vehicles, coefficient by coefficient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coeflab.api.parameters import HasParameters, parameters_of
+from coeflab.vehicle import comparison as plain
+from coeflab.vehicle.comparison import ROUNDING, Verdict
+from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+__all__ = ["ROUNDING", "Comparison", "Verdict", "compare"]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Comparison(plain.Comparison):
+    """Two vehicles; ``rows`` has a coefficient each, ``models`` the fitted tables, ``disagrees`` the verdict.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> cf.compare("remus100", "remus100").disagrees
+    False
+    """
+
+    def frame(self) -> pd.DataFrame:
+        """A row a coefficient: both values and U95, difference, combined U95, verdict; primed by the first one's length.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> set(cf.compare("remus100", "remus100").frame()["difference"].dropna())
+        {0.0}
+        """
+        import pandas as pd
+
+        def known(value: float | None) -> float:
+            return np.nan if value is None else value
+
+        rows = [
+            {
+                "first": known(r.a), "first_u95": known(r.u95_a), "second": known(r.b), "second_u95": known(r.u95_b),
+                "difference": known(r.difference), "combined": known(r.combined), "verdict": r.verdict.value, "reason": r.reason,
+            }
+            for r in self.rows
+        ]  # fmt: skip
+        return pd.DataFrame(rows, index=pd.Index([r.symbol for r in self.rows], name="symbol"))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Both values of every coefficient with their intervals, each over the size of the first.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            To draw into; by default that of a new figure.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> len(cf.compare("remus100", "remus100").plot().get_yticklabels()) > 1
+        True
+        """
+        from coeflab.report.plots.forest import plot_forest
+
+        both = [r for r in self.rows if r.a is not None and r.b is not None]
+        return plot_forest([(r.symbol, [(r.a, r.u95_a), (r.b, r.u95_b)]) for r in both], (self.a, self.b), ax)
+
+
+def compare(
+    first: HasParameters | ParameterFile | str | Path, second: HasParameters | ParameterFile | str | Path
+) -> Comparison:
+    """Hold a vehicle against another by their combined U95.
+
+    Parameters
+    ----------
+    first, second : Vehicle, str or Path
+        Parameter files, or names of shipped ones. The second is primed by the first one's length about its point.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        What is no parameter file.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> cf.compare("remus100", "huuv").same_body
+    False
+    """
+    a, b = parameters_of(first), parameters_of(second)
+    names = (
+        (str(first), str(second))
+        if a.name == b.name and isinstance(first, str | Path) and isinstance(second, str | Path)
+        else None
+    )
+    found = plain.compare(a, b, names)
+    return Comparison(**{f.name: getattr(found, f.name) for f in fields(plain.Comparison)})

@@ -1,0 +1,60 @@
+"""`estimate`: coefficients of a shape alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from coeflab.api.body import read_body
+from coeflab.api.questions import si
+from coeflab.api.result import Result
+from coeflab.bodies import body as plain
+from coeflab.core.files import stem
+from coeflab.core.machine import one_thread
+from coeflab.law.scaling import Conditions
+from coeflab.study.study import Plan
+from coeflab.tank.tank_keys import FRESH_WATER
+from coeflab.workbench.vehicle import estimated
+
+
+@one_thread()
+def estimate(
+    body: str | Path | plain.Body,
+    *,
+    density: float | str | None = None,
+    speed: float | str | None = None,
+    method: str = "all",
+) -> Result:
+    """Coefficients of a shape by semi-empirical methods, each with U95 and status ``estimate``.
+
+    Parameters
+    ----------
+    body : Body, str or Path
+        With a shape.
+    density, speed : float or str, optional
+        Of the water and of reference; fresh water and 2 m/s unless given.
+    method : str
+        Of added mass.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InputError
+        A body without a shape, or nothing that can be estimated.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> found = cf.estimate("remus100")
+    >>> found["Yv'"].value < 0, str(found["Yv'"].status)
+    (True, 'estimate')
+    """
+    hull = read_body(body)
+    conditions = Conditions(
+        FRESH_WATER.density if density is None else si(density, "density", "density"),
+        FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+    )  # fmt: skip
+    made = estimated(Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method), hull)
+    return Result(tuple(made.fits))

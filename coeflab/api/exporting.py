@@ -1,0 +1,107 @@
+"""`export`: a vehicle as the files of a simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from coeflab.api.parameters import HasParameters, parameters_of
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import write_all
+from coeflab.formats import EXPORTERS
+from coeflab.formats.export import Export, Kind
+from coeflab.formats.unspoken import without_law
+from coeflab.report.tables.formats import in_short
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.workbench.exports import export as rendered
+
+__all__ = ["Export", "ParameterFile", "export", "refusal", "require_targets", "without_law"]
+WITH_MASS = "Give the vehicle a mass and an added mass."
+
+
+def export(
+    vehicle: HasParameters | ParameterFile | str | Path,
+    to: str,
+    out: str | Path | None = None,
+    *,
+    accept_loss: bool = False,
+    accelerations: str = "measured",
+) -> Export:
+    """Files of a simulator, and what they lose.
+
+    Parameters
+    ----------
+    vehicle : Vehicle, str or Path
+        A parameter file, or the name of a shipped one.
+    to : str
+        xdyn, gazebo, mss, mujoco, fmu, c ...: ``coeflab formats exporters``.
+    out : str or Path, optional
+        Folder to write into; without it nothing is written, and ``files`` has the contents.
+    accept_loss : bool
+        Write although the target cannot hold everything; ``loss`` says what is lost.
+    accelerations : {"measured", "computed"}
+
+    Returns
+    -------
+    Export
+        ``files``, ``loss``, ``lossless``.
+
+    Raises
+    ------
+    InputError
+        The target cannot hold all of the file and no loss is accepted.
+    PluginError
+        No such target.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> sorted(cf.export("remus100", "csv").files)[0]
+    'remus100.coefficients.csv'
+    """
+    parameters = parameters_of(vehicle)
+    made = rendered(parameters, to, accelerations, accept_loss=accept_loss)
+    if out is not None:
+        if not accept_loss and not made.lossless:
+            raise refusal(made, parameters, "accept_loss=True, to write the rest", place=f"{to}, ")
+        write_all(Path(out), made.files)
+    return made
+
+
+def refusal(
+    made: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS, place: str = ""
+) -> InputError:
+    """The error about a target that loses part of a file and nobody accepted that.
+
+    Parameters
+    ----------
+    made : Export
+    parameters : ParameterFile
+    expected : str
+        What would do.
+    advice : str
+        Where the target lacks a mass.
+    place : str
+        Before the words, such as the target.
+    """
+    loss = made.loss
+    lost = () if loss is None else loss.lost
+    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost)
+    return InputError(
+        f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}", expected,
+        advice=advice if missing else "",
+    )  # fmt: skip
+
+
+def require_targets(names: Sequence[str]) -> None:
+    """Refuse targets that no exporter has, before anything is computed.
+
+    Raises
+    ------
+    InputError, PluginError
+        None is named; no exporter has the name.
+    """
+    if not names:
+        raise InputError("no target", f"one of {', '.join(EXPORTERS.names())}", column="--to")
+    for name in names:
+        EXPORTERS.load(name)

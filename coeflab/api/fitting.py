@@ -1,0 +1,131 @@
+"""`fit`: coefficients of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from coeflab.api.questions import si
+from coeflab.api.reading import read_tables
+from coeflab.api.result import Result
+from coeflab.core.errors import InputError, together
+from coeflab.core.machine import one_thread
+from coeflab.core.options import described
+from coeflab.fits import FITS
+from coeflab.fits.joint.rows import one_length
+from coeflab.law.scaling import Scaling
+from coeflab.study.fitting import fitted
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import Importer
+from coeflab.tables.reading import suited_fit
+
+USUAL = Importer.fit
+MODEL = "manoeuvring_model"
+
+
+def fit(
+    tables: str | Path | ForceTable | Sequence[str | Path | ForceTable],
+    by: str = "",
+    *,
+    length: float | str | None = None,
+    length_name: str | None = None,
+    include_uncertain: bool = False,
+    **options: Any,
+) -> Result:
+    """Coefficients of one table or several, with U95.
+
+    Parameters
+    ----------
+    tables : Table, str, Path or sequence of these
+        From `coeflab.read_table`, or what that reads without keywords.
+    by : str
+        Name of the fit; by default the recommended slopes at the origin, of each campaign by itself. One that joins campaigns,
+        such as ``manoeuvring_model``, takes all tables together.
+    length : float or str, optional
+        Of the primes, m; the tables' own unless given.
+    length_name : str, optional
+        Of that length, such as LOA.
+    include_uncertain : bool
+        Use cells that the source marks as doubtful.
+    **options
+        Of the fit: ``cf.fit(drift, "polynomial", variable="beta", degree=3)``, ``cf.fit(drift, terms=["Yv", "Yv|v|"])``.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InputError
+        Too few points, an option that the fit has not, tables of other kinds.
+    ScalingMismatchError
+        Tables of other lengths or points in a joint fit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import coeflab as cf
+    >>> v = np.linspace(-0.3, 0.3, 9)
+    >>> drift = cf.read_table(
+    ...     {"v [m/s]": v, "Y [N]": -120.0 * v, "N [N m]": -60.0 * v}, name="drift",
+    ...     frame="FRD", length=2.0, density=1000, speed=2.0, about="nose, 1.0 m aft",
+    ... )
+    >>> round(cf.fit(drift)["Yv'"].value, 6)
+    -0.03
+    """
+    every = (
+        [tables] if isinstance(tables, str | Path | ForceTable) or not isinstance(tables, Sequence) else list(tables)
+    )
+    if not every:
+        raise InputError("no table", "a table, or several", column="tables")
+    read: list[ForceTable] = [t for one in every for t in read_tables(one)]
+    names = [t.name for t in read]
+    if twice := next((n for n in names if names.count(n) > 1), None):
+        raise InputError(
+            f"the table {twice} twice", "every table once", column="tables",
+            advice="A row that counts twice makes every interval too narrow. Tables that differ need a name= each.",
+        )  # fmt: skip
+    if include_uncertain:
+        read = [t.with_uncertain_cells() for t in read]
+    by = by or (MODEL if "terms" in options else _suited(every))
+    given = _options(by, options)
+    scaling = None
+    if (length is None) != (length_name is None):
+        raise InputError(
+            "length without its name" if length else "length_name alone", "length and length_name", column="length"
+        )
+    if length is not None:
+        scaling = Scaling(si(length, "length", "length"), str(length_name))
+    with one_thread():
+        if FITS.load(by).joins_campaigns:
+            return Result((fitted(by, read, scaling or one_length(read), given)[0],), tuple(read))
+        fits = []
+        for campaign in dict.fromkeys(t.campaign for t in read):
+            own = [t for t in read if t.campaign == campaign]
+            fits.append(fitted(by, own, scaling or own[0].scaling, given)[0])
+    return Result(tuple(fits), tuple(read))
+
+
+def _suited(every: Sequence[Any]) -> str:
+    """The fit that the first campaign is for, as its importer says."""
+    from coeflab.core.files import located
+
+    first = every[0]
+    return suited_fit(located(first, "cfd_data")) if isinstance(first, str | Path) else USUAL
+
+
+def _options(by: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a fit; a list of words is one option, and what the fit has not is complained of with the fit that has it."""
+    known = [o.name for o in described(FITS.load(by).Options)]
+    complaints = []
+    for name in options:
+        if name not in known:
+            able = [n for n in FITS.usable() if name in [o.name for o in described(FITS.load(n).Options)]]
+            complaints.append(InputError(
+                f"{name} for the fit {by}", f"one of {', '.join(known)}" if known else "no option", column=name,
+                advice=f"{', '.join(able)} has it." if able else "",
+            ))  # fmt: skip
+    if complaints:
+        raise together(complaints)
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in options.items()}

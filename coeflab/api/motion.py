@@ -1,0 +1,210 @@
+"""`simulate` and `Motion`: a vehicle in a manoeuvre."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coeflab.api.parameters import HasParameters, parameters_of
+from coeflab.core.errors import InputError, together
+from coeflab.core.options import described
+from coeflab.core.table import Table as Shown
+from coeflab.core.types import in_angles
+from coeflab.motion.manoeuvre import Figure, Simulation
+from coeflab.motion.manoeuvres import MANOEUVRES
+from coeflab.motion.simulation import simulate as carried_out
+from coeflab.motion.trajectory import Trajectory
+from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+NAMES = ("time [s]", "north [m]", "east [m]", "down [m]", "roll [rad]", "pitch [rad]", "heading [rad]",
+         "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]")  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion(Mapping[str, Figure]):
+    """A motion and the figures read off it: ``run["first overshoot"].value``.
+
+    Attributes
+    ----------
+    simulation : Simulation
+        Vehicle, manoeuvre, trajectory, figures.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> run = cf.simulate("remus100", "zigzag", rudder="20 deg")
+    >>> round(run["initial turning time"].value, 2)
+    1.47
+    """
+
+    simulation: Simulation
+
+    def __repr__(self) -> str:
+        figures = ", ".join(f"{f.name} {f.value:.4g} {f.unit}" for f in self.values() if f.value is not None)
+        name = f"{self.simulation.manoeuvre.name} of {self.simulation.vehicle.name}"
+        return in_angles(self, f"{name}: {figures or 'no figure determined'}")
+
+    def _repr_html_(self) -> str:
+        return self.simulation._repr_html_()
+
+    def __getitem__(self, name: str) -> Figure:
+        for f in self.simulation.figures:
+            if f.name == name:
+                return f
+        raise KeyError(f"no {name!r} among {', '.join(self)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(f.name for f in self.simulation.figures)
+
+    def __len__(self) -> int:
+        return len(self.simulation.figures)
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """Time, place, attitude, velocity and controls, SI and rad."""
+        return self.simulation.trajectory
+
+    @property
+    def statements(self) -> tuple[str, ...]:
+        """What was assumed, and where the motion leaves what the coefficients cover."""
+        return self.simulation.statements
+
+    @property
+    def undetermined(self) -> str:
+        """Why the file determines nothing of the motion; empty where it does."""
+        return self.simulation.undetermined
+
+    def frame(self) -> pd.DataFrame:
+        """A row a time: place (NED), attitude, velocity through the water (FRD), controls; SI and rad.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.simulate("remus100", "straight_run").frame().columns[0]
+        'time [s]'
+        """
+        import pandas as pd
+
+        t = self.trajectory
+        angles = np.column_stack([t.angles[:, :2], t.heading])
+        values = np.column_stack([t.time, t.position, angles, t.velocity])
+        return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | {k: np.array(v) for k, v in t.controls.items()})
+
+    def summary(self) -> Shown:
+        """The figures, to be printed or shown in a notebook.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.simulate("remus100", "zigzag", rudder="20 deg").summary().rows[0][0]
+        'initial turning time'
+        """
+        from coeflab.report.tables.motion import figure_table
+
+        s = self.simulation
+        return figure_table(s.figures, f"{s.manoeuvre.name.replace('_', ' ')} of {s.vehicle.name}", s.vehicle.length)
+
+    def plot(self, what: str = "track", ax: Axes | None = None) -> Axes:
+        """The track, or a quantity over time.
+
+        Parameters
+        ----------
+        what : str
+            ``track`` (north over east), ``depth``, or a column of `frame` without its unit: ``heading``, ``r`` ...
+        ax : Axes, optional
+            To draw into; by default that of a new figure.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.simulate("remus100", "zigzag", rudder="20 deg").plot().get_xlabel()
+        'east [m]'
+        """
+        from coeflab.report.plots.motion import plot_motion
+
+        return plot_motion(self.trajectory, what, ax)
+
+
+def simulate(
+    vehicle: HasParameters | ParameterFile | str | Path,
+    manoeuvre: str,
+    *,
+    free: Sequence[str] = (),
+    hold: Sequence[str] = (),
+    current: Sequence[float] = (),
+    step: float | None = None,
+    record: float | None = None,
+    integrator: str | None = None,
+    simulator: str = "rigid_body",
+    tables: bool = False,
+    accelerations: str = "measured",
+    **options: Any,
+) -> Motion:
+    """A manoeuvre of a vehicle.
+
+    Parameters
+    ----------
+    vehicle : Vehicle, str or Path
+        A parameter file, or the name of a shipped one.
+    manoeuvre : str
+        zigzag, turning_circle, spiral, stop ...: ``coeflab formats manoeuvres``.
+    free, hold : sequence of str
+        Motions that may change, of u v w p q r; those of them that are held.
+    current : (3,) sequence of float
+        Of the water to north, east and down, m/s.
+    step, record : float, optional
+        Of rk4, and between rows, s.
+    integrator : {"adaptive", "rk4"}, optional
+    simulator : str
+    tables : bool
+        Fitted tables come before derivatives.
+    accelerations : {"measured", "computed"}
+    **options
+        Of the manoeuvre, SI and rad or with a unit: ``rudder="20 deg"``, ``speed=1.5``.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        An option that the manoeuvre has not or cannot take, a motion that the file does not know.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> run = cf.simulate("remus100", "zigzag", rudder="20 deg")
+    >>> round(run["reach"].value, 2)
+    4.86
+    """
+    known = [o.name for o in described(MANOEUVRES.load(manoeuvre).Options)]
+    if strange := [name for name in options if name not in known]:
+        raise together([
+            InputError(f"{name} for {manoeuvre}", f"one of {', '.join(known)}", column=name) for name in strange
+        ])  # fmt: skip
+    given = {"integrator": integrator, "step": step, "record": record}
+    how = {k: v for k, v in given.items() if v is not None}
+    if len(current):
+        how |= dict(zip(("north", "east", "down"), map(float, current), strict=True))
+    found = carried_out(
+        parameters_of(vehicle),
+        manoeuvre,
+        options,
+        how,
+        free,
+        hold,
+        simulator,
+        tables=tables,
+        accelerations=accelerations,
+    )
+    return Motion(found)

@@ -1,0 +1,324 @@
+"""`Result`: what a fit or an estimate gives: coefficients with U95, their covariance, points and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.table import Check, percent, with_u95
+from coeflab.core.table import Table as Shown
+from coeflab.core.types import Array, in_angles
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import primed
+from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+
+class Points(NamedTuple):
+    """What a coefficient was fitted to, primed.
+
+    Attributes
+    ----------
+    x : (n,) array
+        v' = v/U, w', r' = r L/U, or the angle of a control, rad.
+    y : (n,) array
+        Force component, primed.
+    used : (n,) boolean array
+        Rows that carry the value; the others are repeated or do not fit.
+    labels : tuple of str
+    """
+
+    x: Array
+    y: Array
+    used: NDArray[np.bool_]
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Result(Mapping[str, Coefficient]):
+    """Coefficients by symbol: ``result["Yv'"].value``, ``.u95``, ``.status``.
+
+    Attributes
+    ----------
+    fits : tuple of FitResult
+        One a campaign, or one of all jointly.
+    tables : tuple of ForceTable
+        What was fitted.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> result = cf.fit("suboff_roddy_2")
+    >>> round(result["Yv'"].value, 4), round(result["Yv'"].u95, 4)
+    (-0.0262, 0.0027)
+    >>> "Nv'" in result, len(result) > 1
+    (True, True)
+    """
+
+    fits: tuple[FitResult, ...]
+    tables: tuple[ForceTable, ...] = ()
+    _found: list[tuple[Check, ...]] = field(default_factory=list, repr=False)
+
+    def __repr__(self) -> str:
+        return in_angles(self, ", ".join(c.said for c in self._all() if c.value is not None) or "no coefficient")
+
+    def _repr_html_(self) -> str:
+        from coeflab.core.cards import html_by
+
+        return "".join(html_by("fit", f) for f in self.fits)
+
+    def _all(self) -> list[Coefficient]:
+        return [c for f in self.fits for c in f.coefficients.coefficients]
+
+    def __getitem__(self, symbol: str) -> Coefficient:
+        """A coefficient by its symbol, with or without prime.
+
+        Raises
+        ------
+        KeyError
+            No fit has it.
+        InputError
+            Several campaigns give it.
+        """
+        own = [f for f in self.fits if symbol in f.coefficients]
+        if len(own) > 1:
+            names = [f.campaign for f in own]
+            raise InputError(
+                f"{primed(symbol.removesuffix(chr(39)))} of {len(own)} campaigns", f"one of {', '.join(names)}", column=symbol,
+                advice=f'result.of("{names[0]}")["{symbol}"]; cf.fit(..., "manoeuvring_model") fits them jointly.',
+            )  # fmt: skip
+        if not own:
+            raise KeyError(f"no {shown(symbol)} among {', '.join(self)}")
+        return own[0].coefficients[symbol]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys(primed(c.symbol) for c in self._all()))
+
+    def __len__(self) -> int:
+        return len(dict.fromkeys(c.symbol for c in self._all()))
+
+    def __contains__(self, symbol: object) -> bool:
+        return isinstance(symbol, str) and any(symbol in f.coefficients for f in self.fits)
+
+    def of(self, campaign: str) -> Result:
+        """The same of one campaign.
+
+        Parameters
+        ----------
+        campaign : str
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> len(cf.fit("suboff_roddy_2").of("suboff_roddy_2").fits)
+        1
+        """
+        own = tuple(f for f in self.fits if f.campaign == campaign)
+        if not own:
+            raise InputError(
+                f"no campaign {shown(campaign)}",
+                f"one of {', '.join(f.campaign for f in self.fits)}",
+                column="campaign",
+            )
+        return Result(own, tuple(t for t in self.tables if t.campaign in own[0].campaigns))
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Symbols with prime, as rows of `covariance` and `frame`; one that several campaigns give stands several times."""
+        return tuple(primed(c.symbol) for c in self._all())
+
+    @property
+    def covariance(self) -> Array:
+        """(k, k) of standard uncertainties (U95 / 2), in the order of `symbols`; NaN where a U95 is not known.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> result = cf.fit("suboff_roddy_2")
+        >>> i = result.symbols.index("Yv'")
+        >>> round(float(2.0 * result.covariance[i, i] ** 0.5 / result["Yv'"].u95), 6)
+        1.0
+        """
+        sizes = [len(f.coefficients.coefficients) for f in self.fits]
+        out, at = np.zeros((sum(sizes), sum(sizes))), 0
+        for f, size in zip(self.fits, sizes, strict=True):
+            out[at : at + size, at : at + size] = f.coefficients.covariance
+            at += size
+        return out
+
+    def frame(self) -> pd.DataFrame:
+        """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(float(cf.fit("suboff_roddy_2").frame().loc["Yv'", "value"]), 4)
+        -0.0262
+        """
+        import pandas as pd
+
+        rows = [
+            {
+                "value": np.nan if c.value is None else c.value, "u95": np.nan if c.u95 is None else c.u95, "status": str(c.status),
+                "points": c.n_points, "low": np.nan if c.window is None else c.window[0],
+                "high": np.nan if c.window is None else c.window[1], "campaign": c.campaign, "estimator": c.estimator,
+            }
+            for c in self._all()
+        ]  # fmt: skip
+        return pd.DataFrame(rows, index=pd.Index(self.symbols, name="symbol"))
+
+    def summary(self) -> Shown:
+        """Value, U95, its share, points and status, to be printed or shown in a notebook.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> print(cf.fit("suboff_roddy_2").summary())  # doctest: +ELLIPSIS
+        suboff_roddy_2, primed by ...
+        """
+        rows = [
+            (
+                primed(c.symbol),
+                *with_u95(c.value, c.u95),
+                percent(c.u95, c.value),
+                str(c.n_points),
+                str(c.status).replace("_", " "),
+            )
+            for c in self._all()
+        ]
+        names = ", ".join(dict.fromkeys(f.campaign for f in self.fits))
+        by = self.fits[0].coefficients.scaling
+        return Shown(
+            f"{names}, primed by {by.length_name} {by.length:.5g} m", ("", "value", "U95", "U95 %", "points", "status"), tuple(rows),
+            left=frozenset({0, 5}),
+        )  # fmt: skip
+
+    def samples(self, n: int, seed: int = 1) -> pd.DataFrame:
+        """Draws of the coefficients from a normal distribution with their values and `covariance`.
+
+        Parameters
+        ----------
+        n : int
+        seed : int
+
+        Returns
+        -------
+        DataFrame
+            n rows, a column a coefficient that has a value and a U95; ``attrs["without_u95"]`` names the others.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> result = cf.fit("suboff_roddy_2")
+        >>> drawn = result.samples(1000)
+        >>> len(drawn), abs(float(drawn["Yv'"].std()) / (result["Yv'"].u95 / 2) - 1) < 0.1
+        (1000, True)
+        """
+        import pandas as pd
+
+        every, covariance = self._all(), self.covariance
+        kept = [i for i, c in enumerate(every) if c.value is not None and np.isfinite(covariance[i, i])]
+        drawn = np.random.default_rng(seed).multivariate_normal(
+            [float(every[i].value or 0.0) for i in kept], covariance[np.ix_(kept, kept)], n, method="eigh"
+        )
+        out = pd.DataFrame(drawn, columns=[self.symbols[i] for i in kept])
+        out.attrs["without_u95"] = [self.symbols[i] for i in range(len(every)) if i not in kept]
+        return out
+
+    def checks(self) -> tuple[Check, ...]:
+        """What the checks of a study find in tables and fits, the gravest of which a reader should know; computed once.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> {str(c.severity) for c in cf.fit("suboff_roddy_2").checks()} <= {"pass", "note", "warn", "fail"}
+        True
+        """
+        if not self._found:
+            from coeflab.study.checking import checked
+            from coeflab.study.study import Plan, Study
+
+            name = self.fits[0].campaign
+            study = Study(
+                plan=Plan(name[:80], name, ()), tables=self.tables, fits=self.fits, missing=(), body=None, references=(),
+                comparisons=(), parameter_files={}, inputs=(),
+            )  # fmt: skip
+            self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
+        return self._found[0]
+
+    def _sweep(self, symbol: str) -> Sweep:
+        self[symbol]  # one campaign, and a coefficient that there is
+        name = symbol.removesuffix("'")
+        for f in self.fits:
+            for s in f.sweeps:
+                if s.symbol == name:
+                    return s
+        known = [primed(s.symbol) for f in self.fits for s in f.sweeps]
+        raise InputError(
+            f"no sweep of {shown(symbol)}", f"one of {', '.join(known)}" if known else "a fit of slopes, such as slope_at_origin",
+            column="symbol",
+        )  # fmt: skip
+
+    def points(self, symbol: str) -> Points:
+        """What a slope was fitted to, primed.
+
+        Parameters
+        ----------
+        symbol : str
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> x, y, used, labels = cf.fit("suboff_roddy_2").points("Yv'")
+        >>> x.shape == y.shape == used.shape
+        True
+        """
+        s = self._sweep(symbol)
+        return Points(s.x, s.y, s.used, s.labels)
+
+    def plot(self, symbol: str | Sequence[str] | None = None, ax: Axes | None = None, *, kind: str = "") -> Axes:
+        """A slope with its points and interval; without a symbol every coefficient with its interval.
+
+        Parameters
+        ----------
+        symbol : str or sequence of str, optional
+            One symbol: the points, the curve and the slope with U95. None or several: a forest.
+        ax : Axes, optional
+            To draw into, in the style that is set; by default that of a new figure.
+        kind : {"", "forms"}
+            ``forms``: what single forms would have given over growing ranges.
+
+        Returns
+        -------
+        Axes
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.fit("suboff_roddy_2").plot("Yv'").get_ylabel()
+        "Y'"
+        """
+        if kind not in ("", "forms"):
+            raise InputError(shown(kind), '"forms", or nothing', column="kind")
+        if isinstance(symbol, str):
+            if not any(f.sweeps for f in self.fits):
+                from coeflab.report.plots.model import plot_model
+
+                self[symbol]
+                return plot_model([m for f in self.fits for m in f.models], symbol, ax)
+            from coeflab.report.plots.slope import plot_forms, plot_slope
+
+            return (plot_forms if kind else plot_slope)(self._sweep(symbol), ax)
+        from coeflab.report.plots.forest import plot_forest
+
+        named = [self[s] for s in symbol] if symbol is not None else [c for c in self._all() if c.value is not None]
+        return plot_forest([(primed(c.symbol.removesuffix("'")), [(c.value, c.u95)]) for c in named], (), ax)

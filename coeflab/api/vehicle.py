@@ -1,0 +1,363 @@
+"""`vehicle`, `read_vehicle` and `Vehicle`: a parameter file, and what is done with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coeflab.api.body import Body, read_body
+from coeflab.api.comparing import Comparison
+from coeflab.api.comparing import compare as compared
+from coeflab.api.exporting import export as exported
+from coeflab.api.motion import Motion
+from coeflab.api.motion import simulate as simulated
+from coeflab.api.parameters import parameters_of
+from coeflab.api.questions import si
+from coeflab.api.result import Result
+from coeflab.api.trimming import LinearModel, Trim, linear_model, trim
+from coeflab.bodies import body as plain
+from coeflab.core.errors import InputError
+from coeflab.core.files import stem, write_atomically
+from coeflab.core.machine import one_thread
+from coeflab.core.table import Check
+from coeflab.core.types import in_angles
+from coeflab.formats.export import Export
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.scaling import Conditions
+from coeflab.law.symbols import primed
+from coeflab.study.study import Plan
+from coeflab.tank.tank_keys import FRESH_WATER
+from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.from_shape import Stated
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import plausibility
+from coeflab.workbench.vehicle import estimated
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Vehicle:
+    """What a simulator needs of a vehicle: coefficients with covariance, mass, added mass, thrusters, controls.
+
+    Attributes
+    ----------
+    file : ParameterFile
+        All of it, as its JSON has it.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> auv = cf.read_vehicle("remus100")
+    >>> auv.name, round(auv["Nuv'"].value, 4)
+    ('remus100', -0.0198)
+    """
+
+    file: ParameterFile
+
+    def __repr__(self) -> str:
+        valued = sum(c.value is not None for c in self.file.coefficients)
+        return in_angles(self, f"{self.name}: {valued} coefficients")
+
+    def _repr_html_(self) -> str:
+        return self.file._repr_html_()
+
+    def __getitem__(self, symbol: str) -> Coefficient:
+        """A coefficient by its symbol, with or without prime.
+
+        Raises
+        ------
+        KeyError
+            The file has none of that symbol.
+        """
+        found = self.file.coefficient(primed(symbol.removesuffix("'")))
+        if found is None:
+            raise KeyError(f"no {symbol} among {', '.join(c.symbol for c in self.file.coefficients)}")
+        return found
+
+    def __contains__(self, symbol: object) -> bool:
+        return isinstance(symbol, str) and self.file.coefficient(primed(symbol.removesuffix("'"))) is not None
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return self.file.name
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader has to know, in words."""
+        return self.file.remarks
+
+    def frame(self) -> pd.DataFrame:
+        """A row a coefficient: value and u95 primed, value_si with its unit, status, origin.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> bool(cf.read_vehicle("remus100").frame().loc["Nur'", "value"] < 0)
+        True
+        """
+        import pandas as pd
+
+        rows = [
+            {
+                "value": np.nan if c.value is None else c.value, "u95": np.nan if c.u95 is None else c.u95,
+                "value_si": np.nan if c.value_si is None else c.value_si, "unit_si": c.unit_si, "status": str(c.status),
+                "origin": c.origin,
+            }
+            for c in self.file.coefficients
+        ]  # fmt: skip
+        return pd.DataFrame(rows, index=pd.Index([c.symbol for c in self.file.coefficients], name="symbol"))
+
+    def save(self, path: str | Path | None = None) -> Path:
+        """Write the parameter file.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            A file, or a folder that is there; by default NAME.parameters.json here.
+
+        Returns
+        -------
+        Path
+            Of the file.
+
+        Examples
+        --------
+        >>> import tempfile, coeflab as cf
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     cf.read_vehicle("remus100").save(folder).name
+        'remus100.parameters.json'
+        """
+        file = Path(path) if path is not None else Path()
+        file = file / f"{self.name}.parameters.json" if file.is_dir() else file
+        write_atomically(file, self.file.to_json())
+        return file
+
+    def linear(
+        self,
+        speed: float | str | None = None,
+        *,
+        commands: Mapping[str, float] | None = None,
+        plane: str = "",
+        free: Sequence[str] = (),
+        tables: bool = False,
+        accelerations: str = "measured",
+        **motion: float | str,
+    ) -> LinearModel:
+        """Small motions about a steady one: x_dot = A x + B d; SI, rad, FRD.
+
+        Parameters
+        ----------
+        speed : float or str, optional
+            u, m/s.
+        commands : mapping of str to float, optional
+            Held: thrusters in their units, controls and tilts in rad.
+        plane : {"", "horizontal", "vertical"}
+        free : sequence of str
+            Motions that may change, of u v w p q r.
+        tables : bool
+            Fitted tables come before derivatives.
+        accelerations : {"measured", "computed"}
+        **motion
+            sway, heave (m/s), yaw_rate (rad/s), roll, pitch (rad, or "2 deg").
+
+        Returns
+        -------
+        LinearModel
+            ``A``, ``B``, ``states``, ``commands``, ``modes``.
+
+        Raises
+        ------
+        InputError
+            No steady motion, or a motion that the file does not know.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> model = cf.read_vehicle("remus100").linear(speed=1.5)
+        >>> model.A.shape == (len(model.states),) * 2
+        True
+        """
+        asked: dict[str, Any] = dict(motion) if speed is None else {"speed": speed, **motion}
+        steady = trim(
+            self, commands=commands, plane=plane, free=free, tables=tables, accelerations=accelerations, **asked
+        )
+        return linear_model(steady)
+
+    def trim(self, **asked: Any) -> Trim:
+        """A steady motion; see `coeflab.trim`."""
+        return trim(self, **asked)
+
+    def checks(self) -> tuple[Check, ...]:
+        """What ``coeflab params check`` finds: signs, sizes, what stands twice.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
+        True
+        """
+        return tuple(plausibility(self.file))
+
+    def simulate(self, manoeuvre: str, **options: Any) -> Motion:
+        """A manoeuvre; see `coeflab.simulate`."""
+        return simulated(self, manoeuvre, **options)
+
+    def export(self, to: str, out: str | Path, **options: Any) -> Export:
+        """Files for a simulator; see `coeflab.export`.
+
+        Parameters
+        ----------
+        to : str
+            Target.
+        out : str or Path
+            Folder to write into.
+        **options
+            accept_loss, accelerations.
+        """
+        return exported(self, to, out, **options)
+
+    def compare(self, other: Vehicle | ParameterFile | str | Path) -> Comparison:
+        """Against another vehicle; see `coeflab.compare`."""
+        return compared(self, other)
+
+
+def read_vehicle(source: str | Path | ParameterFile | Vehicle) -> Vehicle:
+    """A vehicle from its parameter file.
+
+    Parameters
+    ----------
+    source : str, Path, ParameterFile or Vehicle
+        A file, or the name of a shipped one.
+
+    Returns
+    -------
+    Vehicle
+
+    Raises
+    ------
+    InputError
+        Nothing there; all that breaks the schema, by line.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> cf.read_vehicle("remus100").name
+    'remus100'
+    """
+    return Vehicle(parameters_of(source))
+
+
+@one_thread()
+def vehicle(
+    body: str | Path | plain.Body,
+    *,
+    mass: float | str | None = None,
+    centre_of_gravity: Sequence[float] | None = None,
+    inertia: Sequence[float] | None = None,
+    coefficients: Result | ParameterFile | Vehicle | str | Path | None = None,
+    density: float | str | None = None,
+    speed: float | str | None = None,
+    method: str = "all",
+    name: str | None = None,
+) -> Vehicle:
+    """A vehicle of a shape and a mass: added mass and estimates, of which fitted coefficients replace those that they give.
+
+    Parameters
+    ----------
+    body : Body, str or Path
+        With a shape.
+    mass : float or str, optional
+        kg; that of its file, else neutrally buoyant, which the remarks say.
+    centre_of_gravity : (3,) sequence of float, optional
+        m, FRD, from the body's datum.
+    inertia : (3,) sequence of float, optional
+        Ix, Iy, Iz about the centre of gravity, kg m^2.
+    coefficients : Result, Vehicle, str or Path, optional
+        From `coeflab.fit`, or of another parameter file.
+    density, speed : float or str, optional
+        Of the water and of reference; fresh water and 2 m/s unless given.
+    method : str
+        Of added mass.
+    name : str, optional
+        The body's unless given.
+
+    Returns
+    -------
+    Vehicle
+
+    Raises
+    ------
+    InputError
+        A body without a shape or volume, a mass that no body has.
+    ScalingMismatchError
+        Coefficients of another datum.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> auv = cf.vehicle("remus100", mass=30.5)
+    >>> auv["Nr'"].value < 0, str(auv["Nr'"].status)
+    (True, 'estimate')
+    """
+    hull = read_body(body)
+    if isinstance(coefficients, Result) and coefficients.fits:
+        hull = _of_datum(hull, coefficients)
+    conditions = None
+    if density is not None or speed is not None:
+        conditions = Conditions(
+            FRESH_WATER.density if density is None else si(density, "density", "density"),
+            FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+        )  # fmt: skip
+    stated = Stated(
+        None if mass is None else _positive(si(mass, "mass", "mass"), "mass"),
+        None if centre_of_gravity is None else np.asarray(centre_of_gravity, dtype=float),
+        None if inertia is None else np.diag(np.asarray(inertia, dtype=float)),
+    )
+    called = stem(name or hull.name)
+    made = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
+    base = next(iter(made.parameter_files.values())).model_copy(update={"name": called})
+    if coefficients is None:
+        return Vehicle(base)
+    other = _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
+    own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
+    return Vehicle(merged(base, other, called, own).parameters)
+
+
+def _positive(value: float, keyword: str) -> float:
+    if not value > 0.0:
+        raise InputError(f"{value:g}", f"a {keyword} above zero", column=keyword)
+    return value
+
+
+def _of_datum(hull: Body, result: Result) -> Body:
+    """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
+    datum = result.fits[0].coefficients.datum.id
+    bare = hull.datum.id.startswith("origin of ") and hull.datum.id != datum
+    return hull.counted_from(datum) if bare else hull
+
+
+def _fitted_file(result: Result, base: ParameterFile, hull: Body) -> ParameterFile:
+    """The parameter file of fits alone, primed and about the point of the vehicle."""
+    point = np.array(base.reference_point.point)
+    fits = []
+    for f in result.fits:
+        moved = f.coefficients.to_length(base.scaling)
+        if moved.datum != base.reference_point.origin:
+            moved = (
+                replace(moved, datum=base.reference_point.origin)
+                if moved.datum.id == base.reference_point.origin.id
+                else moved
+            )
+        fits.append(replace(f, coefficients=replace(moved.about(point), body=hull.name), body=hull.name))
+    tables = [replace(t, body=hull.name).about(point) for t in result.tables]
+    inputs = tuple(dict.fromkeys(f for t in result.tables for f in t.files))
+    group = PlannedParameterFile(stem(hull.name), hull.name, tuple(f.campaign for f in fits), ())
+    return assemble(group, base.name, fits, tables, [], (), None, base.conditions, inputs)

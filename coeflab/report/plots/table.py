@@ -1,0 +1,47 @@
+"""Points of a force table."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from coeflab.core.errors import InputError, shown
+from coeflab.law.symbols import ANGULAR, CONTROLS
+from coeflab.report.plots.axes import axes_of
+from coeflab.tables.force_table import ForceTable
+
+MOVED_BY = {"v": "YN", "r": "YN", "w": "ZM", "q": "ZM", "p": "KN", "u": "X", "dr": "YN", "ds": "ZM", "db": "ZM"}
+
+
+def plot_table(table: ForceTable, component: str = "", over: str = "", ax: Axes | None = None) -> Axes:
+    """A component over a motion, SI; controls in degrees; what no fit uses as crosses.
+
+    Parameters
+    ----------
+    table : ForceTable
+    component, over : str
+        Empty: what is measured and varies first.
+    ax : Axes, optional
+
+    Raises
+    ------
+    InputError
+        What the table has not.
+    """
+    known = {**table.motion, **table.controls}
+    over = over or next(iter(table.varies), "u")
+    if over not in known:
+        raise InputError(shown(over), f"one of {', '.join(known)}", column="over")
+    component = component or next((c for c in MOVED_BY.get(over, "") if c in table.forces), next(iter(table.forces)))
+    if component not in table.forces:
+        raise InputError(shown(component), f"one of {', '.join(table.forces)}", column="component")
+    axes = axes_of(ax)
+    x = np.degrees(known[over]) if over in CONTROLS else np.asarray(known[over])
+    y, used = np.asarray(table.forces[component]), np.asarray(table.usable[component])
+    axes.plot(x[used], y[used], "o", label=f"{table.name}, {component}")
+    if np.any(aside := ~used & np.isfinite(y)):
+        axes.plot(x[aside], y[aside], "x", label="not used by fits")
+    axes.set_xlabel(f"{over} [{'deg' if over in CONTROLS else 'rad/s' if over in ANGULAR else 'm/s'}]")
+    axes.set_ylabel(f"{component} [{'N' if component in 'XYZ' else 'N m'}]")
+    axes.legend()
+    return axes

@@ -1,0 +1,113 @@
+"""Fits carried out: what a fit is refused for, and its budgets in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.fits import FITS, CompletingFit
+from coeflab.fits.joint.rows import joint_name
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
+from coeflab.fits.uncertainty.model_budget import with_model_budgets
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import MOTIONS
+from coeflab.tables.assumptions import carried
+from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.planar_motion import PlanarMotionTable
+
+FEWEST = 3
+COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once
+
+
+def fitted(
+    name: str,
+    tables: Sequence[ForceTable],
+    scaling: Scaling,
+    options: Mapping[str, Any],
+    earlier: Sequence[FitResult] = (),
+) -> tuple[FitResult, tuple[Budget, ...]]:
+    """One fit with its budgets in it, and these; one that completes another is given that, budgets and all.
+
+    Parameters
+    ----------
+    name : str
+        Of the fit.
+    tables : sequence of ForceTable
+        Of one campaign, or of several where the fit joins them.
+    scaling : Scaling
+        Length of the primes.
+    options : mapping of str to value
+        Of the fit.
+    earlier : sequence of FitResult
+        That it may complete.
+    """
+    _refuse_several(name, tables)
+    _refuse_unsuited(name, tables)
+
+    def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
+        with FITS.guarded(name):
+            plugin = FITS.load(name)
+            if isinstance(plugin, CompletingFit):
+                own = [f for f in earlier if (f.fit, f.campaign) == (plugin.completes, tables[0].campaign)]
+                if own:
+                    return plugin.complete(own[-1], some, by, options)
+            return plugin.fit(some, by, options)
+
+    fit = once(tables, scaling)
+    _refuse_starved(fit, tables)
+    found = budgets_of(fit, {t.name: t for t in tables})
+    fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    assumed = carried([f for t in tables for f in t.findings], fit.coefficients.coefficients)
+    fit = replace(fit, findings=(*fit.findings, *assumed))
+    if all(t.source.kind == "estimate" for t in tables):
+        return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
+    return fit, (*found, *more)
+
+
+def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
+    """Refuse several campaigns in a fit that knows nothing of their intercepts and scatter."""
+    campaigns = joint_name(t.campaign for t in tables)
+    if len({t.campaign for t in tables}) > 1 and not FITS.load(name).joins_campaigns:
+        able = [n for n in FITS.usable() if FITS.load(n).joins_campaigns]
+        raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
+                         column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
+
+
+def _refuse_unsuited(name: str, tables: Sequence[ForceTable]) -> None:
+    """Refuse a fit of steady forces to oscillating runs, and the reverse."""
+    with FITS.guarded(name):
+        series = FITS.load(name).reads_series
+    odd = next((t for t in tables if isinstance(t, PlanarMotionTable) != series), None)
+    if odd is not None:
+        what = "steady forces" if series else "oscillating runs"
+        able = [n for n in FITS.usable() if FITS.load(n).reads_series != series]
+        few = ", ".join(able) if len(able) < FEWEST else "slope_at_origin, tied_law or another fit of steady forces"
+        raise InputError(f"{name} over {what}", f"fits of those: {few}", file=odd.name, column="fits")
+
+
+def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
+    """Refuse a sweep in which no force component has more points than the simplest form has parameters."""
+    sweeps = [s for s in fit.sweeps if s.parity == "odd" and s.variable in MOTIONS]
+    for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
+        points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))
+        if points < FEWEST:
+            combined = next((_combined(t) for t in tables if t.name == table), 0)
+            joined = f"{combined} rows combine motions: --fit {COMBINES} fits them as one model. Or run"
+            raise InputError(
+                f"{points} usable point{'s' * (points != 1)} of the sweep over {variable}'",
+                f"at least {FEWEST} for an intercept, a slope and an error",
+                file=table,
+                advice=f"{joined if combined >= FEWEST else 'Run'} more settings, or leave the table out of the plan.",
+            )
+
+
+def _combined(table: ForceTable) -> int:
+    """Rows in which more than one of v, w, p, q, r is not at rest."""
+    sizes = [np.abs(table.motion[m]) for m in MOTIONS[1:]]
+    moving = [size > AT_REST * float(np.max(size, initial=0.0)) for size in sizes]
+    return int(np.sum(np.sum(moving, axis=0) > 1))

@@ -1,0 +1,68 @@
+"""Columns of a file that no fit uses and on which a slope depends: a propeller rate, an advance ratio, a trim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import words
+from coeflab.core.types import Array
+from coeflab.tables.evidence import Evidence
+from coeflab.tables.force_table import AT_REST
+from coeflab.tables.levels import MOST_LEVELS, SHARE, levels_of, slopes_by_level
+from coeflab.tables.mapping import Assigned
+from coeflab.tables.raw_table import RawColumn, RawTable
+
+SWEPT = {"beta": "YN", "v": "YN", "r": "YN", "alpha": "ZM", "w": "ZM", "q": "ZM", "dr": "YN", "ds": "ZM", "db": "ZM"}
+
+
+def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
+    """A warning for each slope that depends on the level of a column that is no setting of the table; one of each column.
+
+    Parameters
+    ----------
+    raw : RawTable
+    columns : sequence of Assigned
+    """
+    settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
+    speed = next((c.values for c in columns if c.said.role == "speed"), None)
+    used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain")}
+    for idle in (
+        c for c in raw.columns if c.name not in used and not c.means and not c.is_text and _has_levels(c, speed)
+    ):
+        yield from _by_column(idle, settings, columns, speed)
+
+
+def _has_levels(column: RawColumn, speed: Array | None) -> bool:
+    """Whether a column has a few levels, other than those of the speed."""
+    if not np.all(np.isfinite(column.values)) or not len(column.values):
+        return False
+    own = levels_of(column.values)
+    if not 1 <= own.max() < MOST_LEVELS:
+        return False
+    return (
+        speed is None
+        or len({*zip(own.tolist(), levels_of(speed).tolist(), strict=True)}) > own.max() + 1
+        or bool(np.ptp(speed) == 0.0)
+    )
+
+
+def _by_column(
+    idle: RawColumn, settings: dict[str, Assigned], columns: Sequence[Assigned], speed: Array | None
+) -> Iterator[Evidence]:
+    for name, swept in settings.items():
+        others = [np.abs(np.nan_to_num(c.values)) <= AT_REST for n, c in settings.items() if n != name]
+        alone = np.logical_and.reduce([*others, np.ones(len(idle.values), dtype=bool)])
+        for force in (c for c in columns if c.said.role == "force" and c.said.name in SWEPT[name]):
+            y = force.values if force.said.pure or speed is None else force.values / speed**2
+            found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone])
+            if found is not None and found.depends:
+                said = words(Finding.of(
+                    "levels.column", "table", Severity.WARN, statistic=found.spread, threshold=SHARE, symbol=f"the slope of {force.said.name} over {name}",
+                    advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{found.levels[0]:.6g}" }} in campaign.toml',
+                    slopes=tuple(f"{s:.3g}" for s in found.slopes), levels=tuple(f"{v:.4g}" for v in found.levels), column=idle.name,
+                ))  # fmt: skip
+                yield Evidence(f"warning: {said.statement}. {said.advice}")
+                return

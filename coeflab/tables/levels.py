@@ -1,0 +1,107 @@
+"""Whether a primed slope depends on a level of the test that the prime system says it should not: speed, propeller rate, advance ratio.
+
+A prime that holds has one slope at every speed. Behind a propeller at one rate it has not: the flow over a rudder goes with the slip. Rows
+of several levels in one sweep then give a slope of none of them. The test is that of Chow (1960): one law with a constant for each level
+against a law for each. Arrays only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array
+
+APART = 0.02  # of the largest level: closer ones are one level as measured
+FEWEST, MOST_LEVELS = 3, 10  # settings of a level, levels
+SHARE = 0.1  # of the largest slope: a smaller spread is Reynolds number, and no reason to part the rows
+SIGNIFICANCE = 0.01
+DIGITS = 2e-4  # of the largest force: rounding of printed primes
+
+
+@dataclass(frozen=True, slots=True)
+class LevelSlopes:
+    """Slopes of one sweep, level by level.
+
+    Attributes
+    ----------
+    levels, slopes : tuple of float
+    spread : float
+        Largest less smallest slope, of the largest.
+    probability : float
+        Of so large a difference by the scatter of the rows alone.
+    """
+
+    levels: tuple[float, ...]
+    slopes: tuple[float, ...]
+    spread: float
+    probability: float
+
+    @property
+    def depends(self) -> bool:
+        """Whether the slope depends on the level, beyond scatter and by a share that matters."""
+        return self.probability < SIGNIFICANCE and self.spread > SHARE
+
+
+def levels_of(values: Array) -> NDArray[np.intp]:
+    """A number for every row, (n,), that rows of one level share.
+
+    Examples
+    --------
+    >>> levels_of(np.array([1.3, 1.301, 0.45, 1.3])).tolist()
+    [1, 1, 0, 1]
+    """
+    order = np.argsort(values, kind="stable")
+    ranked = values[order]
+    steps = np.diff(ranked) > APART * float(np.max(np.abs(values), initial=0.0))
+    out = np.empty(len(values), dtype=np.intp)
+    out[order] = np.concatenate([[0], np.cumsum(steps)])[: len(values)]
+    return out
+
+
+def slopes_by_level(x: Array, y: Array, level: Array) -> LevelSlopes | None:
+    """Slopes of y over x at each level, and whether one would do; None with fewer than two levels of three settings.
+
+    Parameters
+    ----------
+    x, y, level : (n,) arrays
+        Setting, primed force, and what should not matter.
+    """
+    sound = np.isfinite(x) & np.isfinite(y) & np.isfinite(level)
+    x, y, level = x[sound], y[sound], level[sound]
+    group = levels_of(level)
+    kept = [g for g in np.unique(group) if np.unique(np.round(x[group == g], 9)).size >= FEWEST]
+    if not 2 <= len(kept) <= MOST_LEVELS:
+        return None
+    rows = np.isin(group, kept)
+    x, y, level, group = x[rows], y[rows], level[rows], np.searchsorted(kept, group[rows])
+    own = np.eye(len(kept))[group]
+    reach = float(np.max(np.abs(x)))
+    curved = min(np.unique(np.round(x[group == g], 9)).size for g in range(len(kept))) > FEWEST + 1
+    shape = [x / reach, x * np.abs(x) / reach**2] if curved else [x / reach]
+    each = np.column_stack([own, *(own * s[:, None] for s in shape)])
+    one = np.column_stack([own, *shape])
+    (full, beta), (common, _) = _left(each, y), _left(one, y)
+    k = len(kept)
+    freedom = len(y) - each.shape[1]
+    slopes = beta[k : 2 * k] / reach
+    noise = max(full, len(y) * (DIGITS * float(np.max(np.abs(y)))) ** 2 / 3.0)
+    probability = 1.0
+    if freedom > 0 and noise > 0.0:
+        from scipy.special import fdtrc
+
+        tested = each.shape[1] - one.shape[1]
+        probability = float(fdtrc(tested, freedom, max(common - full, 0.0) / tested / (noise / freedom)))
+    largest = float(np.max(np.abs(slopes)))
+    spread = float(np.ptp(slopes)) / largest if largest > 0.0 else 0.0
+    at = tuple(float(np.mean(level[group == g])) for g in range(k))
+    return LevelSlopes(at, tuple(map(float, slopes)), spread, probability)
+
+
+def _left(design: Array, y: Array) -> tuple[float, Array]:
+    """Sum of squares that a law leaves, and its coefficients."""
+    beta = np.linalg.lstsq(design, y, rcond=None)[0]
+    rest = y - design @ beta
+    return float(rest @ rest), np.asarray(beta)

@@ -1,0 +1,203 @@
+"""What words over a table say that its coefficients were divided by: "0.5 rho Lpp T U^2", "bezogen auf L·T", "surface mouillée 1,2 m²".
+
+`BASIS` is the area as a product of sizes, ``L T`` or ``V^(2/3)`` or ``wetted``; `SIZES` are the sizes of the body that words give beside
+the length: draught, breadth, diameter, volume, wetted and frontal area.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from coeflab.core.errors import InputError
+from coeflab.core.units import quantity
+from coeflab.tables.dialect import Marks, one_reading
+from coeflab.tables.raw_table import Stated
+
+BASIS = "basis.area"  # no key of campaign.toml: what the source's coefficients were divided by, beside 1/2 rho U^2
+SIZES = {
+    "T": "basis.draught", "B": "basis.breadth", "D": "basis.diameter", "V": "basis.volume",
+    "wetted": "basis.wetted_area", "frontal": "basis.frontal_area", "lateral": "basis.lateral_area",
+}  # fmt: skip
+_POWERS = {
+    "T": "length",
+    "B": "length",
+    "D": "length",
+    "V": "volume",
+    "wetted": "area",
+    "frontal": "area",
+    "lateral": "area",
+}
+_WORDS = {
+    "T": r"draughts?|drafts?|tiefgang|tirant\s+d['’]eau",
+    "B": r"breadth|beam|breite|largeur|bau",
+    "D": r"(?:max(?:imum)?\.?\s+|hull\s+)?diam(?:eter|[èe]tre)|(?:rumpf)?durchmesser",
+    "V": r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇",
+    "wetted": r"wetted\s+(?:surface|area)(?:\s+area)?|benetzte\s+(?:ober)?fl(?:ä|ae)che|surface\s+mouill[ée]e",
+    "frontal": r"frontal\s+area|cross[\s-]*section(?:al)?\s+area|mid(?:ship)?\s*section\s+area|stirnfl(?:ä|ae)che|spantfl(?:ä|ae)che|hauptspant\w*"
+    r"|querschnittsfl(?:ä|ae)che|ma[îi]tre[\s-]couple|surface\s+frontale|section\s+transversale",
+    "lateral": r"lateral\s+area|planform\s+area|projected\s+area|lateralfl(?:ä|ae)che|projizierte\s+fl(?:ä|ae)che|surface\s+lat[ée]rale|plan\s+lat[ée]ral",
+}
+_LETTERS = {
+    "T": r"T",
+    "B": r"B",
+    "D": r"[Dd]",
+    "V": r"V|∇",
+    "wetted": r"S_?w(?:et)?",
+    "frontal": r"A_?f",
+    "lateral": r"A_?l(?:at)?",
+}
+_UNITS = {"length": r"mm|cm|m|ft|in", "volume": r"m\^?3|m³|l|cm\^?3", "area": r"m\^?2|m²|cm\^?2|cm²|ft\^?2"}
+_SIZE = {
+    name: re.compile(
+        rf"(?<![^\W_])(?:(?i:{words})(?:\s+\(?(?:{_LETTERS[name]})\)?)?|(?:{_LETTERS[name]})(?=\s*[=:]))"
+        rf"\s*(?:=|:|\bof\b|\bis\b|\bvon\b|\bde\b)?\s*(?P<number>\d[\d.,]*)\s*[\[(]?(?P<unit>{_UNITS[_POWERS[name]]})(?![^\W_])"
+    )
+    for name, words in _WORDS.items()
+}
+_RAISED = r"(?:\s*(?:\^|\*\*)?\s*[({]?\s*(?P<power>2\s*/\s*3|[123])\s*[)}]?|(?P<small>[²³]))?"
+# One factor of a product: a length by its name, a size, the speed.
+_FACTOR = re.compile(
+    rf"(?:\s+x\s+|[\s*·×⋅]*)(?P<name>L(?:_?(?:pp|PP|BP|bp|oa|OA|wl|WL|os|OS|ua))?|l|T|[Dd]|B|∇|Vol(?:ume)?"
+    rf"|[UVSA](?:_?[a-z]{{1,4}}|_[A-Z][A-Za-z]{{0,3}}|_0)?)"
+    rf"(?![a-z]){_RAISED}"
+)
+_HEAD = re.compile(
+    r"(?:0?[.,]5|1\s*/\s*2|½)\s*[*·×⋅]?\s*(?:rho|ρ|Rho)(?![a-z])|(?:rho|ρ)\s*/\s*2(?![\d.])|(?:0?[.,]5|½)(?=\s*[*·×⋅]?\s*(?:density|dichte))"
+)
+_SAYS_BY = re.compile(
+    r"(?i)(?:non-?dimensional\w*|dimensionless|normali[sz]ed|made\s+dimensionless|divided|based|referred|coefficients?|primes?|entdimensioniert|bezogen|dimensionslos"
+    r"|normiert|adimensionn\w*|rapport[ée]\w*|coefficients?)[^.;]{0,40}?(?<![^\W_])(?:by|with|on|to|auf|mit|durch|par|à|avec|area)\s+(?:the\s+|die\s+|der\s+|la\s+|le\s+)?"
+)
+_LENGTH = ("L", "l")
+LONGEST = 60
+
+
+def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Stated]:
+    """What texts say of the area of coefficients, under `BASIS`, and of sizes of the body, under the keys of `SIZES`; offered.
+
+    Parameters
+    ----------
+    texts : iterable of (place, text)
+    marks : Marks
+        Of the numbers.
+
+    Examples
+    --------
+    >>> found = prime_basis([("line 1", "coefficients by 0.5 rho Lpp T U^2, draught 0.25 m")], Marks())
+    >>> found["basis.area"].value, found["basis.draught"].value
+    ('L T', 0.25)
+    """
+    out: dict[str, Stated] = {}
+    for place, text in texts:
+        for name, pattern in _SIZE.items():
+            if (m := pattern.search(text)) and (size := _in_si(m["number"], m["unit"], _POWERS[name], marks)):
+                out.setdefault(SIZES[name], Stated(size, f'{place}: "{" ".join(m[0].split())}"', offered=True))
+        found = _of_formula(text) or _of_sentence(text)
+        if found:
+            basis, words = found
+            said = Stated(basis, f'{place}: "{" ".join(words.split())}"', offered=True)
+            before = out.setdefault(BASIS, said)
+            if before.value != basis and not before.contradicted:
+                out[BASIS] = Stated(before.value, before.place, True, f"{before.place}, but {said.place}")
+    return out
+
+
+def _in_si(number: str, unit: str, dimension: str, marks: Marks) -> float:
+    value = one_reading(number, marks)
+    plain = unit.replace("²", "^2").replace("³", "^3")
+    if value is None or value <= 0.0:
+        return 0.0
+    if dimension == "volume":
+        per = {"l": 1e-3, "cm3": 1e-6, "cm^3": 1e-6}
+        return value * per.get(plain, 1.0)
+    try:
+        return max(quantity(f"{value!r} {plain}", dimension), 0.0)
+    except InputError:
+        return 0.0
+
+
+def _of_formula(text: str) -> tuple[str, str] | None:
+    """The area in ``1/2 rho U^2 L T``, of forces: the first formula of a text."""
+    for head in _HEAD.finditer(text):
+        factors, end = _product(text, head.end())
+        speeds = [(n, p) for n, p in factors if n in ("U", "V") and p == "2"]
+        if not speeds:
+            continue
+        rest = list(factors)
+        rest.remove(next((s for s in speeds if s[0] == "U"), speeds[0]))
+        if basis := _basis(rest):
+            return basis, text[head.start() : end]
+    return None
+
+
+def _of_sentence(text: str) -> tuple[str, str] | None:
+    """The area in ``bezogen auf L·T`` and ``coefficients by the wetted area``."""
+    for head in _SAYS_BY.finditer(text):
+        for name in ("wetted", "frontal", "lateral"):
+            if m := re.compile(rf"(?i)(?:{_WORDS[name]})").match(text, head.end()):
+                return name, text[head.start() : m.end()]
+        factors, end = _product(text, head.end())
+        if (len(factors) > 1 or any(p for _, p in factors)) and (basis := _basis(factors)):
+            return basis, text[head.start() : end]
+    return None
+
+
+def _product(text: str, at: int) -> tuple[list[tuple[str, str]], int]:
+    """Factors with their powers, and where they end."""
+    out: list[tuple[str, str]] = []
+    begun = at
+    while at - begun < LONGEST and (m := _FACTOR.match(text, at)):
+        power = (m["power"] or {"²": "2", "³": "3"}.get(m["small"] or "", "")).replace(" ", "")
+        name = m["name"]
+        plain = (
+            "L" if name[0] in "Ll" else "D" if name in "Dd" else "V" if name[0] == "∇" or name.startswith("Vol")
+            else "U" if name[0] == "U" else "V" if name[0] == "V" else name
+        )  # fmt: skip
+        out.append((plain, power))
+        at = m.end()
+    return out, at
+
+
+def _basis(factors: list[tuple[str, str]]) -> str:
+    """A product that is an area, as text: ``L L``, ``L T``, ``V^(2/3)``, ``wetted``; empty where it is none, as of moments."""
+    lengths: list[str] = []
+    for name, power in factors:
+        if name in ("L", "T", "B", "D"):
+            lengths += [name] * int(power or 1) if power in ("", "1", "2", "3") else [""] * 9
+        elif name == "V" and power == "2/3":
+            return "V^(2/3)" if len(factors) == 1 else ""
+        elif name[0] in "SA" and power in ("", "1"):
+            low = name.lower().lstrip("sa_")
+            kind = (
+                "wetted"
+                if name[0] == "S" or low.startswith("w")
+                else "frontal"
+                if low.startswith("f")
+                else "lateral"
+                if low.startswith("l")
+                else "area"
+            )
+            return kind if len(factors) == 1 else ""
+        else:
+            return ""
+    return " ".join(sorted(lengths, key="LTBD".index)) if len(lengths) == 2 and "" not in lengths else ""
+
+
+def area_of(basis: str, sizes: Mapping[str, float]) -> float | None:
+    """The area of a basis, m^2, from sizes by their letters; None where one is not known.
+
+    Examples
+    --------
+    >>> area_of("L T", {"L": 4.0, "T": 0.25})
+    1.0
+    """
+    if basis == "V^(2/3)":
+        return sizes["V"] ** (2.0 / 3.0) if "V" in sizes else None
+    factors = basis.split()
+    if not factors or any(f not in sizes for f in factors):
+        return None
+    out = 1.0
+    for f in factors:
+        out *= sizes[f]
+    return out

@@ -1,0 +1,305 @@
+"""Which source of a parameter file speaks of which variables, and what of them the force law takes: a sum, nothing twice.
+
+A source states one component of the force over a set of moved variables (v w p q r dr ds db; u and V are the speed of every
+source). A coefficient speaks of the variables of its product; a table of every product of its own variables, an increment
+over a control of those with that control alone. Sources of different products add up. Of two that speak of the same products
+the one over more variables stands; coefficients that cover all variables of a table stand before it, unless tables are asked
+for first. Drag, side force and lift speak for X, Y and Z in that order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.types import brief
+from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
+from coeflab.law.force_law import CONTROLS, WIND, ForceTerm
+from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
+from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
+
+AXES = COMPONENTS[:3]
+MAIN = dict(zip(WIND, AXES, strict=True))
+OF_SUM = "1.6"  # the first version of files that were written under this rule
+
+Moved = frozenset[str]
+
+
+def moved_by(variables: Iterable[str]) -> Moved:
+    """What a product of variables is about: motions but u, and controls; incidence is that of v and w."""
+    return frozenset(ANGLE_OF.get(v, v) for v in variables) & {*MOTIONS[1:], *CONTROLS}
+
+
+def place_of(model: ParameterModel) -> str:
+    """X Y Z K M N, or D S L; empty where the response is no force."""
+    name = model.response.removesuffix("'")
+    found = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
+    return found if found in (*COMPONENTS, *WIND) else ""
+
+
+def name_of(model: ParameterModel) -> str:
+    """``C_D over alpha and beta``."""
+    return f"{model.response} over {' and '.join(model.names)}"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class TableSource:
+    """A fitted table as a source.
+
+    Attributes
+    ----------
+    model : ParameterModel
+    place : str
+        X Y Z K M N, or D S L.
+    variables : frozenset of str
+        Moved ones.
+    needed : frozenset of str
+        Those in all of its terms: without them its force is zero by its form.
+    """
+
+    model: ParameterModel
+    place: str
+    variables: Moved
+    needed: Moved
+
+    @classmethod
+    def of(cls, model: ParameterModel) -> TableSource:
+        """The source that a model is."""
+        each = [moved_by(f.variable for f in t.factors) for t in model.terms]
+        return cls(model, place_of(model), moved_by(model.names), frozenset.intersection(*each))
+
+    @property
+    def component(self) -> str:
+        """The one of X Y Z K M N that it speaks for."""
+        return MAIN.get(self.place, self.place)
+
+    def speaks_of(self, product: Moved) -> bool:
+        """Whether products of these variables are among its own."""
+        return self.needed <= product <= self.variables
+
+    def meets(self, other: TableSource) -> bool:
+        """Whether both speak of some product."""
+        return self.needed | other.needed <= self.variables & other.variables
+
+    @property
+    def whole(self) -> bool:
+        """Whether it is the force of a motion, potential part and all, and no increment over a control."""
+        return self.model.contains_potential and not self.needed & set(CONTROLS)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Sources:
+    """What the law of a file is the sum of.
+
+    Attributes
+    ----------
+    terms : tuple of ForceTerm
+        Coefficients.
+    tables : tuple of TableSource
+    wind : (3,) bool
+        For which of X, Y, Z drag, side force and lift speak.
+    unused_terms : tuple of ForceTerm
+    unused_tables : tuple of TableSource
+    findings : tuple of Finding
+        What is not used, and why.
+    """
+
+    terms: tuple[ForceTerm, ...]
+    tables: tuple[TableSource, ...]
+    wind: tuple[bool, bool, bool]
+    unused_terms: tuple[ForceTerm, ...]
+    unused_tables: tuple[TableSource, ...]
+    findings: tuple[Finding, ...]
+
+    def components(self, source: TableSource) -> tuple[str, ...]:
+        """X Y Z K M N that a table of the law acts in."""
+        if source.place in WIND:
+            return tuple(c for c, speaks in zip(AXES, self.wind, strict=True) if speaks)
+        return (source.place,)
+
+    def open_products(self) -> NDArray[np.bool_]:
+        """(6, 6, 6), by force and two velocities: the products that no source speaks of, left to the ideal fluid."""
+        out = open_of(t for t in self.terms if not steered(t))
+        for s in self.tables:
+            if s.whole:
+                at = sorted({0, *(MOTIONS.index(m) for m in s.variables if m in MOTIONS)})
+                for c in self.components(s):
+                    out[np.ix_([COMPONENTS.index(c)], at, at)] = False
+        return out
+
+
+def steered(term: ForceTerm) -> bool:
+    """Whether a control is in it."""
+    return any(v in CONTROLS for v in term.variables)
+
+
+def open_of(terms: Iterable[ForceTerm]) -> NDArray[np.bool_]:
+    """(6, 6, 6), by force and two velocities: the products that no term speaks of."""
+    out = np.ones((6, 6, 6), dtype=bool)
+    for t in terms:
+        if t.pair is not None:
+            i, (j, k) = COMPONENTS.index(t.component), t.pair
+            out[i, j, k] = out[i, k, j] = False
+    return out
+
+
+def summed(
+    terms: Sequence[ForceTerm], models: Sequence[ParameterModel], tables_first: bool, version: str = OF_SUM
+) -> Sources:
+    """What of coefficients and tables adds up to the force.
+
+    Parameters
+    ----------
+    terms : sequence of ForceTerm
+        Coefficients, controls among them.
+    models : sequence of ParameterModel
+    tables_first : bool
+        Whether a table stands before the coefficients of its variables, even where these cover all of them.
+    version : str
+        Of the file: one before `OF_SUM` was written when tables or coefficients spoke for a component, never both.
+
+    Raises
+    ------
+    InputError
+        Two tables speak of the same products, and neither holds the variables of the other.
+    """
+    found: list[Finding] = []
+    every = [TableSource.of(m) for m in models if place_of(m)]
+    standing = _among_tables(every, found)
+    kept, dropped, silent = list(terms), list[ForceTerm](), set[str]()
+    for s in list(standing):
+        rivals = [t for t in kept if t.component == s.component and s.speaks_of(moved_by(t.variables))]
+        if not rivals:
+            continue
+        covered = frozenset().union(*(moved_by(t.variables) for t in rivals)) >= s.variables
+        if covered and not tables_first:
+            standing.remove(s)
+            silent.add(s.component)
+            found.append(_unused_table(s, [primed(t.symbol) for t in rivals]))
+            continue
+        kept = [t for t in kept if t not in rivals]
+        dropped += rivals
+        found.append(_unused_terms(rivals, s))
+    wind = _of_wind(standing, kept, silent)
+    if any(s.place in WIND for s in standing) and not all(wind):
+        names = list(dict.fromkeys(s.model.response for s in standing if s.place in WIND))
+        left = [c for c, speaks in zip(AXES, wind, strict=True) if not speaks]
+        found.append(Finding.of("law.wind_partly", ", ".join(names), Severity.NOTE, tables=names, components=left))
+    if version != OF_SUM and tuple(map(int, version.split("."))) < tuple(map(int, OF_SUM.split("."))):
+        found += _by_the_older_rule(terms, every, kept, standing, version)
+    out = tuple(s for s in every if s not in standing)
+    return Sources(tuple(kept), tuple(standing), wind, tuple(dropped), out, tuple(found))
+
+
+def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
+    """The tables that stay known where terms are to be found from data: those that speak of nothing that a term speaks of.
+
+    Parameters
+    ----------
+    models : sequence of ParameterModel
+    terms : sequence of (symbol, component, moved variables)
+        To be found; they stand before every table.
+
+    Raises
+    ------
+    InputError
+        Two tables speak of the same products.
+    """
+    found: list[Finding] = []
+    every = [TableSource.of(m) for m in models if place_of(m)]
+    standing, silent = _among_tables(every, found), set[str]()
+    across = frozenset("vw")
+    for s in list(standing):
+        rivals = [symbol for symbol, c, moved in terms if c == s.component and s.speaks_of(moved)]
+        if rivals:
+            standing.remove(s)
+            silent.add(s.component)
+            found.append(_unused_table(s, list(map(primed, rivals))))
+    silent |= {c for _, c, moved in terms if moved <= across}
+    wind = _of_wind(standing, (), silent)
+    return Sources((), tuple(standing), wind, (), tuple(s for s in every if s not in standing), tuple(found))
+
+
+def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[TableSource]:
+    """The tables that stand beside each other: of two of the same products the one over more variables."""
+    out = list(every)
+    for a, b in combinations(every, 2):
+        if a not in out or b not in out or a.component != b.component or not a.meets(b):
+            continue
+        if a.variables == b.variables or not (a.variables < b.variables or b.variables < a.variables):
+            raise InputError(
+                f"{name_of(a.model)} and {name_of(b.model)}, both with a force of {a.component} {_shared(a, b)}",
+                f"one table of {a.component} for each product of variables", column="models",
+                advice="Fit one table over all of its variables, or give derivatives.",
+            )  # fmt: skip
+        less, more = (a, b) if a.variables < b.variables else (b, a)
+        out.remove(less)
+        found.append(_unused_table(less, [name_of(more.model)]))
+    return out
+
+
+def _shared(a: TableSource, b: TableSource) -> str:
+    """The smallest product that two tables share, in words."""
+    least = sorted(a.needed | b.needed)
+    return f"by {' and '.join(least)}" if least else "at rest of its own"
+
+
+def _of_wind(standing: Sequence[TableSource], kept: Sequence[ForceTerm], silent: set[str]) -> tuple[bool, bool, bool]:
+    """For which of X, Y, Z drag, side force and lift speak: those of which body axes state nothing over incidence."""
+    group = [s for s in standing if s.place in WIND]
+    own = {s.component for s in group}
+    across = frozenset("vw")
+    out = []
+    for c in AXES:
+        stated = any(t.component == c and moved_by(t.variables) <= across for t in kept)
+        stated |= any(s.place == c and s.needed <= across for s in standing)
+        out.append(bool(group) and c not in silent and (c in own or not stated))
+    return out[0], out[1], out[2]
+
+
+def _unused_table(s: TableSource, by: Sequence[str]) -> Finding:
+    return Finding.of(
+        "law.table_unused", name_of(s.model), Severity.NOTE, component=s.component, by=list(dict.fromkeys(by)),
+        advice="--tables",
+    )  # fmt: skip
+
+
+def _unused_terms(terms: Sequence[ForceTerm], s: TableSource) -> Finding:
+    names = [primed(t.symbol) for t in terms]
+    return Finding.of(
+        "law.coefficients_unused", ", ".join(names), Severity.NOTE, component=s.component, coefficients=names,
+        table=name_of(s.model),
+    )  # fmt: skip
+
+
+def _by_the_older_rule(
+    terms: Sequence[ForceTerm],
+    every: Sequence[TableSource],
+    kept: Sequence[ForceTerm],
+    standing: Sequence[TableSource],
+    version: str,
+) -> list[Finding]:
+    """Where the sum is another force than a file before `OF_SUM` had: tables of components without a derivative alone."""
+    old = {t.component for t in terms if not t.variables or any(v not in CONTROLS for v in t.variables)}
+    were = [s for s in every if not (set(AXES) if s.place in WIND else {s.place}) & old]
+    changed = {s.component for s in every if (s in were) != (s in standing)}
+    changed |= {t.component for t in terms if t not in kept}
+    if not changed:
+        return []
+    names = [c for c in COMPONENTS if c in changed]
+    return [Finding.of("law.older_rule", ", ".join(names), Severity.NOTE, version=version, components=names)]
+
+
+def acts_in(model: ParameterModel) -> Mapping[str, Moved]:
+    """By component, the variables that a table has a force over; empty where its response is no force."""
+    place = place_of(model)
+    names = AXES if place in WIND else (place,) if place else ()
+    return dict.fromkeys(names, moved_by(model.names))

@@ -1,0 +1,1 @@
+"""The front door: what a user of coeflab in Python touches."""

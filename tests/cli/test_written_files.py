@@ -1,0 +1,72 @@
+"""Every command that writes a parameter file says what ``coeflab params check`` fails in it, and ends with 1 where it does."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.core.finding import Severity
+from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.vehicle.plausibility import LAW, plausibility
+from tests.cli.conftest import Run
+
+OWN = ("--length", "2 m", "--speed", "1.5 m/s", "--density", "1025", "--about", "cg")
+SOUND = ("--set", "Yv'=-0.03 +- 0.003", "--set", "Nr'=-0.006")
+DRIVES = ("--set", "Yv'=-0.03 +- 0.003", "--set", "Nr'=0.006")
+REMUS = str(shipped("cfd_data") / "remus100" / "remus100.parameters.json")
+WATER = str(shipped("cfd_data") / "flyingfish_water_synthetic" / "plan.toml")
+TUNE = str(shipped("cfd_data") / "huuv" / "tune.toml")
+FAST = {
+    "params new": ("params", "new", "mine", *OWN, *SOUND, "--out", "out"),
+    "params new, a wrong sign": ("params", "new", "mine", *OWN, *DRIVES, "--out", "out"),
+    "merge": ("merge", REMUS, "--set", "Yv|v|'=-0.1", "--out", "out"),
+    "merge, a wrong sign": ("merge", REMUS, "--set", "Yv|v|'=0.5", "--out", "out"),
+    "run": ("run", WATER, "--out", "out"),
+}
+SLOW = {
+    "validate": ("validate", "suboff", "--out", "out"),
+    "validate thauv": ("validate", "thauv", "--out", "out"),
+    "vehicle": ("vehicle", "myring_auv", "--out", "out"),
+    "tune": ("tune", TUNE, "--out", "out"),
+}
+
+
+def holds(coeflab: Run, folder: Path, command: tuple[str, ...], *, fails: bool | None = None) -> None:
+    """Run a command; each failure of each file that it wrote is among what it says."""
+    done = coeflab(*command, "--json")
+    assert done.returncode in (0, 1), done.stderr
+    printed = json.loads(done.stdout)
+    rows = [*printed.get("findings", []), *printed.get("checks", [])]
+    failing = {r["found"] for r in rows if r["severity"] == "fail"}
+    files = sorted((folder / "out").rglob("*.parameters.json"))
+    assert files
+    failures = [c for f in files for c in plausibility(read_parameter_file(f)) if c.severity is Severity.FAIL]
+    assert {c.statistic for c in failures if c.name != LAW} <= failing
+    if fails is not None:
+        assert bool(failures) is fails
+    if failures:
+        assert done.returncode == 1
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_what_params_check_fails_is_said_by_the_writer(coeflab: Run, tmp_path: Path, name: str) -> None:
+    holds(coeflab, tmp_path, FAST[name], fails="wrong sign" in name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SLOW)
+def test_what_params_check_fails_is_said_by_slower_writers(coeflab: Run, tmp_path: Path, name: str) -> None:
+    holds(coeflab, tmp_path, SLOW[name], fails=False)
+
+
+def test_every_command_that_writes_a_parameter_file_is_here() -> None:
+    """The source has three places that make its bytes: two in the workbench, which run, validate, vehicle, merge and tune share, and params new."""
+    package = Path(__file__).parents[2] / "coeflab"
+    writers = {
+        str(f.relative_to(package)) for f in package.rglob("*.py")
+        if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
+    }  # fmt: skip
+    assert writers == {"workbench/exports.py", "workbench/tune.py", "cli/params.py"}

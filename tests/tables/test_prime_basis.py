@@ -1,0 +1,127 @@
+"""What a prime was divided by is read from words, is always a line to confirm, and is doubted where no body has such a slope."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.tables.campaign import read_campaign
+from coeflab.tables.dialect import Marks
+from coeflab.tables.low_aspect import low_aspect_slope
+from coeflab.tables.words.primes import BASIS, area_of, prime_basis
+from tests.cli.test_import import invoke, left_open, table_of, without_slopes
+
+__all__ = ["without_slopes"]
+LENGTH, YV, NV = 4.0, -0.02, -0.008  # primes by L^2 and L^3
+BETA = np.array([-8.0, -4.0, 0.0, 4.0, 8.0])
+
+FORMULAS = {
+    "coefficients by 0.5 rho Lpp T U^2 (N by 0.5 rho Lpp^2 T U^2)": "L T",
+    "Y' = Y/(½ρU²LT)": "L T",
+    "Koeffizienten bezogen auf L·B": "L B",
+    "rho/2 V^2 L d": "L D",
+    "forces divided by 0.5*rho*U^2*S_w": "wetted",
+    "adimensionnés par la surface mouillée": "wetted",
+    "1/2 rho U^2 A_F": "frontal",
+    "½ρV²∇^(2/3)": "V^(2/3)",
+    "1/2 rho U^2 L^2 (moments 1/2 rho U^2 L^3)": "L L",
+    "moments by 0.5 rho U^2 L^3": "",
+    "nondimensionalised by L and U": "",
+    "speed 1.5 m/s, L = 4 m, T = 20 C": "",
+}
+
+
+@pytest.mark.parametrize(("text", "basis"), FORMULAS.items())
+def test_formulas_and_sentences_of_three_languages(text: str, basis: str) -> None:
+    found = prime_basis([("line 1", text)], Marks())
+    assert (str(found[BASIS].value) if BASIS in found else "") == basis
+
+
+def test_two_formulas_that_differ_are_open() -> None:
+    found = prime_basis([("line 1", "by 0.5 rho L T U^2"), ("line 2", "by 0.5 rho U^2 L^2")], Marks())
+    assert "line 2" in found[BASIS].contradicted
+
+
+def test_sizes_in_any_unit_give_the_area() -> None:
+    found = prime_basis([("l", "draught 250 mm, beam 0.5 m, volume 0.064 m^3, wetted surface 3,2 m²")], Marks(","))
+    sizes = {"L": 4.0, "T": 0.25, "B": 0.5, "V": 0.064}
+    for name, key in (("T", "basis.draught"), ("B", "basis.breadth"), ("V", "basis.volume")):
+        assert found[key].value == pytest.approx(sizes[name])
+    assert found["basis.wetted_area"].value == pytest.approx(3.2)
+    assert [area_of(b, sizes) for b in ("L T", "L B", "V^(2/3)", "L D")] == pytest.approx([1.0, 2.0, 0.16, None])
+
+
+def drift(folder: Path, head: str, area: float) -> Path:
+    """Primes of a planted Yv', Nv' by another area, with words over them."""
+    v = np.sin(np.radians(BETA))
+    rows = [
+        f"{b:g},{-(LENGTH**2) / area * YV * x:.9g},{-(LENGTH**2) / area * NV * x:.9g}"
+        for b, x in zip(BETA, v, strict=True)
+    ]
+    file = folder / "drift.csv"
+    file.write_text("\n".join([f'"{head}"', "beta [deg],Y',N'", *rows]) + "\n", encoding="utf-8")
+    return file
+
+
+KNOWN = ("--set", "axes.frame=FRD", "--set", "axes.reference_point=midship")
+
+
+@pytest.mark.parametrize(
+    ("head", "area"),
+    [
+        ("Lpp 4.0 m, draught 0.25 m; coefficients by 0.5 rho Lpp T U^2", 1.0),
+        ("Lpp = 4 m, Breite 0.5 m; Beiwerte bezogen auf L*B", 2.0),
+        ("LOA = 4 m, hull diameter 0.4 m; primes: 1/2 rho U^2 L D", 1.6),
+        ("LOA = 4 m, frontal area 0.2 m^2, forces divided by the frontal area", 0.2),
+        ("LOA = 4 m; 1/2 rho U^2 L^2", 16.0),
+    ],
+)
+def test_a_basis_in_words_gives_the_planted_slope(head: str, area: float, tmp_path: Path) -> None:
+    file = drift(tmp_path, head, area)
+    shown = invoke("import", file, "--out", tmp_path / "out", *KNOWN)
+    assert "coefficients.area" in shown.output
+    assert not (tmp_path / "out").exists()  # nothing is taken before somebody accepts the line
+    done = invoke("import", file, "--out", tmp_path / "out", *KNOWN, "--accept")
+    assert done.exit_code == 0, done.output
+    table = table_of(tmp_path / "out")
+    v = table.primed_motion("v", LENGTH)
+    assert np.polyfit(v, table.primed_force("Y", LENGTH), 1)[0] == pytest.approx(YV, rel=1e-6)
+    assert np.polyfit(v, table.primed_force("N", LENGTH), 1)[0] == pytest.approx(NV, rel=1e-6)
+    assert "coefficients.area" not in read_campaign(tmp_path / "out" / "campaign.toml").tables[0].assumed
+
+
+def test_a_prime_by_its_name_alone_is_accepted_as_an_assumption(tmp_path: Path) -> None:
+    file = drift(tmp_path, "LOA = 4 m", 16.0)
+    assert invoke("import", file, "--out", tmp_path / "out", *KNOWN).exit_code == 2
+    assert invoke("import", file, "--out", tmp_path / "out", *KNOWN, "--accept").exit_code == 0
+    assert read_campaign(tmp_path / "out" / "campaign.toml").tables[0].assumed == ("coefficients.area",)
+    assert (
+        invoke(
+            "import", file, "--out", tmp_path / "said", *KNOWN, "--set", "coefficients.area=prime", "--accept"
+        ).exit_code
+        == 0
+    )
+    assert read_campaign(tmp_path / "said" / "campaign.toml").tables[0].assumed == ()
+
+
+def test_an_area_without_its_size_is_open(tmp_path: Path) -> None:
+    file = drift(tmp_path, "LOA = 4 m; coefficients by 0.5 rho L T U^2", 1.0)
+    assert left_open(invoke("import", file, "--out", tmp_path / "out", *KNOWN, "--accept")) == ["coefficients.area"]
+    mentioned = drift(tmp_path, "LOA = 4 m, wetted surface 3.2 m^2", 3.2)
+    assert left_open(invoke("import", mentioned, "--out", tmp_path / "out", *KNOWN, "--accept")) == [
+        "coefficients.area"
+    ]
+
+
+def test_a_slope_of_three_times_low_aspect_ratio_warns(tmp_path: Path) -> None:
+    """Jones 1946: 1/2 rho U^2 (pi/2) b^2 of a span b; a draught and its image are a span of 2 T, of which half is wet."""
+    assert low_aspect_slope("D", 0.4, 4.0) == pytest.approx(0.5 * np.pi * 0.01)
+    assert low_aspect_slope("T", 0.25, 4.0) == pytest.approx(0.5 * (np.pi / 2.0) * (2.0 * 0.25) ** 2 / 16.0)
+    file = drift(tmp_path, "LOA = 4 m, draught 0.25 m", 1.0)  # by L T, which no word says: 16 times too large
+    done = invoke("import", file, "--out", tmp_path / "out", *KNOWN, "--accept")
+    assert "three times" in " ".join(done.output.split())
+    right = drift(tmp_path, "LOA = 4 m, draught 0.25 m; 1/2 rho U^2 L^2", 16.0)
+    done = invoke("import", right, "--out", tmp_path / "right", *KNOWN, "--accept")
+    assert "three times" not in " ".join(done.output.split())
