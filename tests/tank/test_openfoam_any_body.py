@@ -67,9 +67,9 @@ ABOUT_A_PLANE = X_FINS.replace('roll = "135 deg"', 'roll = "315 deg"').rsplit("[
 @pytest.mark.parametrize(
     ("made", "half", "length", "chord"),
     [
-        pytest.param(named("suboff_aff8"), Half.WHOLE, 80, 24, id="groves, one plane with edges in it"),
-        pytest.param(named("suboff_aff8"), Half.PORT, 80, 24, id="groves, its half"),
-        pytest.param(named("suboff_hull_planes"), Half.UPPER, 80, 24, id="groves, two planes, a half"),
+        pytest.param(named("suboff_aff8"), Half.WHOLE, 70, 20, id="groves, one plane with edges in it"),
+        pytest.param(named("suboff_aff8"), Half.PORT, 70, 20, id="groves, its half"),
+        pytest.param(named("suboff_hull_planes"), Half.UPPER, 70, 20, id="groves, two planes, a half"),
         pytest.param(named("suboff_bare_hull"), Half.WHOLE, 100, 24, id="groves, no edge"),
         pytest.param(named("myring_auv"), Half.WHOLE, 70, 16, id="myring, fins to port and starboard"),
         pytest.param(named("myring_auv"), Half.PORT, 70, 16, id="myring, its half"),
