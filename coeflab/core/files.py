@@ -335,3 +335,20 @@ def write_atomically(path: Path, content: bytes) -> bool:
         The folder cannot be made or written.
     """
     return write_all(path.parent, {path.name: content})[path.name]
+
+
+def leading_bytes(file: Path, most: int) -> bytes:
+    """The first bytes of a file, to see what it is or names; never more than ``most``.
+
+    Parameters
+    ----------
+    file : Path
+    most : int
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    """
+    with file.open("rb") as stream:
+        return stream.read(most)

@@ -74,7 +74,15 @@ class Finding:
         advice: str = "",
         **facts: Any,
     ) -> Finding:
-        """A finding with its facts by keyword; lists become tuples."""
+        """A finding with its facts by keyword; lists become tuples.
+
+        Parameters
+        ----------
+        code, subject, severity, statistic, threshold, advice
+            As the fields.
+        **facts
+            Numbers, names, or several of them.
+        """
         held = tuple(Fact(name, tuple(value) if isinstance(value, list) else value) for name, value in facts.items())
         return cls(code, subject, severity, statistic, threshold, advice, held)
 

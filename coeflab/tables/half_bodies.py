@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.files import leading_bytes
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, MONITOR_FILES
 from coeflab.core.types import Array
@@ -165,8 +166,7 @@ def _planes_in(
     file: Path, _time: int, _size: int, kind: re.Pattern[str], name: re.Pattern[str] | None
 ) -> tuple[str, ...]:
     """Symmetry planes that one text names; remembered, as many runs of one folder have the same beside them."""
-    with file.open("rb") as stream:
-        raw = stream.read(JSON_BYTES)
+    raw = leading_bytes(file, JSON_BYTES)
     if b"\0" in raw or b"symm" not in raw.lower():
         return ()
     out: dict[str, str] = {}

@@ -52,7 +52,20 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
 
 
 def conversions(planned: PlannedConversion, plan: Plan, tables: Sequence[ForceTable]) -> Iterator[Conversion]:
-    """The tables of a copy, each beside the one of the same place in its original."""
+    """The tables of a copy, each beside the one of the same place in its original.
+
+    Parameters
+    ----------
+    planned : PlannedConversion
+    plan : Plan
+    tables : sequence of ForceTable
+        Of the plan, settled; those of the original are among them.
+
+    Raises
+    ------
+    InputError
+        Another number of tables or of rows than the original has.
+    """
     copies = [settled(t, plan) for t in read_tables(table_at(planned.campaign))]
     originals = [t for t in tables if t.campaign == planned.of]
     if len(copies) != len(originals):

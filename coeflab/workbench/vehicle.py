@@ -182,7 +182,15 @@ def estimated(
 
 
 def compared(parameters: ParameterFile, made: methods.Estimates, moves: Sequence[Simulation]) -> ParameterFile:
-    """The file with what its law leaves out of the estimates' own forces, over the states of manoeuvres."""
+    """The file with what its law leaves out of the estimates' own forces, over the states of manoeuvres.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    made : Estimates
+        Whose forces the law stands for.
+    moves : sequence of Simulation
+    """
     over = [
         Motions(s.manoeuvre.name.replace("_", " "), s.trajectory.velocity[rows], angles_at(s.trajectory, rows))
         for s in moves

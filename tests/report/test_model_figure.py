@@ -73,7 +73,7 @@ def test_every_fit_has_its_pictures(campaign, fit, options, kinds):
 def test_angles_are_drawn_in_degrees_and_primes_without_unit():
     surface = models("huuv_synthetic", "surface", (("degree", 3),))[0]
     assert axis_name("alpha", surface) == "angle of attack alpha  [deg]"
-    assert domain_in_words(surface) == "alpha -25.0 .. 25.0 deg; beta 0 .. 25.0 deg"
+    assert domain_in_words(surface) == "alpha -25.0 .. 25.0 deg; beta -25.0 .. 25.0 deg"
     line = models("suboff_roddy_2", "polynomial", tuple(POLYNOMIAL.items()))[0]
     assert axis_name("v", line) == "sway velocity v' = v/U  [-]"
     assert domain_in_words(line) == "v' -0.310 .. 0.232"

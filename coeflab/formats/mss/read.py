@@ -257,7 +257,16 @@ OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity"
 
 
 def left_behind(found: MFile, subject: str, read: tuple[str, ...]) -> tuple[Finding, ...]:
-    """What the file states and this reader has no place for."""
+    """What the file states and this reader has no place for.
+
+    Parameters
+    ----------
+    found : MFile
+    subject : str
+        Whom the findings are about.
+    read : tuple of str
+        Names that the reader takes, beside derivatives.
+    """
     taken = found.needed([*(n for n in found.numbers if is_derivative(n)), *read])
     kinds: dict[str, list[str]] = {}
     for name in found.numbers:
