@@ -6,7 +6,7 @@
 (-0.0262, 0.0027)
 
 Data in: `read_table`, `read_tables`, `read_body`, `read_vehicle`. Coefficients: `fit`, `estimate`. Vehicles: `vehicle`, `compare`, `export`.
-Motions: `simulate`. Towing: `tow`. Studies: `run`. What these return has ``frame()`` for a DataFrame and ``plot(ax=...)`` for a picture.
+Motions: `simulate`, `trim`. Towing: `tow`. Studies: `run`. What these return has ``frame()`` for a DataFrame and ``plot(ax=...)`` for a picture.
 SI and radians; a text such as ``"20 deg"`` has its unit. Wrong input is an `InputError`; nothing is written but by what says so.
 
 Names are imported on first use, so that ``import coeflab`` costs nothing.
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from coeflab.api.studies import Study, run
     from coeflab.api.table import Table
     from coeflab.api.towing import Tow, tow
+    from coeflab.api.trimming import Trim, trim
     from coeflab.api.vehicle import Vehicle, read_vehicle, vehicle
     from coeflab.core.errors import AxesError, CoeflabError, InputError, PluginError, ScalingMismatchError, UnitsError
     from coeflab.core.files import shipped
@@ -87,10 +88,8 @@ _HOMES = {
         "compare",
     ),
     "api.estimating": ("estimate",),
-    "api.towing": (
-        "Tow",
-        "tow",
-    ),
+    "api.towing": ("Tow", "tow"),
+    "api.trimming": ("Trim", "trim"),
     "api.studies": (
         "Study",
         "run",
@@ -158,6 +157,7 @@ __all__ = [
     "Study",
     "Table",
     "Tow",
+    "Trim",
     "UnitsError",
     "Vehicle",
     "__version__",
@@ -176,6 +176,7 @@ __all__ = [
     "shipped",
     "simulate",
     "tow",
+    "trim",
     "validation",
     "vehicle",
 ]

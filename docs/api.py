@@ -52,7 +52,7 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
             "ParameterFile",
         ),
     ),
-    "api_motion": ("Motion", "A vehicle in a manoeuvre.", ("simulate", "Motion")),
+    "api_motion": ("Motion", "A vehicle in a manoeuvre.", ("simulate", "Motion", "trim", "Trim")),
     "api_study": (
         "Study",
         "A plan.toml carried out, and its report.",

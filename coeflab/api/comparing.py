@@ -10,11 +10,14 @@ import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.vehicle import comparison as plain
+from coeflab.vehicle.comparison import ROUNDING, Verdict
 from coeflab.vehicle.parameter_file import ParameterFile
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+
+__all__ = ["ROUNDING", "Comparison", "Verdict", "compare"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
+from coeflab.formats import EXPORTERS
 from coeflab.formats.export import Export, Kind
+from coeflab.formats.unspoken import without_law
 from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export as rendered
 
+__all__ = ["Export", "ParameterFile", "export", "refusal", "require_targets", "without_law"]
 WITH_MASS = "Give the vehicle a mass and an added mass."
 
 
@@ -59,12 +63,14 @@ def export(
     made = rendered(parameters, to, accelerations, accept_loss=accept_loss)
     if out is not None:
         if not accept_loss and not made.lossless:
-            raise refusal(made, parameters, "accept_loss=True, to write the rest")
+            raise refusal(made, parameters, "accept_loss=True, to write the rest", place=f"{to}, ")
         write_all(Path(out), made.files)
     return made
 
 
-def refusal(made: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS) -> InputError:
+def refusal(
+    made: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS, place: str = ""
+) -> InputError:
     """The error about a target that loses part of a file and nobody accepted that.
 
     Parameters
@@ -75,11 +81,27 @@ def refusal(made: Export, parameters: ParameterFile, expected: str, advice: str 
         What would do.
     advice : str
         Where the target lacks a mass.
+    place : str
+        Before the words, such as the target.
     """
     loss = made.loss
     lost = () if loss is None else loss.lost
     missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost)
     return InputError(
-        f"{made.target}, a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}", expected,
-        column="to", advice=advice if missing else "",
+        f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}", expected,
+        advice=advice if missing else "",
     )  # fmt: skip
+
+
+def require_targets(names: Sequence[str]) -> None:
+    """Refuse targets that no exporter has, before anything is computed.
+
+    Raises
+    ------
+    InputError, PluginError
+        None is named; no exporter has the name.
+    """
+    if not names:
+        raise InputError("no target", f"one of {', '.join(EXPORTERS.names())}", column="--to")
+    for name in names:
+        EXPORTERS.load(name)

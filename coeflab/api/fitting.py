@@ -79,7 +79,7 @@ def fit(
     )
     if not every:
         raise InputError("no table", "a table, or several", column="tables")
-    read = [t for one in every for t in read_tables(one)]
+    read: list[ForceTable] = [t for one in every for t in read_tables(one)]
     names = [t.name for t in read]
     if twice := next((n for n in names if names.count(n) > 1), None):
         raise InputError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,9 @@ from coeflab.workbench import run as carried_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from coeflab.report.acceptance import Acceptance
+    from coeflab.report.document import Document
 
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
@@ -70,12 +73,10 @@ class Study(plain.Study):
         InputError
             Another ending.
         """
-        from coeflab.published.documents import report_of, written
-
         file = Path(path) / "report.html" if Path(path).is_dir() else Path(path)
         if file.suffix not in FORMATS:
             raise InputError(shown(file.name), f"a name that ends in {', '.join(FORMATS)}", column="path")
-        made = written(report_of(self, full=full, short=short).document, [FORMATS[file.suffix]])
+        _, made, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short)
         own = next(name for name in made if name.endswith(file.suffix))
         write_all(file.parent, {file.name if name == own else name: content for name, content in made.items()})
         return file
@@ -83,6 +84,84 @@ class Study(plain.Study):
     def plot(self, symbol: str | None = None, ax: Axes | None = None) -> Axes:
         """A slope, or without a symbol every coefficient; see `Result.plot`."""
         return self.result.plot(symbol, ax)
+
+
+def report_files(
+    found: plain.Study | Acceptance,
+    formats: Sequence[str] = ("html",),
+    *,
+    full: bool = False,
+    short: bool = False,
+    sections: Sequence[str] = (),
+    style: str | Path | None = None,
+) -> tuple[Document, dict[str, bytes], bool]:
+    """The files of a report; nothing is written.
+
+    Parameters
+    ----------
+    found : Study or Acceptance
+        From `run`, or from `studied`.
+    formats : sequence of str
+        html, pdf, latex, workbench, figures.
+    full, short : bool
+        With the appendix; one page.
+    sections : sequence of str
+        Only these, by anchor or title.
+    style : str or Path, optional
+        A style of Matplotlib for the figures.
+
+    Returns
+    -------
+    document, files, failed
+        Contents by name; whether something of what it tells fails.
+
+    Raises
+    ------
+    InputError
+        No such format, section or style.
+    """
+    from coeflab.published.documents import only, report_of, written
+    from coeflab.report.figures.files import styled
+
+    with styled(style):
+        made = report_of(found, short=short, full=full or bool(sections))
+        document = only(made.document, sections)
+        files: dict[str, bytes] = {}
+        for name in formats:
+            files.update(written(document, [name]))
+    if short:
+        files = {name.replace("report", "summary", 1): content for name, content in files.items()}
+    return document, files, made.failed
+
+
+def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> plain.Study | Acceptance:
+    """What a person names computed: a plan, a folder with one, a campaign, a shipped validation or publication.
+
+    Parameters
+    ----------
+    study : str
+    progress : callable, optional
+        Takes what is being done, in words.
+    """
+    from coeflab.published.documents import studied as computed
+
+    return computed(study, progress)
+
+
+def require_formats(names: Sequence[str]) -> None:
+    """Refuse formats that no renderer has.
+
+    Raises
+    ------
+    InputError, PluginError
+        None is named; no renderer has the name.
+    """
+    from coeflab.report.formats import REPORTERS
+
+    if not names:
+        raise InputError("no format", f"one or more of {', '.join(REPORTERS.names())}", column="--to")
+    for name in names:
+        REPORTERS.load(name)
 
 
 def run(plan: Plan | str | Path, progress: Callable[[str], None] = lambda _: None) -> Study:

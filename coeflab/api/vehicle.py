@@ -18,31 +18,28 @@ from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
 from coeflab.api.questions import si
 from coeflab.api.result import Result
+from coeflab.api.trimming import LinearModel, Trim, linear_model, trim
 from coeflab.bodies import body as plain
 from coeflab.core.errors import InputError
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
+from coeflab.core.table import Check
 from coeflab.core.types import in_angles
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import primed
-from coeflab.motion.trim.linear_model import LinearModel, linear_model
-from coeflab.motion.trim.trim import trim
-from coeflab.motion.vehicle import vehicle as moving
 from coeflab.study.study import Plan
 from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.from_shape import Stated
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import plausibility
 from coeflab.workbench.vehicle import estimated
 
 if TYPE_CHECKING:
     import pandas as pd
-
-AXES = {"speed": "u", "sway": "v", "heave": "w"}
-ANGLES = ("roll", "pitch")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,14 +185,26 @@ class Vehicle:
         >>> model.A.shape == (len(model.states),) * 2
         True
         """
-        asked = {AXES.get(k, k): si(v, _dimension(k), k) for k, v in motion.items()}
-        if speed is not None:
-            asked["u"] = si(speed, "speed", "speed")
-        vertical = bool({"w", "pitch", "ds", "db"} & {*asked, *(commands or {})})
-        craft = moving(
-            self.file, tuple(free), plane or ("vertical" if vertical else "horizontal"), tables, accelerations
+        asked: dict[str, Any] = dict(motion) if speed is None else {"speed": speed, **motion}
+        steady = trim(
+            self, commands=commands, plane=plane, free=free, tables=tables, accelerations=accelerations, **asked
         )
-        return linear_model(trim(craft, asked, dict(commands or {}), {}))
+        return linear_model(steady)
+
+    def trim(self, **asked: Any) -> Trim:
+        """A steady motion; see `coeflab.trim`."""
+        return trim(self, **asked)
+
+    def checks(self) -> tuple[Check, ...]:
+        """What ``coeflab params check`` finds: signs, sizes, what stands twice.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
+        True
+        """
+        return tuple(plausibility(self.file))
 
     def simulate(self, manoeuvre: str, **options: Any) -> Motion:
         """A manoeuvre; see `coeflab.simulate`."""
@@ -218,10 +227,6 @@ class Vehicle:
     def compare(self, other: Vehicle | ParameterFile | str | Path) -> Comparison:
         """Against another vehicle; see `coeflab.compare`."""
         return compared(self, other)
-
-
-def _dimension(name: str) -> str:
-    return "speed" if name in AXES else "rate" if name == "yaw_rate" else "angle"
 
 
 def read_vehicle(source: str | Path | ParameterFile | Vehicle) -> Vehicle:

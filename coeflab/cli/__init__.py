@@ -92,6 +92,17 @@ class Commands(TyperGroup):
         super().__init__(**settings)
         self.commands = {name: TyperCommand(name) for name in ORDER}
 
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """Refuse a blank value of any option or argument: it is no way to leave one out."""
+        from coeflab.core.errors import InputError
+
+        for before, text in zip(["", *args], args, strict=False):
+            flag, sign, value = text.partition("=") if text.startswith("--") else (before, "=", text)
+            if sign and not value.strip() and not ctx.resilient_parsing:
+                name = flag if flag.startswith("-") else "an argument"
+                raise InputError("a blank value", "a value, or the option left out", column=name)
+        return super().parse_args(ctx, args)
+
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of a name, with its options; None where there is none."""
         found = super().get_command(ctx, cmd_name)
@@ -131,10 +142,26 @@ def _built(name: str) -> Any:
         one.command(name=name, cls=kind, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
     out = typer.main.get_command(one)
     out.name = name
+    for command in getattr(out, "commands", {"": out}).values():
+        for option in command.params:
+            option.callback = _finite(option.callback)
     if name not in WITHOUT_TABLES:
         for command in getattr(out, "commands", {"": out}).values():
             command.params.append(_wide())
     return out
+
+
+def _finite(before: Any) -> Any:
+    """What an option does with its value, after a number that is none was refused."""
+
+    def checked(ctx: Any, param: Any, value: Any) -> Any:
+        if isinstance(value, float) and not abs(value) < float("inf"):
+            from coeflab.core.errors import InputError
+
+            raise InputError(str(value), "a finite number", column=param.opts[0])
+        return value if before is None else before(ctx, param, value)
+
+    return checked
 
 
 def _wide() -> Any:

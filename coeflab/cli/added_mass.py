@@ -69,13 +69,14 @@ def command(
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.workbench.hulls import added_masses
 
+    share = _share(error) if error else ""
     with show.narrated():
         given = mesh_body(body, unit, axes, repair, fill, sheets)
         if wall or distance:
-            more = further(ctx.args) | ({"error": _share(error)} if error else {})
+            more = further(ctx.args) | ({"error": share} if share else {})
             _near(given, density, method, wall, distance, more, json)
             return
-        found = added_masses(given, density, method, further(ctx.args), error=_share(error) if error else "")
+        found = added_masses(given, density, method, further(ctx.args), error=share)
     if json:
         for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
             show.error(line)
@@ -109,10 +110,16 @@ def _as_json(found: AddedMass, density: float, recommended: str) -> dict[str, ob
 
 def _share(text: str) -> str:
     """As per cent, which the option takes; 0.02 is 2 %."""
+    from coeflab.core.errors import InputError, shown
+
+    number = text.strip().removesuffix("%")
     try:
-        return text if text.rstrip().endswith("%") else f"{100.0 * float(text):.10g}%"
+        percent = float(number) * (1.0 if text.strip().endswith("%") else 100.0) if "_" not in number else 0.0
     except ValueError:
-        return text
+        percent = 0.0
+    if not 0.0 < percent < 100.0:
+        raise InputError(shown(text), "a share above zero and below one, such as 2% or 0.02", column="--error")
+    return f"{percent:.10g}%"
 
 
 def distances_of(wall: str, distance: str, method: str) -> list[float]:

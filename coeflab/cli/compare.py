@@ -13,8 +13,8 @@ from coeflab.cli import complete, show
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from coeflab.api.comparing import Comparison
     from coeflab.core.table import Table
-    from coeflab.vehicle.comparison import Comparison
 
 
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
@@ -38,12 +38,9 @@ def command(
     means that at 95 % of its points the difference is inside the combined 95 % half-width. Where one of two values has no U95,
     another sign and a ratio above 1.5 are marked. Exit code 1 where two files of one body are apart or of other signs.
     """
-    from coeflab.vehicle.comparison import compare
-    from coeflab.vehicle.parameter_file import read_parameter_file
+    import coeflab as cf
 
-    files = read_parameter_file(first), read_parameter_file(second)
-    alike = files[0].name == files[1].name
-    found = compare(*files, (str(first), str(second)) if alike else None)
+    found = cf.compare(first, second)
     if json:
         show.json_object(as_json(found))
     else:
@@ -96,7 +93,7 @@ def as_json(found: Comparison) -> dict[str, Any]:
 
 def _comparable(table: Table, differ: Sequence[bool]) -> Table:
     """The rows that can be compared, or whose values ``differ``; of the others their names, by verdict and reason."""
-    from coeflab.vehicle.comparison import Verdict
+    from coeflab.api.comparing import Verdict
 
     column = table.headers.index("verdict")
     named = (Verdict.NOT_COMPARABLE.value, Verdict.EQUAL.value)
@@ -117,8 +114,8 @@ def _comparable(table: Table, differ: Sequence[bool]) -> Table:
 
 
 def _print(found: Comparison) -> None:
+    from coeflab.api.comparing import ROUNDING, Verdict
     from coeflab.report.tables import models as comparison_tables
-    from coeflab.vehicle.comparison import ROUNDING, Verdict
 
     apart = [bool(r.difference) and abs(r.difference or 0.0) > ROUNDING * abs(r.a or 0.0) for r in found.rows]
     for table, differ in (

@@ -12,9 +12,8 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from coeflab.api.exporting import Export, ParameterFile
     from coeflab.core.errors import InputError
-    from coeflab.formats.export import Export
-    from coeflab.vehicle.parameter_file import ParameterFile
 
 WITH_MASS = "Mass and added mass: coeflab vehicle BODY --campaign CAMPAIGN, or coeflab merge VEHICLE.json CAMPAIGN."
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
@@ -51,24 +50,21 @@ def command(
     where a finding of it fails, such as a wrong sign; the files are written. Of several targets the others are written where one is
     refused, and the exit code is 1.
     """
+    import coeflab as cf
+    from coeflab.api.exporting import require_targets
     from coeflab.cli.as_json import export as export_json
     from coeflab.cli.as_json import findings as findings_json
-    from coeflab.core.errors import InputError, together
+    from coeflab.core.errors import together
     from coeflab.core.files import write_all
-    from coeflab.formats import EXPORTERS
-    from coeflab.vehicle.parameter_file import read_parameter_file
-    from coeflab.vehicle.plausibility import plausibility
 
     targets = named(to)
-    if not targets:
-        raise InputError("no target", f"one of {', '.join(EXPORTERS.names())}", column="--to")
-    for target in targets:
-        EXPORTERS.load(target)
-    parameters = read_parameter_file(file)
+    require_targets(targets)
+    vehicle = cf.read_vehicle(file)
+    parameters = vehicle.file
     if not json:
         show.not_used(parameters)
     made, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
-    found = plausibility(parameters)
+    found = vehicle.checks()
     if not json:
         show.file_findings(parameters.name, found)
     gone = {target for target, _ in refused}
@@ -111,14 +107,14 @@ def _made(
     InputError
         The only target cannot hold the file at all.
     """
+    from coeflab.api.exporting import export
     from coeflab.core.errors import InputError
-    from coeflab.workbench.exports import export
 
     made: list[Export] = []
     refused: list[tuple[str, InputError]] = []
     for target in targets:
         try:
-            one = export(parameters, target, accelerations, accept_loss=accept_loss and not strict)
+            one = export(parameters, target, accelerations=accelerations, accept_loss=accept_loss and not strict)
         except InputError as why:
             if len(targets) == 1:
                 raise
@@ -140,7 +136,7 @@ def _made(
 
 
 def _print_loss(made: Export, parameters: ParameterFile) -> None:
-    from coeflab.formats.unspoken import without_law
+    from coeflab.api.exporting import without_law
     from coeflab.report.tables import formats as loss_tables
 
     loss = made.loss
@@ -163,18 +159,11 @@ def _print_loss(made: Export, parameters: ParameterFile) -> None:
 
 
 def _refusal(made: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:
-    from coeflab.core.errors import InputError, shown
-    from coeflab.formats.export import Kind
-    from coeflab.report.tables.formats import in_short
+    from coeflab.api.exporting import refusal
 
-    loss = made.loss
-    lost = () if loss is None else loss.lost
-    return InputError(
-        f"{target}a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}",
-        "a target that holds everything" if strict else "--accept-loss, to write the rest",
-        file=file,
-        advice=WITH_MASS if any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost) else "",
-    )
+    expected = "a target that holds everything" if strict else "--accept-loss, to write the rest"
+    why = refusal(made, parameters, expected, WITH_MASS, target)
+    return type(why)(why.found, why.expected, file=file, advice=why.advice)
 
 
 def _placed(made: Sequence[Export], file: Path, out: Path | None, several: bool) -> dict[Path, bytes]:

@@ -76,14 +76,15 @@ def command(
     first slopes with the checks that fail or warn. Nothing is taken that the form did not show. Exit code 1 when a check fails.
     """
     from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
-    from coeflab.core.files import typed, write_all
+    from coeflab.core.files import readable, typed, write_all
     from coeflab.tables.form import of_campaign
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.settings import assumed
 
     file = typed(path)
     out = typed(out) if out is not None else _named_after(file)
-    if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
+    readable(file)
+    if not force and out.exists() and not _may_be_written(out, accept):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = said_on_command_line(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     draft = Draft(file, said, assumed(out), map_)
@@ -95,13 +96,21 @@ def command(
     filled = draft.filled()
     made = contents(filled, of_campaign(draft.settings), file)
     tables = checked(made, filled)
-    write_all(out, made)
+    write_all(out, made, new=not force)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
     _written(out, filled, tables)
     failed = _first_slopes(out)
     if failed:
         raise typer.Exit(1)
+
+
+def _may_be_written(out: Path, accept: bool) -> bool:
+    """Whether a folder is empty, or may hold what the same command wrote before it was stopped: that is compared byte for byte."""
+    from coeflab.core.files import names_in
+
+    names = names_in(out) if out.is_dir() else [out.name]
+    return not names or (accept and out.is_dir() and all(n == "campaign.toml" or n.endswith(".csv") for n in names))
 
 
 def _named_after(file: Path) -> Path:

@@ -70,6 +70,8 @@ def command(
     from coeflab.bodies.simplify.source import mesh_body, names_body
     from coeflab.cli.draft import of_runs
 
+    if not 0.0 < density < float("inf"):
+        raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
     if names_body(table):
         with show.narrated():
             body = mesh_body(table, unit, axes, repair, fill, sheets)
@@ -208,8 +210,6 @@ def _body(body: Body, density: float, json: bool) -> None:
     from coeflab.cli.as_json import body_json
     from coeflab.report.tables import added_mass as added_mass_tables
 
-    if not 0.0 < density < float("inf"):
-        raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
     if json:
         show.json_object(body_json(body, density))
         return

@@ -44,43 +44,31 @@ def command(
 
     Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
     """
+    from coeflab.api.studies import report_files, require_formats, studied
     from coeflab.cli.run import REPORTS
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.published.documents import only, report_of, studied, written
-    from coeflab.report.figures.files import styled
-    from coeflab.report.formats import REPORTERS
 
     formats = [name.strip() for name in to.split(",") if name.strip()]
-    if not formats:
-        raise InputError("no format", f"one or more of {', '.join(REPORTERS.names())}", column="--to")
     if summary and section:
         raise InputError("--summary with --section", "one of them: a summary has one page")
     if summary and full:
         raise InputError("--summary with --full", "one of them: a summary has one page")
-    for name in formats:
-        REPORTERS.load(name)
+    require_formats(formats)
     with show.progress(json) as say:
         found = studied(study, say)
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the figures", json)
-    with styled(style or None):
-        made = report_of(found, short=summary, full=full or bool(section))
-    document = only(made.document, section)
-    files: dict[str, bytes] = {}
-    with show.progress(json) as say:
-        for name in formats:
-            say(f"writing {name}")
-            files.update(written(document, [name]))
-    if summary:
-        files = {name.replace("report", "summary", 1): content for name, content in files.items()}
+    document, files, failed = report_files(
+        found, formats, full=full, short=summary, sections=section, style=style or None
+    )
     folder = out if out is not None else Path(REPORTS) / document.name
     write_all(folder, files)
     paths = [folder / name for name in files]
     if json:
         show.json_object(
             {
-                "study": document.name, "title": document.title, "digest": document.digest, "failed": made.failed,
+                "study": document.name, "title": document.title, "digest": document.digest, "failed": failed,
                 "sections": [{"anchor": s.anchor, "title": s.title} for s in document.sections],
                 "files": [str(p) for p in paths],
             }
@@ -93,5 +81,5 @@ def command(
             show.command_line("Appendix", f"coeflab report {shlex.quote(study)} --full")
     if open_:
         show.in_browser(paths[0].resolve().as_uri())
-    if made.failed:
+    if failed:
         raise typer.Exit(1)

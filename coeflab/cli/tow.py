@@ -136,6 +136,7 @@ def _tow(
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
     from coeflab.core.files import located
+    from coeflab.core.wording import file_stem
     from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
     from coeflab.workbench import tow as tank_room
 
@@ -147,13 +148,18 @@ def _tow(
             tank, surface, own = tank_room.reopened(out, matrix, solver, runner)
         else:
             tank, surface = tank_room.read(body, matrix, solver, runner)
-    folder = out if out is not None else Path(RUNS) / tank.name
+    folder = out if out is not None else Path(RUNS) / file_stem(tank.name)
     before: Mapping[str, Any] | None = None
     if (folder / PLAN).is_file():
         refuse_other(folder, tank, surface.body.name)
         before = read_plan(folder)
         if not go_on and not dry_run and has_begun(folder):
             _refuse_begun(folder)
+    if finished:
+        campaign = located(finished, "cfd_data")
+        with show.progress(json) as say:
+            say("comparing the cases")
+            tank_room.require_finished(tank, surface, own, campaign)
     with _place(folder, dry_run and out is None) as place:
         with show.progress(json) as say:
             say("writing the cases")
@@ -161,7 +167,7 @@ def _tow(
         if tow.restored:
             show.error(f"warning: edited by hand, and again as tank.toml has it: {', '.join(tow.restored)}")
         if finished:
-            taken = tank_room.taken_over(tow, located(finished, "cfd_data"))
+            taken = tank_room.taken_over(tow, campaign)
             if not json:
                 show.sentence(f"Taken over from {finished}: {len(taken)} of {len(tow.tank.matrix)} conditions.")
         if dry_run:

@@ -10,8 +10,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
-    from coeflab.motion.trim.linear_model import LinearModel
-    from coeflab.motion.trim.trim import Trim
+    from coeflab.api.trimming import LinearModel, Trim
 
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
@@ -67,23 +66,20 @@ def command(
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
+    import coeflab as cf
+    from coeflab.api.trimming import linear_model, trim
     from coeflab.core.files import write_all
-    from coeflab.motion.trim.linear_model import linear_model
-    from coeflab.motion.trim.trim import trim
-    from coeflab.motion.vehicle import vehicle
     from coeflab.report.tables.linear_model import files, matrix_tables, mode_table
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
-    motion = {AXES.get(k, k): _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
-    orders = _named(commands, "--commands")
-    upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
-    chosen = plane or ("vertical" if upright else "horizontal")
-    parameters = read_parameter_file(file)
+    motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
+    vehicle = cf.read_vehicle(file)
     if not json:
-        show.not_used(parameters, tables)
-    craft = vehicle(parameters, tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
-    found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
+        show.not_used(vehicle.file, tables)
+    found = trim(
+        vehicle, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
+        free=free.replace(",", " ").split(), starts=starts, seed=seed, tables=tables, accelerations=accelerations, **motion,
+    )  # fmt: skip
     solved = found.point.outcome.solved
     model = linear_model(found) if solved and (linear or out is not None) else None
     folder = out or Path()
@@ -147,8 +143,8 @@ def _si(name: str, value: float, option: str) -> float:
     """
     from math import isfinite, radians
 
+    from coeflab.api.trimming import CONTROLS
     from coeflab.core.errors import InputError, shown
-    from coeflab.law.symbols import CONTROLS
 
     if not isfinite(value):
         raise InputError(shown(value), "a finite number", column=option)

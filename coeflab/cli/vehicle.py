@@ -156,6 +156,7 @@ def typed(body: str, options: Mapping[str, str], flags: Mapping[str, bool], to: 
 
 
 def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool, on_draft: str) -> None:
+    from coeflab.core.wording import file_stem
 
     summarise(study, folder)
     if on_draft:
@@ -165,7 +166,7 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
     if not alone:
         return
     name = next(iter(study.parameter_files))
-    place = shlex.quote(str(folder / f"{name}.parameters.json"))
+    place = shlex.quote(str(folder / f"{file_stem(name)}.parameters.json"))
     if not study.exports:
         show.command_line("For a simulator", f"coeflab export {place} --to TARGET")
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+import secrets
 import stat
 import sys
-import tempfile
-from collections.abc import Iterable, Mapping
-from contextlib import ExitStack, suppress
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from errno import EISDIR
 from importlib.resources import files
 from pathlib import Path
@@ -20,6 +21,8 @@ if sys.platform != "win32":
     import fcntl
 
 SUFFIX = ".coeflab"
+PATIENCE = 60.0  # s for which a writer waits for another one of the same folder
+OTHER_FOLDER = "Name another folder."
 _LITTER = re.compile(rf"\..+\.\w{{8}}{re.escape(SUFFIX)}", re.DOTALL)
 _CHECKOUT = Path(__file__).resolve().parents[2]
 
@@ -36,14 +39,35 @@ def typed(name: str | Path) -> Path:
     Raises
     ------
     InputError
-        No file or folder can have that name: 5,000 characters, the home of nobody; or it is shut.
+        No file or folder can have that name: 5,000 characters, a NUL, the home of nobody; it is shut, or a link that
+        leads to itself.
     """
+    if "\0" in str(name):
+        raise InputError(f"{shown(name)}, which is no usable path (a NUL in it)", "the path of a file or folder")
     try:
         path = Path(name).expanduser()
-        path.exists()
-    except (OSError, RuntimeError) as why:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.stat()
+    except (OSError, RuntimeError, ValueError) as why:
         reason = getattr(why, "strerror", None) or why
         raise InputError(f"{shown(name)}, which is no usable path ({reason})", "the path of a file or folder") from None
+    return path
+
+
+def readable(path: Path) -> Path:
+    """The path of a file or folder that can be read to its end: no pipe, no device, no link that leads to itself.
+
+    Raises
+    ------
+    InputError
+        It is not.
+    """
+    typed(path)
+    if not path.exists():
+        found = "a link that leads to no file" if path.is_symlink() else "no such file or folder"
+        raise InputError(found, "a path that exists", file=path)
+    if not path.is_file() and not path.is_dir():
+        raise InputError("a device or pipe", "a file or folder", file=path, advice="Save its content to a file.")
     return path
 
 
@@ -124,18 +148,27 @@ def by_name(file: str) -> dict[str, Path]:
     return {p.name.partition(".")[0] if p.parent.name in crowded else p.parent.name: p for p in found}
 
 
-def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
+def names_in(folder: Path) -> list[str]:
+    """What a folder holds, in order; what a killed process left of our temporary files is removed, and counts for nothing."""
+    _sweep([folder])
+    return sorted(p.name for p in folder.iterdir() if not _LITTER.fullmatch(p.name))
+
+
+def write_all(folder: Path, contents: Mapping[str, bytes], *, new: bool = False) -> dict[str, bool]:
     """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
 
     A fault while a content is written, such as a full disk, leaves all files as they were. Only a stop between the
     replacements at the end, which need no space, leaves old and new files side by side, each of them whole. What killed
-    processes left of theirs in the same folders is removed first.
+    processes left of theirs in the same folders is removed first. Contents are on the disk before they are in place. Of two
+    processes that write into one folder one waits.
 
     Parameters
     ----------
     folder : Path
     contents : mapping of str to bytes
         By name, or path below the folder.
+    new : bool
+        Whether a folder that holds anything else than these very contents is refused.
 
     Returns
     -------
@@ -145,7 +178,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     Raises
     ------
     OutputError
-        A folder cannot be made or written.
+        A folder cannot be made or written, holds something else, or another process writes into it for a minute.
     """
     staged: dict[Path, Path] = {}
     changed = {}
@@ -153,7 +186,12 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     try:
         with ExitStack() as locks:
             try:
+                if not folder.is_dir():
+                    folder.mkdir(parents=True, exist_ok=True)
+                locks.enter_context(_alone(folder))
                 _sweep({(folder / name).parent for name in contents})
+                if new:
+                    _require_new(folder, contents)
                 for name, content in contents.items():
                     path = folder / name
                     changed[name] = not (path.is_file() and path.read_bytes() == content)
@@ -161,12 +199,59 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
                         staged[path] = _staged(path, content, locks)
                 for path, temporary in staged.items():
                     temporary.replace(path)
+                for place in sorted({path.parent for path in staged}):
+                    _on_disk(place)
             finally:
                 for temporary in staged.values():
                     temporary.unlink(missing_ok=True)
     except OSError as why:
         raise OutputError(f"cannot write {clipped(path)}: {why.strerror or why}. Choose another folder.") from None
     return changed
+
+
+def _require_new(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Refuse a folder with other files than these, which a stopped process may have left of the same contents."""
+    tops = {Path(name).parts[0] for name in contents}
+    others = [name for name in names_in(folder) if name not in tops]
+    others += [n for n, c in contents.items() if (folder / n).exists() and (folder / n).read_bytes() != c]
+    if others:
+        raise OutputError(f"{clipped(folder)} exists and is not empty. {OTHER_FOLDER}")
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold a folder against other writers; without a lock where the system has none."""
+    if sys.platform == "win32":
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        until = time.monotonic() + PATIENCE
+        while True:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() > until:
+                    raise OutputError(f"another process writes into {clipped(folder)}. Wait for it.") from None
+                time.sleep(0.01)
+            except OSError:  # a file system without locks
+                break
+        yield
+    finally:
+        os.close(handle)
+
+
+def _on_disk(folder: Path) -> None:
+    """Have the names of a folder written, so that they outlast a loss of power."""
+    if sys.platform == "win32":
+        return
+    with suppress(OSError):  # a file system that cannot
+        handle = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _staged(path: Path, content: bytes, locks: ExitStack) -> Path:
@@ -185,7 +270,7 @@ def _staged(path: Path, content: bytes, locks: ExitStack) -> Path:
     try:
         stream.write(content)
         stream.flush()
-        temporary.chmod(0o644)
+        os.fsync(stream.fileno())
         if sys.platform == "win32":  # where an open file cannot be moved, and none is swept
             stream.close()
     except BaseException:
@@ -197,13 +282,18 @@ def _staged(path: Path, content: bytes, locks: ExitStack) -> Path:
 def _locked_file(path: Path) -> tuple[int, Path]:
     """A new file beside the path, and its lock."""
     while True:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.", suffix=SUFFIX)
+        name = path.parent / f".{path.name[:40]}.{secrets.token_hex(4)}{SUFFIX}"
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+        try:
+            handle = os.open(name, flags, 0o666)  # less what the umask takes away
+        except FileExistsError:
+            continue
         if sys.platform == "win32":
-            return handle, Path(name)
+            return handle, name
         with suppress(OSError):  # a file system without locks: there nobody sweeps either
             fcntl.flock(handle, fcntl.LOCK_EX)
         if os.fstat(handle).st_nlink:
-            return handle, Path(name)
+            return handle, name
         os.close(handle)  # swept between its making and its locking
 
 

@@ -15,6 +15,7 @@ YAML_BYTES = 1 << 20
 XML_BYTES = 8 << 20
 JSON_BYTES = 16 << 20
 M_FILE_BYTES = 1 << 18
+RECORD_BYTES = 4 << 20  # files of a tow; that of 1,000 conditions has 500 kB
 
 # Depth. Parsers call themselves once a level; Python allows some 1000 calls. Models nest 10 deep at most.
 JSON_DEEPEST = 150

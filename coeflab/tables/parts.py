@@ -31,7 +31,7 @@ from coeflab.tables.words.points import POINT_OF
 
 Progress = Callable[[str], None]
 Value = TypeVar("Value")
-MOST = 40  # tables of a folder
+MOST = 40  # tables of a folder, sheets of a workbook
 JOIN = "joined"  # option: tables of the same columns become one
 SPLIT = (
     "conditions.speed",
@@ -135,6 +135,11 @@ def read_parts(
     except SeveralError as several:
         if not several.choices:
             raise
+        if len(several.choices) > MOST:
+            raise InputError(
+                f"{len(several.choices):,} sheets with rows of numbers", f"at most {MOST}", file=path,
+                advice="Say which with --option sheet=NAME,NAME, or sheet = under [importer].",
+            ) from None  # fmt: skip
         return _of_sheets(path, name, given, several.choices)
     except NoConditionError as unsaid:
         if given.get("names") or not unsaid.patterns or any(UNIT_ASKED in pattern for pattern in unsaid.patterns):
@@ -143,7 +148,7 @@ def read_parts(
         parts, _ = read_parts(path, importer, given, progress)
         return parts, (_by_names(unsaid),)
     except InputError:
-        if "," not in str(given.get("sheet", "")):
+        if not 0 < str(given.get("sheet", "")).count(",") < MOST:
             raise
         return _of_sheets(path, name, given, [s.strip() for s in str(given["sheet"]).split(",")], said=True)
 

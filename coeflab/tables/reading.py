@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import readable
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
@@ -34,7 +35,7 @@ OF_RUNS = ("names", "run_list", "state")
 def recognised(path: Path) -> tuple[str, ...]:
     """Importers of raw tables or runs that know a file or folder by its content; a tool's own before the general one."""
     known = []
-    for name in IMPORTERS.usable():
+    for name in IMPORTERS.usable() if path.is_file() or path.is_dir() else ():
         importer = IMPORTERS.load(name)
         with IMPORTERS.guarded(name):
             if (importer.raw or importer.run) and importer.recognises(path):
@@ -73,8 +74,7 @@ def importer_of(path: Path, name: str = "") -> str:
         if not (importer.raw or importer.run):
             raise InputError(f"the importer {name}", f"one of {', '.join(readers)}", column="--as")
         return name
-    if not path.exists():
-        raise InputError("no such file or folder", "a path that exists", file=path)
+    readable(path)
     if path.is_file() and path.stat().st_size == 0:
         raise InputError("an empty file", "a table or runs of a solver", file=path)
     known = recognised(path)
@@ -142,6 +142,7 @@ def read_raw(
         By file and line; or an option that is not known.
     """
     importer = IMPORTERS.load(name)
+    readable(path)
     given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:

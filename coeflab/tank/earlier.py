@@ -7,6 +7,7 @@ numbers are those of the tables, digit for digit, so that the campaign is the sa
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,9 +16,11 @@ from typing import Any
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
+from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.csv_rows import plain
-from coeflab.core.text.toml import read_toml
+from coeflab.core.text.records import OrNone, read_record
+from coeflab.core.text.toml import read_text, read_toml
 from coeflab.tables.campaign import FILE
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Stated
@@ -27,6 +30,10 @@ from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, or_nan, progre
 from coeflab.tank.test_matrix import TowCondition
 
 _FORCE = re.compile(r"(?P<error>se_)?(?P<name>[XYZKMN])(?P<patch>\(.+\))? \[(?P<unit>N|N\*m)\]")
+_ROW = {
+    "why": str, "summary_why": str, "status": Convergence, "means": {str: float}, "errors": {str: float},
+    "patches": {str: (float, str)}, "mesh": str, "iterations": OrNone(float), "cells": float, "remarks": [str], "history": str,
+}  # fmt: skip
 _OURS = "a campaign that `coeflab tow` made"
 
 
@@ -52,20 +59,15 @@ def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
     OutputError
         The folder of a job cannot be written.
     """
-    ended, rows = _ended(campaign), _rows(campaign)
-    keys = {job.name: job.key for job in jobs}
-    taken = []
+    found = matching(campaign, jobs)
+    rows = _rows(campaign)
     for job in jobs:
-        said = ended.get(job.name)
-        mesh = "+".join(keys.get(name, "") for name in job.needs)
-        if said is None or (said["case sha256"], said["mesh sha256"]) != (job.key, mesh):
-            continue
-        taken.append(job.name)
-        if progress(job).state.is_kept:
+        said = found.get(job.name)
+        if said is None or progress(job).state.is_kept:
             continue
         row = _content(said, rows.get(job.name, {}))
         history = campaign / HISTORIES / f"{job.name}.csv"
-        row["history"] = history.read_bytes().decode() if history.is_file() else ""
+        row["history"] = read_text(history, JSON_BYTES) if history.is_file() else ""
         write_atomically(job.folder / EARLIER, (json.dumps(row, indent=1) + "\n").encode())
         write_progress(
             job.folder,
@@ -74,11 +76,31 @@ def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
                 errors=row["errors"], why=row["why"], remarks=tuple(row["remarks"]),
             ),
         )  # fmt: skip
-    if not taken:
+    return tuple(found)
+
+
+def matching(campaign: Path, jobs: Sequence[Job]) -> dict[str, Mapping[str, str]]:
+    """Rows of an earlier campaign with the case and mesh of these jobs, by condition; nothing is written.
+
+    Raises
+    ------
+    InputError
+        As `take_over`.
+    """
+    ended = _ended(campaign)
+    _rows(campaign)
+    keys = {job.name: job.key for job in jobs}
+    out: dict[str, Mapping[str, str]] = {}
+    for job in jobs:
+        said = ended.get(job.name)
+        mesh = "+".join(keys.get(name, "") for name in job.needs)
+        if said is not None and (said["case sha256"], said["mesh sha256"]) == (job.key, mesh):
+            out[job.name] = said
+    if not out:
         raise InputError(f"{len(ended)} conditions that ended, none with a case and mesh of this tow", "the same keys in "
                          f"{RUNS}", file=campaign, column="--finished",
                          advice="Tow with the tank.toml beside that campaign, the same body and the same version of the solver.")  # fmt: skip
-    return tuple(taken)
+    return out
 
 
 def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun | None:
@@ -99,42 +121,36 @@ def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun 
     path = job.folder / EARLIER
     if not state.is_kept or not path.is_file():
         return None
-    try:
-        row: dict[str, Any] = json.loads(path.read_bytes())
-        summary = None
-        if row["means"]:
-            cells = {"cells": Stated(row["cells"], FILE)} if row["cells"] else {}
-            summary = RunSummary(
-                condition.name, Convergence(row["status"]), row["summary_why"], row["means"], row["errors"],
-                iterations=or_nan(row["iterations"]), stated_conditions=cells,
-                patches={name: (mean, unit) for name, (mean, unit) in row["patches"].items()},
-            )  # fmt: skip
-        return TowedRun(
-            condition,
-            state,
-            row["why"],
-            summary,
-            tuple(row["remarks"]),
-            job.key,
-            row["mesh"],
-            short=row["history"].encode(),
-        )
-    except (ValueError, KeyError, TypeError, AttributeError) as why:
-        advice = "Delete it and state.json beside it: the condition is run anew."
-        raise InputError(
-            f"no row of an earlier tow ({shown(why)[1:-1]})", "what coeflab wrote", file=path, advice=advice
-        ) from None
+    advice = "Delete it and state.json beside it: the condition is run anew."
+    row = read_record(path, _ROW, "the row of an earlier tow", advice=advice, largest=JSON_BYTES)
+    summary = None
+    if row["means"]:
+        cells = {"cells": Stated(row["cells"], FILE)} if row["cells"] else {}
+        summary = RunSummary(
+            condition.name, Convergence(row["status"]), row["summary_why"], row["means"], row["errors"],
+            iterations=or_nan(row["iterations"]), stated_conditions=cells,
+            patches={name: (mean, unit) for name, (mean, unit) in row["patches"].items()},
+        )  # fmt: skip
+    return TowedRun(
+        condition,
+        state,
+        row["why"],
+        summary,
+        tuple(row["remarks"]),
+        job.key,
+        row["mesh"],
+        short=row["history"].encode(),
+    )
 
 
 def _ended(campaign: Path) -> dict[str, dict[str, str]]:
     """Rows of runs.csv that are kept, by condition."""
     path = campaign / RUNS
+    if not path.is_file():
+        raise InputError(f"no {RUNS}", _OURS, file=campaign, column="--finished")
     try:
-        with path.open(encoding="utf-8", newline="") as stream:
-            rows = _read(stream)
+        rows = _read(io.StringIO(read_text(path, JSON_BYTES), newline=""))
         kept = {r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]}
-    except OSError:
-        raise InputError(f"no {RUNS}", _OURS, file=campaign, column="--finished") from None
     except (ValueError, KeyError, TypeError, csv.Error) as why:
         raise InputError(f"no table of runs ({shown(why)[1:-1]})", _OURS, file=path, column="--finished") from None
     return kept
@@ -151,8 +167,9 @@ def _rows(campaign: Path) -> dict[str, Mapping[str, str]]:
         if not path.is_file() or sha256_of(path) != table.get("sha256"):
             raise file.fail(f"table[{i}].sha256", f"not the sha256 of {path.name}", "the table as the tow wrote it",
                             "Rows that were edited by hand cannot be taken over.")  # fmt: skip
-        with path.open(encoding="utf-8", newline="") as stream:
-            out |= {r["point"]: r for r in _read(line for line in stream if not line.startswith("#"))}
+        stream = io.StringIO(read_text(path, JSON_BYTES), newline="")
+        rows = _read(line for line in stream if not line.startswith("#"))
+        out |= {r["point"]: r for r in rows if r.get("point")}
     return out
 
 

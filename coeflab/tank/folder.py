@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from coeflab.core.errors import InputError, shown
-from coeflab.core.files import shipped
+from coeflab.core.errors import InputError
+from coeflab.core.files import names_in, shipped
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.records import plain_name, read_record
 from coeflab.core.text.toml import quoted, read_toml
 from coeflab.core.version import VERSION
 from coeflab.tank.jobs import JOB, STATE, Job
@@ -100,26 +101,29 @@ def body_file(folder: Path, plan: dict[str, Any]) -> Path:
     return inside if "/" not in name and inside.is_dir() else Path(os.path.normpath(folder / name))
 
 
+_TRIPLE = (float, float, float)
+_SHAPE = {
+    "name": str, "body": str, "body_file": str, "body_sha256?": str, "surface_sha256?": str, "solver": str, "version": str,
+    "runner": str, "jobs": {plain_name: str}, "conditions": [{
+        "name": plain_name, "kind": str, "half": str, "velocity": _TRIPLE, "rates": _TRIPLE, "controls": {str: float},
+        "units": (float, float),
+    }],
+}  # fmt: skip
+
+
 def read_plan(folder: Path) -> dict[str, Any]:
     """What ``tow.json`` says.
 
     Raises
     ------
     InputError
-        No tow is in the folder, or one of another release.
+        No tow is in the folder, or one of another release; by line and key what is not as it was written.
     """
     path = folder / PLAN
     advice = "`coeflab tow BODY --out FOLDER` begins one."
-    try:
-        content: dict[str, Any] = json.loads(path.read_bytes())
-        kind = content["kind"]
-    except OSError:
-        raise InputError("no tow", f"a folder with a {PLAN}", file=folder, advice=advice) from None
-    except (ValueError, KeyError, TypeError):
-        raise InputError("no plan of a tow", KIND, file=path, advice=advice) from None
-    if kind != KIND:
-        raise InputError(shown(kind), KIND, file=path, key="kind", advice="Go on with the release that began it.")
-    return content
+    if not path.is_file():
+        raise InputError("no tow", f"a folder with a {PLAN}", file=folder, advice=advice)
+    return read_record(path, _SHAPE, "a plan of a tow", kind=KIND, advice=advice)
 
 
 def refuse_other(folder: Path, tank: Tank, body: str) -> None:
@@ -136,7 +140,7 @@ def refuse_other(folder: Path, tank: Tank, body: str) -> None:
         raise InputError("a file", "a folder", file=folder, column="--out")
     if not (folder / PLAN).exists():
         own = {*OWN, *(c.name for c in tank.matrix)} if (folder / TANK).is_file() else OWN
-        if any(p.name not in own for p in folder.iterdir()):
+        if any(name not in own for name in names_in(folder)):
             raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or that of a tow", file=folder,
                              advice="Name another --out.")  # fmt: skip
         return

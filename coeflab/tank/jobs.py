@@ -20,8 +20,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from coeflab.core.errors import InputError, OutputError, shown
+from coeflab.core.errors import InputError, OutputError
 from coeflab.core.files import write_atomically
+from coeflab.core.text.records import OrNone, plain_name, read_record
 from coeflab.core.types import brief
 from coeflab.core.wording import finite
 from coeflab.tank.processes import lives
@@ -183,6 +184,17 @@ class Progressed:
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
 
+JOB_SHAPE = {
+    "name": plain_name, "solver": str, "steps": [{"name": plain_name, "command": [str], "watched": bool}], "needs": [plain_name],
+    "cores": int, "memory": float, "seconds": float, "key": str, "iterations": OrNone(float), "cells": float, "to_the_end": bool,
+}  # fmt: skip
+STATE_SHAPE = {
+    "state": JobState, "key": str, "step": str, "iteration": OrNone(float), "seconds": OrNone(float), "memory": OrNone(float),
+    "process": int, "host": str, "started": OrNone(float), "left": OrNone(float), "means": {str: OrNone(float)},
+    "errors": {str: OrNone(float)}, "plateau": int, "resumed_from": OrNone(float), "why": str, "remarks": [str],
+}  # fmt: skip
+
+
 def write_job(job: Job) -> bool:
     """Write ``job.json`` into the job's folder, which is not named in it: a tow may be moved.
 
@@ -209,21 +221,14 @@ def read_job(folder: Path) -> Job:
     InputError
         There is no job, or one that this release does not know.
     """
-    path = folder.resolve() / JOB
-    try:
-        content = json.loads(path.read_bytes())
-        kind = content.pop("kind")
-        steps = tuple(Step(s["name"], tuple(s["command"]), s["watched"]) for s in content.pop("steps"))
-        content["needs"] = tuple(content["needs"])
-        content["iterations"] = or_nan(content["iterations"])
-        job = Job(folder=path.parent, steps=steps, **content)
-    except FileNotFoundError:
-        raise InputError(f"no {JOB}", "the folder of a job", file=folder) from None
-    except (ValueError, KeyError, TypeError, AttributeError, OSError) as why:
-        raise InputError(f"no job ({shown(why)[1:-1]})", KIND, file=path, advice=ANEW) from None
-    if kind != KIND:
-        raise InputError(shown(kind), KIND, file=path, key="kind", advice=ANEW)
-    return job
+    path = folder.absolute() / JOB
+    if not path.is_file():
+        raise InputError(f"no {JOB}", "the folder of a job", file=folder)
+    content = read_record(path, JOB_SHAPE, "a job", kind=KIND, advice=ANEW)
+    steps = tuple(Step(s["name"], tuple(s["command"]), s["watched"]) for s in content["steps"])
+    own = {name: content[name] for name in JOB_SHAPE if name not in ("steps", "needs", "iterations")}
+    iterations, needs = or_nan(content["iterations"]), tuple(content["needs"])
+    return Job(folder=path.parent.resolve(), steps=steps, needs=needs, iterations=iterations, **own)
 
 
 def write_progress(folder: Path, progressed: Progressed) -> None:
@@ -265,21 +270,17 @@ def read_progress(folder: Path) -> Progressed:
         The file is no state of a job.
     """
     path = folder / STATE
-    try:
-        content: dict[str, Any] = json.loads(path.read_bytes())
-        for f in fields(Progressed):
-            if f.type == "float":
-                content[f.name] = or_nan(content[f.name])
-        for name in ("means", "errors"):
-            content[name] = {k: or_nan(v) for k, v in content[name].items()}
-        return Progressed(**content | {"state": JobState(content["state"]), "remarks": tuple(content["remarks"])})
-    except FileNotFoundError:
+    if not os.path.lexists(path):
         return Progressed(JobState.WAITING)
-    except (ValueError, KeyError, TypeError, AttributeError, OSError) as why:
-        advice = "Delete the file: the job is carried out anew."
-        raise InputError(
-            f"no state of a job ({shown(why)[1:-1]})", "what coeflab wrote", file=path, advice=advice
-        ) from None
+    advice = "Delete the file: the job is carried out anew."
+    found = read_record(path, STATE_SHAPE, "the state of a job", advice=advice)
+    content = {name: found[name] for name in STATE_SHAPE}
+    for f in fields(Progressed):
+        if f.type == "float":
+            content[f.name] = or_nan(content[f.name])
+    for name in ("means", "errors"):
+        content[name] = {k: or_nan(v) for k, v in content[name].items()}
+    return Progressed(**content | {"state": JobState(content["state"]), "remarks": tuple(content["remarks"])})
 
 
 def progress(job: Job) -> Progressed:
@@ -357,7 +358,7 @@ def only_one(folder: Path, what: str, patience: float = 0.0) -> Iterator[int]:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
     except OSError as why:
         raise OutputError(f"cannot write {folder}: {why.strerror or why}. Choose another folder.") from None
     try:

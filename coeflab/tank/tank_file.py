@@ -165,6 +165,8 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     sweeps = _sweeps(said.matrix, towed, scaling.length)
     try:
         matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
+        if not matrix:
+            raise InputError("no condition", "an angle, a rate or a speed", column="matrix")  # noqa: TRY301
         matrix = test_matrix.with_studies(matrix, [study.made for study in said.study])
     except InputError as why:
         raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None

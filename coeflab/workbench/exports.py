@@ -127,7 +127,7 @@ def parameter_files_rendered(several: Iterable[ParameterFile]) -> dict[str, byte
     """Every parameter file and its tables as CSV, by name. Nothing is written."""
     files: dict[str, bytes] = {}
     for parameters in several:
-        files[f"{parameters.name}.parameters.json"] = parameters.to_json()
+        files[f"{file_stem(parameters.name)}.parameters.json"] = parameters.to_json()
         files.update(EXPORTERS.load("csv").render(parameters))
     return files
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
-from coeflab.tank.earlier import earlier_run, take_over
+from coeflab.tank.earlier import earlier_run, matching, take_over
 from coeflab.tank.folder import (
     BODY,
     CAMPAIGN,
@@ -336,6 +337,27 @@ def taken_over(tow: Tow, campaign: Path) -> tuple[str, ...]:
     """
     with only_one(tow.folder, "tow"):
         return take_over(campaign, tow.jobs)
+
+
+def require_finished(tank: Tank, body: TowedBody, matrix: Path | None, campaign: Path) -> None:
+    """Refuse a campaign of which nothing could be taken over, before anything is written where the tow is to be.
+
+    Parameters
+    ----------
+    tank : Tank
+    body : TowedBody
+    matrix : Path or None
+        The tank.toml.
+    campaign : Path
+        Of the earlier tow.
+
+    Raises
+    ------
+    InputError
+        As `taken_over`.
+    """
+    with TemporaryDirectory() as trial:
+        matching(campaign, laid_out(tank, body, Path(trial) / "tow", matrix).jobs)
 
 
 def opened(folder: Path) -> Tow:

@@ -16,6 +16,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import file_stem
 from coeflab.motion.steady_state import differences, level_forces, steady_motions, wrenches
 from coeflab.motion.tune.output_error import Estimate, Problem, by_likelihood, estimate, problem
 from coeflab.motion.tune.plan import SteadyCases, TuningPlan, moved
@@ -58,7 +59,7 @@ class Tuned:
 
     def files(self) -> dict[str, bytes]:
         """Everything to write, by file name."""
-        name = self.plan.name
+        name = file_stem(self.plan.name)
         figure = agreement_figure(self.tuning, f"{name}-agreement")
         return {
             f"{name}.parameters.json": self.parameters.to_json(),

@@ -15,6 +15,7 @@ VERBS = (
     "vehicle",
     "simulate",
     "export",
+    "trim",
     "compare",
     "tow",
     "run",

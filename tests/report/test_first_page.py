@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.cli import show
 from coeflab.cli.show import plain_lines
 from coeflab.core.finding import Severity
 from coeflab.core.table import in_digits_of, percent
@@ -26,6 +27,7 @@ from coeflab.report.formats import html, pdf
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.report.sections.verdict import verdict
 from coeflab.study.checks import coverage
+from coeflab.study.lines import NAME, line
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
@@ -262,7 +264,19 @@ def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyP
     row = made.rows[2]
     assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
     assert row.difference == pytest.approx(0.0003)
-    assert made.rows[:2] == beside.rows[:2]
+    for mine, before in zip(made.rows[:2], beside.rows[:2], strict=True):
+        assert (mine.value, mine.u95, mine.agrees) == (before.value, before.u95, before.agrees)
+        assert mine.published[: len(before.published)] == before.published
+        own = [t for t in study.tables if t.campaign == mine.source]
+        assert mine.published[-1] == line(own, mine.symbol, study.fits[0].coefficients.scaling.length)
+    assert made.columns == (*beside.columns, NAME)
+    assert max(len(text) for text in show.plain_lines(answer_table(made))) <= 80
+    wide = replace(rows[2], coefficient=replace(value, u95=0.0019))
+    monkeypatch.setattr(
+        first_page, "towed", lambda _: (Towed(tow, "AFF-8", ("experiment 1990",), (*rows[:2], wide, *rows[3:])),)
+    )
+    open_row = answer(replace(study, plan=replace(study.plan, tows=(tow,))), drawn=False).rows[2]
+    assert (open_row.value, open_row.status) == (None, "no result")
     assert "Nr': our CFD own_tow; no verdict." in made.notes
     assert "no rotating-arm data" not in made.sentence
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,12 @@ from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.simulators import rigid_body
 from coeflab.motion.trajectory import Ended
 from coeflab.motion.trim.trim import trim
+from coeflab.motion.tune.plan import read_tuning_plan
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.force_law import force_law, full_force, known_beside, motion_law, not_used
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
+from coeflab.workbench.tune import tune
 from tests.vehicle.hybrid import (
     ADDED,
     AREA,
@@ -268,3 +271,27 @@ def test_tables_stay_known_where_other_terms_are_to_be_found_from_data() -> None
     assert [f["by"] for f in found if f.code == "law.table_unused"] == [("Nv'",)]
     assert law.force(nu)[0, 5] == 0.0
     assert law.force(nu)[0, :5] == pytest.approx(known_beside(hybrid(), [("Nr", "N", rates)])[0].force(nu)[0, :5])
+
+
+def test_tuning_finds_planted_constants_of_a_table_and_of_a_rate_within_their_intervals(tmp_path: Path) -> None:
+    """Turns of the independent solution; the file to tune is off by 15 and 20 %."""
+    planted = hybrid()
+    off = hybrid({**RATES, "Nr": 1.2 * N_R}, (*tables()[:1], surface("C_S", {k: v * (0.85 if k == (("beta", 1),) else 1.0) for k, v in SIDE.items()}), *tables()[2:]))  # fmt: skip
+    (tmp_path / "off.parameters.json").write_bytes(off.to_json())
+    rows = [(left, right, *turn(left, right)) for left, right in TURNS]
+    lines = [f"{a},{b},{u:.6f},{v:.6f},{r:.6f},pool" for a, b, u, v, r in rows]
+    head = "left [%],right [%],u [m/s],v [m/s],r [rad/s],source"
+    (tmp_path / "turns.csv").write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+    (tmp_path / "tune.toml").write_text(
+        '[tune]\nname = "own"\nparameters = "off.parameters.json"\n[measured]\ntable = "turns.csv"\nwhere = { source = "pool" }\n'
+        'errors = { u = "0.01 m/s", v = "0.003 m/s", r = "0.003 rad/s" }\n'
+        "[[free]]\nplaces = [\"Nr'\"]\n[[free]]\nplaces = [\"C_S C_S_0\"]\n", encoding="utf-8",
+    )  # fmt: skip
+    found = tune(read_tuning_plan(tmp_path / "tune.toml")).tuning
+    due = {"Nr'": planted.coefficient("Nr").value, "C_S C_S_0": SIDE[(("beta", 1),)]}
+    assert found.converged
+    for name, value in due.items():
+        p = found.parameter(name)
+        assert p.u95 is not None
+        assert abs(p.after - value) <= p.u95
+        assert abs(p.before - value) > 2.0 * abs(p.after - value)

@@ -11,6 +11,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import INTEGER_DIGITS, JSON_DEEPEST, JSON_KEYS, JSON_OBJECTS, JSON_VALUES
 
+NUL = re.compile(r"(?<!\\)(?:\\\\)*+\\(?:u0000|U00000000)")  # as JSON and TOML write it
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*+"?', re.DOTALL)
 _ENDS = re.compile(r"[\[\]{}]")
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"|[\[\]{},:]|[^\s\[\]{},:"]+', re.DOTALL)
@@ -34,6 +35,8 @@ def parse_json(text: str, file: Path | str | None = None, expected: str = "JSON"
         levels, objects, keys or values than `coeflab.core.limits` allows.
     """
     _within_bounds(text, file, expected)
+    if nul := NUL.search(text):
+        raise InputError("a NUL in a text", "letters", file=file, line=text.count("\n", 0, nul.start()) + 1)
 
     def refuse(token: str) -> float:
         raise ValueError(f"{token} is no JSON number")

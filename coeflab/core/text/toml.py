@@ -17,6 +17,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES
+from coeflab.core.text.json import NUL
 
 _NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_NAME}(?:[ \t]*+\.[ \t]*+{_NAME}){{{TOML_NAMES_IN_A_KEY},}}")
@@ -145,6 +146,8 @@ def read_toml(path: Path) -> TomlFile:
     """
     text = read_text(path)
     _within_bounds(text, path)
+    if nul := NUL.search(text):
+        raise InputError("a NUL in a text", "letters", file=path, line=text.count("\n", 0, nul.start()) + 1)
     try:
         return TomlFile(path, tomllib.loads(text), text)
     except tomllib.TOMLDecodeError as why:

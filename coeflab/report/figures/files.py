@@ -12,6 +12,7 @@ from coeflab.core.errors import InputError, OutputError
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
+from coeflab.report.printable import CLOCK
 
 PAGE = b'#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes(sys.inputs.svg), format: "svg")\n'
 DENSITY = 300.0  # pixels an inch
@@ -76,8 +77,6 @@ def printed(picture: bytes, kind: Literal["pdf", "png"]) -> bytes:
     """
     import typst
     from matplotlib import get_data_path
-
-    from coeflab.report.formats.pdf import CLOCK
 
     text = picture.decode().replace(FAMILY, 'font-family="DejaVu Sans"')
     try:

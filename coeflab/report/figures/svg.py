@@ -75,9 +75,10 @@ def overridden(parameters: Mapping[Any, object], colours: Mapping[str, str]) -> 
     try:
         yield
     finally:
-        for held, was in zip((_OWN, _COLOURS), before, strict=True):
-            held.clear()
-            held.update(was)
+        _OWN.clear()
+        _OWN.update(before[0])
+        _COLOURS.clear()
+        _COLOURS.update(before[1])
 
 
 @contextmanager

@@ -324,6 +324,8 @@ JSON Schema. A program that reads these files should refuse a first digit of `sc
 - Primes: `Y' = Y / (1/2 rho U^2 L^2)`, `N' = N / (1/2 rho U^2 L^3)`, `v' = v/U`, `r' = r L/U`.
 - Values are totals: a measured velocity derivative contains its potential part, an entry of `-C_A(nu) nu`. A simulator that
   adds `C_A(nu) nu` itself must be given `value - potential`.
+- The force is a sum over coefficients, fitted tables, controls and the ideal fluid, each of the products of variables that it speaks
+  of: [which source speaks of what](force_law.md).
 - A fitted table in `models` holds whole forces, potential part and all, and a simulation leaves out the products of
   `-C_A(nu) nu` that it speaks of. Where only viscous parts are tabulated, `contains_potential` is false.
 - U95 is a 95 % half-width, twice the standard uncertainty of the covariances.

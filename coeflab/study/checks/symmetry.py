@@ -58,7 +58,7 @@ def check(study: Study) -> Sequence[Check]:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    found = [as_check("symmetry", f) for f in biases(sweeps)]
+    found = [as_check("symmetry", f) for f in biases([s for s in sweeps if not s.by_symmetry])]
     return [c for s in odd if (c := _intercept(s)) is not None] + found + across
 
 
@@ -81,7 +81,7 @@ def biases(sweeps: Sequence[Sweep]) -> tuple[Finding, ...]:
             Finding.of(
                 "symmetry.bias", s.table, Severity.WARN if share > LARGE else Severity.PASS, statistic=share, threshold=LARGE,
                 advice=f'matrix.pairs = ["{s.labels[least]}"]', component=f"{s.component}'", row=s.labels[least],
-                symbol=f"{s.symbol}'", of_value=of_value,
+                symbol=f"{s.symbol}'", of_value=of_value, judged="much" if share > LARGE else "little",
             )
         )  # fmt: skip
     return tuple(out)

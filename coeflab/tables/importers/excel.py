@@ -307,14 +307,19 @@ def _cells_of(sheet: Any, name: str, path: Path) -> list[list[Value]]:
     return list(sheet.to_python(skip_empty_area=False))
 
 
-def _sheets(path: Path) -> dict[str, list[list[Value]]]:
-    """Every sheet as rows of cells from A1 on."""
+def _sheets(path: Path, only: str = "") -> dict[str, list[list[Value]]]:
+    """Every sheet as rows of cells from A1 on; where one is named, the others are empty: a workbook may be read once a sheet."""
     import python_calamine
 
     try:
         with python_calamine.CalamineWorkbook.from_path(str(path)) as book:
             out: dict[str, list[list[Value]]] = {}
-            for name in book.sheet_names:
+            wanted = {only} & set(book.sheet_names)
+            tables = [m.name for m in book.sheets_metadata if m.typ == python_calamine.SheetTypeEnum.WorkSheet]
+            for name in tables if wanted else book.sheet_names:
+                if wanted and name not in wanted:
+                    out[name] = []
+                    continue
                 try:
                     sheet = book.get_sheet_by_name(name)
                 except python_calamine.CalamineError:
@@ -510,7 +515,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     if path.stat().st_size > SHEET_BYTES:
         raise _refused(f"{path.stat().st_size:,} bytes", path, f"at most {SHEET_BYTES:,}", "Save the table as CSV.")
     errors = _checked(path, kind)
-    read = {name: _read_texts(rows) for name, rows in _sheets(path).items()}
+    read = {name: _read_texts(rows) for name, rows in _sheets(path, given.sheet).items()}
     sheets = {name: rows for name, (rows, _) in read.items()}
     name = _chosen(sheets, given, path)
     rows = sheets[name]

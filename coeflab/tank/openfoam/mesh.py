@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
@@ -112,6 +113,7 @@ def mesh_job(
     contents = _files(body, sizes, half, twins, cores)
     planned = {"cells": round(cells), **_geometry(body, half)}
     planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
+    planned["images"] = {image: patch for pairs in twins.values() for patch, image in pairs}
     planned["coverage"] = {
         patch: options.coverage or (FOIL_COVERAGE if patch in foils(body) else HULL_COVERAGE) for patch in sizes.layers
     }
@@ -170,12 +172,18 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, twins: Twins, cores: i
             name = f"{what}Dict_{'xyz'[axis]}"
             contents[f"system/{name}"] = rendered(f"mesh/{what}Dict", name=name, normal=normal, pairs=pairs, low=low)
     for patch, ends in values["features"].items():
-        points, index = np.unique(np.round(ends.reshape(-1, 3), DIGITS), axis=0, return_inverse=True)
-        pairs = index.reshape(-1, 2)
-        pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
+        points, pieces = _joined(ends)
         name = f"{patch}.eMesh"
-        contents[f"{GEOMETRY}/{name}"] = rendered("mesh/edges.eMesh", name=name, points=points, ends=pairs)
+        contents[f"{GEOMETRY}/{name}"] = rendered("mesh/edges.eMesh", name=name, points=points, ends=pieces)
     return contents | {f"{GEOMETRY}/body.stl": stl(body)}
+
+
+def _joined(ends: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Points of edges (n, 2, 3), each once, and the ends of each edge among them; without those of no length."""
+    points, index = np.unique(np.round(ends.reshape(-1, 3), DIGITS), axis=0, return_inverse=True)
+    pieces = index.reshape(-1, 2).astype(np.int64)
+    pieces = pieces[pieces[:, 0] != pieces[:, 1]]
+    return points, np.unique(np.sort(pieces, axis=1), axis=0)
 
 
 def _steps(twins: Twins, cores: int) -> tuple[Step, ...]:

@@ -29,6 +29,7 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import write_atomically
+from coeflab.core.text.records import plain_name, read_record
 from coeflab.tank.jobs import Job, JobState, Progressed, read_progress, write_progress
 
 summary = "a cluster under Slurm: arrays of jobs, requeued at their wall time or when a node dies"
@@ -262,9 +263,9 @@ def _there() -> None:
 
 def _left(file: Path, folder: Path) -> tuple[Queue, dict[str, str]]:
     """What an earlier call gave to Slurm, and with which keys."""
-    content: dict[str, dict[str, str]] = {}
-    with suppress(FileNotFoundError, ValueError):
-        content = json.loads(file.read_bytes())
+    advice = "Delete it once none of its jobs is in the queue: squeue."
+    shape = {plain_name: {"id": str, "key": str}}
+    content = read_record(file, shape, "the jobs that Slurm has", advice=advice) if file.is_file() else {}
     own = hashlib.sha256(str(folder.absolute()).encode()).hexdigest()[:6]
     name = f"coeflab_{re.sub(r'[^A-Za-z0-9_.-]', '_', folder.name)}_{own}"
     return Queue(name, {n: c["id"] for n, c in content.items()}), {n: c["key"] for n, c in content.items()}
