@@ -358,8 +358,8 @@ def surface(c: Craft) -> ComparedTable:
     down, back = dash(heavy, dry_a, dry_b, mass, height)
     yaw_wet, yaw_dry = ([law[5] for law in pair] for pair in (EQUATION_50, EQUATION_49))
     inertia = float(c.water.inertia[2, 2])
-    left, rate = turned(TURNING, *yaw_wet, inertia, time)
-    came = left + turned(rate, *yaw_dry, inertia, up + down)[0]
+    left, rate = turned(TURNING, yaw_wet[0], yaw_wet[1], inertia, time)
+    came = left + turned(rate, yaw_dry[0], yaw_dry[1], inertia, up + down)[0]
     out, again = found.reached
     velocity = -np.asarray(found.velocity)[:, 2]
     heading = 2.0 * np.arctan2(np.asarray(found.attitude)[:, 3], np.asarray(found.attitude)[:, 0])
