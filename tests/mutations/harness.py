@@ -36,6 +36,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.glider.glide import GlideRun
 from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
 from coeflab.motion.simulators import SIMULATORS
+from coeflab.published.estimates import acceptance as from_shape
 from coeflab.published.flyingfish import acceptance as flyingfish
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish, calibrated, read_flyingfish
@@ -44,6 +45,7 @@ from coeflab.published.huuv.five_dof import FiveDof, five_dof_file, read_five_do
 from coeflab.published.huuv.five_dof_rows import stated_rows
 from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv
 from coeflab.published.parameter_files import flyingfish_file
+from coeflab.published.tank import acceptance as tank
 from coeflab.published.thauv import acceptance as thauv
 from coeflab.published.thauv import in_space
 from coeflab.published.thauv.in_space import FlownSpiral
@@ -320,6 +322,19 @@ def validate_urv(controlled: bool = False) -> Verdicts:
     return of_tables((*urv.compared(), *moved))
 
 
+# ---- Tow tank, and estimates from the shape -----------------------------------------------------------------------------
+
+
+def validate_tank() -> Verdicts:
+    """All of it."""
+    return of_tables(tank.acceptance().tables)
+
+
+def validate_estimates() -> Verdicts:
+    """All of it."""
+    return of_tables(from_shape.acceptance().tables)
+
+
 # ---- SUBOFF --------------------------------------------------------------------------------------------------------
 
 
@@ -369,8 +384,11 @@ class Suboff:
         }
         return Verdicts(rows, of_checks(s.checks))
 
-    def rerun(self, edits: dict[str, list[tuple[str, str]]]) -> Study:
-        """The plan on copies with edited texts: names under cfd_data, what is replaced by what (every time it occurs)."""
+    def rerun(self, edits: dict[str, list[tuple[str, str]]], anew: bool = False) -> Study:
+        """The plan on copies with edited texts: names under cfd_data, what is replaced by what (every time it occurs).
+
+        ``anew``: fits are made again although their tables are as before, as a law is another one.
+        """
         place = Path(mkdtemp(dir=self.folder))
         data = Path(str(shipped("cfd_data")))
         for name in (
@@ -402,17 +420,18 @@ class Suboff:
             text = text.replace(f'added_mass = "{name}"', f'added_mass = "{data.parent / "geometry" / name}"')
         plan_path.write_text(text, encoding="utf-8")
         plan = replace(read_plan(plan_path), exports=(), manoeuvres=())
-        return self._run(plan)
+        return self._run(plan, anew)
 
-    def _run(self, plan: Any) -> Study:
+    def _run(self, plan: Any, anew: bool) -> Study:
         """Fits of tables that are as before, what the gate finds in them, and the added mass of the hulls are not made anew."""
-        fitted, hulls_of, gate = vars(workbench)["_fitted"], vars(workbench)["hulls_of"], data_gate.findings
+        fitted, hulls_of, gate = vars(workbench)["fitted"], vars(workbench)["hulls_of"], data_gate.findings
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
             old = known.get(table.name)
             return (
-                old is not None
+                not anew
+                and old is not None
                 and all(
                     np.array_equal(getattr(table, kind)[k], getattr(old, kind)[k], equal_nan=True)
                     for kind in ("forces", "motion", "usable")

@@ -30,6 +30,7 @@ from coeflab.published.flyingfish.model import FlyingFish
 from coeflab.published.huuv import five_dof
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.arm import URV
+from tests.mutations.blind import BLIND, flipped
 from tests.mutations.harness import (
     REMUS,
     Suboff,
@@ -40,12 +41,14 @@ from tests.mutations.harness import (
     in_five,
     refusals,
     steered,
+    validate_estimates,
     validate_fish_bench,
     validate_fish_trims,
     validate_five,
     validate_flyingfish,
     validate_huuv,
     validate_remus,
+    validate_tank,
     validate_thauv,
     validate_thauv_in_space,
     validate_urv,
@@ -448,18 +451,6 @@ SUBOFF = (
 )
 
 
-def flipped_n(s: Suboff) -> Verdicts:
-    """Sign of N in the table of configuration 2."""
-    lines = (shipped("cfd_data") / "suboff_roddy_2" / "table.csv").read_text(encoding="utf-8").splitlines()
-    at = lines[0].split(",").index("N' [-]")
-    changes = []
-    for line in lines[1:]:
-        cells = line.split(",")
-        cells[at] = cells[at][1:] if cells[at].startswith("-") else f"-{cells[at]}" if cells[at] else ""
-        changes.append((line, ",".join(cells)))
-    return refusals(lambda: s.verdicts(s.rerun({"suboff_roddy_2/table.csv": changes})))
-
-
 # ---- REMUS ---------------------------------------------------------------------------------------------------------
 
 
@@ -506,8 +497,9 @@ def mutations() -> tuple[Mutation, ...]:
     """All of the list, in the order of the table."""
     named = (("thauv", THAUV), ("flyingfish", FLYINGFISH), ("huuv", HUUV), ("suboff", SUBOFF), ("urv", URV))
     out = [Mutation(study, what, run) for study, some in named for what, run in some]
-    out.append(Mutation("suboff", "sign of N in the table of configuration 2", flipped_n))
+    out.append(Mutation("suboff", "sign of N in the table of configuration 2", flipped("suboff_roddy_2", "N' [-]")))
     out += [Mutation("remus", f"sign of {s}", remus(s)) for s in SIGNS]
+    out += [Mutation(study, what, run) for study, what, run in BLIND]
     return (*out, *UNDETECTABLE)
 
 
@@ -530,6 +522,10 @@ def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
             return validate_remus(REMUS)
         case "urv":
             return validate_urv(controlled=True)
+        case "tank":
+            return validate_tank()
+        case "estimates":
+            return validate_estimates()
     assert suboff_study is not None
     return suboff_study.verdicts()
 

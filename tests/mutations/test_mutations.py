@@ -16,7 +16,7 @@ from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, 
 from tests.mutations.mutations import NR, UNDETECTABLE, YR, every_constant, mutations, of_huuv, published, unchanged
 from tests.mutations.table import PAGE, lines_of
 
-STUDIES = ("thauv", "flyingfish", "huuv", "suboff", "urv", "remus")
+STUDIES = ("thauv", "flyingfish", "huuv", "suboff", "urv", "remus", "tank", "estimates")
 
 # +5 % or the other sign of what nothing depends on, or less than is allowed: chosen, assumed, or not recomputed by anything.
 OPEN = {

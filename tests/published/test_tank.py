@@ -69,9 +69,10 @@ def test_a_sphere_has_no_munk_moment() -> None:
 
 def test_without_tows_the_printed_numbers_remain_and_it_says_so(tmp_path: Path) -> None:
     found = acceptance(tmp_path)
-    assert [t.key for t in found.tables] == ["lamb"]
+    assert [t.key for t in found.tables] == ["lamb", "closed_forms"]
     assert found.holds
-    assert {r.basis for r in found.numbers} == {Basis.VERIFICATION}
+    assert {r.basis for r in found.tables[0].rows} == {Basis.VERIFICATION}
+    assert {r.basis for r in found.tables[1].rows} == {Basis.CONSISTENCY}
     assert found.statements == tuple(f"Not towed: there is no campaign {n} yet." for n in (PLANE, SPHEROID))
 
 
@@ -138,7 +139,7 @@ def test_too_few_converged_runs_leave_it_open(tmp_path: Path) -> None:
         "\n".join([f"{head},uncertain", *(f"{row},X Y N" for row in rows[:-2]), *(f"{r}," for r in rows[-2:])])
     )
     found = acceptance(tmp_path)
-    assert [t.key for t in found.tables] == ["lamb"]
+    assert [t.key for t in found.tables] == ["lamb", "closed_forms"]
     assert any(s.startswith(f"Open: {SPHEROID} has 2 usable points") for s in found.statements)
 
 

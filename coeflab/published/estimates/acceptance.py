@@ -20,6 +20,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.table import Table
 from coeflab.core.types import brief
 from coeflab.estimates import Estimates, Water, estimated
+from coeflab.estimates.crossflow import contributions
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
@@ -200,12 +201,40 @@ def acceptance() -> Acceptance:
             ComparedTable("derivatives", "Derivatives, allowed: U95 of the estimate", derivatives, source, (
                 "No share or constant uses an error on SUBOFF. The first version had 9 of 15 inside; the methods were revised once "
                 "knowing which (docs/estimates.md): no blind prediction, so none counts as validation.",)),
+            ComparedTable("levers", "Where the drag across the hull acts", levers(), "the centroid of the hull's plane across the stream"),
         ),
         (),
         (*table(found).notes, *_beside()),
         ("roddy1990", "groves1989", "whicker1958", "pitts1957", "hopkins1951", "allen1951"),
         shown=(table(found),),
     )  # fmt: skip
+
+
+def levers() -> tuple[Compared, ...]:
+    """Where the drag across the bare hull acts in a pure sway or heave: at the centroid of its plane across the stream."""
+    seen = suboff("suboff_bare_hull", False).outline
+    if seen is None:
+        raise InputError("suboff_bare_hull without an outline", "a body whose reader knows its hull")
+    hull = seen.hulls[0]
+    drag = next(c.forces for c in contributions(seen, Water(1000.0, VISCOSITY, 1.0)) if c.kind == "cross-flow drag")
+    rows = []
+    for what, along, about, sign, width in (("sway", 1, 5, 1.0, hull.depth), ("heave", 2, 4, -1.0, hull.breadth)):
+        force = drag(np.eye(6)[along][None, :], {})[0]
+        due = float(np.trapezoid(width * hull.x, hull.x) / np.trapezoid(width, hull.x))
+        found = float(sign * force[about] / force[along]) if force[along] < 0.0 else None
+        rows.append(
+            Compared(
+                f"bare hull, {what}",
+                "x of the cross-flow drag from the nose",
+                "m",
+                due,
+                found,
+                1e-9,
+                Basis.CONSISTENCY,
+                True,
+            )
+        )
+    return tuple(rows)
 
 
 def _beside() -> tuple[str, ...]:

@@ -150,3 +150,21 @@ def rise(brake: float, linear: float, quadratic: float, mass: float, start: floa
 
     time = quad(slowed, 0.0, start, epsabs=1e-13, epsrel=1e-12)[0]
     return float(time), float(quad(lambda s: s * slowed(s), 0.0, start, epsabs=1e-13, epsrel=1e-12)[0])
+
+
+def turned(rate: float, linear: float, quadratic: float, inertia: float, time: float) -> tuple[float, float]:
+    """Angle and rate after a time of a turn that nothing but the damping slows down, in closed form.
+
+    Parameters
+    ----------
+    rate : float
+        At the start, rad/s, above zero.
+    linear, quadratic, inertia : float
+        I dr/dt = -(a r + b r^2): a in N m s, b > 0 in N m s^2, I in kg m^2.
+    time : float
+        s.
+    """
+    decay = linear / inertia
+    spent = float(-np.expm1(-decay * time)) / decay if decay else time
+    grown = 1.0 + quadratic * rate / inertia * spent
+    return float(inertia / quadratic * np.log(grown)), rate * (1.0 - decay * spent) / grown

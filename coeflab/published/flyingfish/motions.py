@@ -22,7 +22,7 @@ from coeflab.motion.trim.operating_point import operating_point
 from coeflab.motion.trim.trim import trim as trimmed
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish import model
-from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
+from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise, turned
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 
@@ -39,7 +39,8 @@ DESCENT = float(np.radians(-5.0))  # pitch of the flight ahead, nose down
 PATH = 1e-6  # m
 PATHS = {9: 72.0, 10: 36.0}  # s: one turn of motion 9, two of motion 10; the others 20 s
 STRAIGHT = 20.0
-DEPTH, UNDER, ABOVE = 2.0, 2500.0, 5000.0  # m below the surface, and rotor speeds of the hop
+# m below the surface, rotor speeds, and the yaw rate at the start of the hop, rad/s
+DEPTH, UNDER, ABOVE, TURNING = 2.0, 2500.0, 5000.0, 0.5
 CROSSED = 1e-6
 BENCH, ONE_PERCENT = "flyingfish_bench_synthetic", 0.01
 BENCH_AT: dict[model.Medium, float] = {"water": 2000.0, "air": 6000.0}
@@ -329,14 +330,14 @@ def tracks(c: Craft) -> ComparedTable:
 
 
 def hop(c: Craft) -> Trajectory:
-    """From rest under water with rotors turned up, out, up to where it stands, down and to the surface again."""
+    """From rest but for a turn about the vertical, under water with rotors turned up, out, up to where it stands, down and to the surface again."""
     wet = {f"rotor{n}": UNDER for n in model.ROTORS} | {f"rotor{n}.tilt": float(np.pi) for n in model.ROTORS}
     dry = {f"rotor{n}": ABOVE for n in model.ROTORS}
     phases = (
         Phase("water", wet, 4.0, Until("depth", False, -DEPTH)),
         Phase("air", dry, 2.0, Until("depth", True, -DEPTH), 1),
     )
-    manoeuvre = Manoeuvre("hop", phases, np.zeros(6), orders=wet, others=(c.air,), surface=-DEPTH)
+    manoeuvre = Manoeuvre("hop", phases, TURNING * np.eye(6)[5], orders=wet, others=(c.air,), surface=-DEPTH)
     mover = SIMULATORS.load("rigid_body")
     return through_media(
         c.water, manoeuvre, lambda body, one: mover.simulate(body, one, {"record": 0.01, "tolerance": 1e-11})
@@ -355,23 +356,30 @@ def surface(c: Craft) -> ComparedTable:
     time, speed = dash(thrust - c.fish.constants["net_weight"], wet_a, wet_b, mass, DEPTH)
     up, height = rise(heavy, dry_a, dry_b, mass, speed)
     down, back = dash(heavy, dry_a, dry_b, mass, height)
+    yaw_wet, yaw_dry = ([law[5] for law in pair] for pair in (EQUATION_50, EQUATION_49))
+    inertia = float(c.water.inertia[2, 2])
+    left, rate = turned(TURNING, yaw_wet[0], yaw_wet[1], inertia, time)
+    came = left + turned(rate, yaw_dry[0], yaw_dry[1], inertia, up + down)[0]
     out, again = found.reached
     velocity = -np.asarray(found.velocity)[:, 2]
+    heading = 2.0 * np.arctan2(np.asarray(found.attitude)[:, 3], np.asarray(found.attitude)[:, 0])
 
-    def at(when: float | None) -> float | None:
-        return None if when is None else float(velocity[np.argmin(np.abs(np.asarray(found.time) - when))])
+    def at(when: float | None, values: Array = velocity) -> float | None:
+        return None if when is None else float(values[np.argmin(np.abs(np.asarray(found.time) - when))])
 
     rows = (
         Compared("out of the water", "time", "s", time, out, CROSSED, Basis.CONSISTENCY),
         Compared("out of the water", "speed up", "m/s", speed, at(out), CROSSED, Basis.CONSISTENCY),
+        Compared("out of the water", "heading", "rad", left, at(out, heading), CROSSED, Basis.CONSISTENCY),
         Compared("back at the surface", "time after that", "s", up + down, None if out is None or again is None else again - out,
                  CROSSED, Basis.CONSISTENCY),
         Compared("back at the surface", "speed up", "m/s", -back, at(again), CROSSED, Basis.CONSISTENCY),
+        Compared("back at the surface", "heading", "rad", came, at(again, heading), CROSSED, Basis.CONSISTENCY),
     )  # fmt: skip
     return ComparedTable(
         "surface", "Out of the water and back", rows, "Equations 7-30, 45, 47, 49, 50; the paper prints no change of medium",
         (
-            f"From rest {DEPTH:g} m below the surface, rotors turned up at {UNDER:g} rpm, in air at {ABOVE:g} rpm, less than hovering takes. "
+            f"From rest {DEPTH:g} m below the surface, but for a turn of {TURNING:g} rad/s, rotors turned up at {UNDER:g} rpm, in air at {ABOVE:g} rpm, less than hovering takes. "
             f"It stands {height:.4f} m above the surface.",
             "Reference: closed form, and on the way up in air a quadrature over the speed. The change of medium is located within a step, and a march has the "
             "forces of one medium; the craft is a point there: no partial immersion, slamming or spray.",

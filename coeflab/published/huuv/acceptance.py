@@ -35,6 +35,7 @@ CONVENTIONS = (
 ACCEPTED, LASTS, SEED = 1e-3, 120.0, 20251105
 MOTIONS, EXACT, FINEST = 1000, 1e-9, 1e-10  # no finer than that, so that every machine says the same
 EQUATION_34, AHEAD, ASTERN, LENGTH = (1.9096, 0.1389), 0.1654, (-20.0, -100.0), 0.75
+WITHIN = 13.9  # per cent: the printed dead zone ends at 14
 PLATES = ((1.0, 0.579), (2.0, 0.756), (3.0, 0.831), (5.0, 0.896))
 SIGNS = (
     "Computed in FRD, where these turns to port have r < 0 and v > 0; the table has sizes. Only the sign of the thrusters' "
@@ -105,7 +106,7 @@ def turned(huuv: Huuv, file: ParameterFile) -> tuple[ComparedTable, ...]:
         _sides(huuv, file),
         _coriolis(huuv, file),
         _equations(huuv),
-        _thrusters(file),
+        _thrusters(huuv, file),
         _bounds(huuv),
     )
 
@@ -244,9 +245,13 @@ def _equations(huuv: Huuv) -> ComparedTable:
     )  # fmt: skip
 
 
-def _thrusters(file: ParameterFile) -> ComparedTable:
-    """Both branches of equation 34 through the file, and the arms with equation 38's sign in FRD."""
-    rows = []
+def _thrusters(huuv: Huuv, file: ParameterFile) -> ComparedTable:
+    """Both branches of equation 34 through the file, the arms with equation 38's sign in FRD, and the dead zone."""
+    c, still = huuv.constants, np.array([WITHIN])
+    push = thrust(still, still, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)
+    rows = [
+        Compared(f"equations, {WITHIN:g} %", "thrust", "N", 0.0, float(np.max(np.abs(push))), 1e-9, Basis.CONSISTENCY)
+    ]
     for t in file.thrusters:
         rows += [
             Compared(
@@ -259,6 +264,10 @@ def _thrusters(file: ParameterFile) -> ComparedTable:
                 Basis.CONSISTENCY,
             )
             for c in ASTERN
+        ]
+        rows += [
+            Compared(f"{t.name}, {c:g} %", "thrust", "N", 0.0, float(t.curve.at(c)), 1e-9, Basis.CONSISTENCY)
+            for c in (-WITHIN, WITHIN)
         ]
         rows.append(
             Compared(

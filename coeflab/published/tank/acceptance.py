@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, spheroid_munk_slope
-from coeflab.bodies.fin_lift import low_aspect_lift_slope
+from coeflab.bodies.closed_forms import ellipsoid_added_mass, graded_nodes, meridian_integrals, spheroid_munk_slope
+from coeflab.bodies.fin_lift import LIFT_LOSS, low_aspect_lift_slope
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread
 from coeflab.core.table import plus_minus
+from coeflab.fits.uncertainty.grid_convergence import cell_sizes, grid_convergence
 from coeflab.law.coefficient import Coefficient
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.study.study import Plan
@@ -32,6 +33,12 @@ PLANE, SPHEROID = "tank_naca0020_plane", "tank_spheroid"  # campaigns
 ASPECT = 1.4673  # of the plane and its mirror image, which is also their area over the mean chord squared
 FINENESS = 6.0
 PLANE_WITHIN, SPHEROID_WITHIN = 0.10, 0.25
+SWEEPS, LONG, LONG_WITHIN = (
+    (0.0, 30.0, 45.0, 60.0),
+    1e6,
+    1e-5,
+)  # deg; aspect of a wing without end, and what is left of its ends
+EDGES, ORDER = (64, 32, 16), 2.0  # cells along the edge of a cube, and the order of the values made up on them
 
 
 def inertia_of_spheroid(ratio: float) -> tuple[float, float, float]:
@@ -53,7 +60,7 @@ def acceptance(folder: Path | None = None) -> Acceptance:
         Of the campaigns ``tank_naca0020_plane`` and ``tank_spheroid``; the shipped ones by default.
     """
     place = shipped("cfd_data") if folder is None else folder
-    tables, statements = [_lamb()], []
+    tables, statements = [_lamb(), _closed_forms()], []
     for name, judged in ((PLANE, _plane), (SPHEROID, _spheroid)):
         if not (place / name).is_dir():
             statements.append(f"Not towed: there is no campaign {name} yet.")
@@ -77,6 +84,42 @@ def _lamb() -> ComparedTable:
     return ComparedTable(
         "lamb", "Coefficients of inertia of prolate spheroids", rows, "Lamb (1918), table",
         ("The printed table is good to 0.0022: at c/a = 2 the closed form gives 0.2100, 0.7042 and 0.2394.",),
+    )  # fmt: skip
+
+
+def _closed_forms() -> ComparedTable:
+    """What theory says of formulas that the tow tank and the estimates use, where it says it in closed form."""
+    rows = [
+        Compared(
+            f"infinite span, sweep {sweep:g} deg", "lift slope", "1/rad", LIFT_LOSS * 2.0 * np.pi * float(np.cos(np.radians(sweep))),
+            low_aspect_lift_slope(LONG, float(np.radians(sweep))), LONG_WITHIN, Basis.CONSISTENCY, True,
+        )
+        for sweep in SWEEPS
+    ]  # fmt: skip
+    x, weight = graded_nodes(-FINENESS, FINENESS, 64)
+    radius = np.sqrt(1.0 - (x / FINENESS) ** 2)
+    found = meridian_integrals(x, weight, radius, -x / FINENESS**2)
+    volume = 4.0 / 3.0 * np.pi * FINENESS
+    rows += [
+        Compared("6:1 by sections", "volume over b^3", "1", volume, found.volume, 1e-9, Basis.CONSISTENCY, True),
+        Compared(
+            "6:1 by sections", "turning over displaced mass and a^2", "1", 0.2, found.second_moment / found.volume / FINENESS**2,
+            1e-9, Basis.CONSISTENCY, True,
+        ),
+    ]  # fmt: skip
+    sizes = cell_sizes(np.array(EDGES, dtype=float) ** 3)
+    made = grid_convergence(1.0 + 0.01 * (EDGES[0] / np.array(EDGES)) ** ORDER, sizes)
+    rows += [
+        Compared("cubes of 64, 32 and 16 cells an edge", "order", "1", ORDER, made.order, 1e-6, Basis.CONSISTENCY, True),
+        Compared("cubes of 64, 32 and 16 cells an edge", "value without cells", "1", 1.0, made.extrapolated, 1e-9, Basis.CONSISTENCY, True),
+    ]  # fmt: skip
+    return ComparedTable(
+        "closed_forms", "Formulas where theory has a closed form", tuple(rows),
+        "simple sweep theory; a spheroid by sections; Richardson's series on cubes",
+        (
+            "A swept wing without end lifts by the stream across it: the section's slope, 0.9 of 2 pi, times cos of the sweep.",
+            "Cubes: values 1 + h^2 made up by the length of an edge; the study knows the number of cells alone.",
+        ),
     )  # fmt: skip
 
 

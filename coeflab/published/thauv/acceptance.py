@@ -129,6 +129,7 @@ REPEATED = {
     "moment ahead, 1": ("N m", 5e-4),
     "moment ahead, 2": ("N m", 5e-4),
 }
+SURFACED, FINE = 1e-6, 1e-8  # m
 STEADY_AFTER, AROUND = 170.0, 5.0  # s, as printed; half of its last digit that is not zero
 EXACT, FINEST, STATES, SEED = 1e-9, 1e-10, 300, 20260101  # no finer than that, so that every machine says the same
 VEHICLE = 66.35
@@ -181,7 +182,7 @@ def acceptance() -> Acceptance:
 
 def compared(gliders: dict[str, Flown]) -> tuple[ComparedTable, ...]:
     """Every number, of gliders that have flown their cycle, by case: 01, 02 and 03."""
-    tables = (_engine, _steady, _speeds, _left_out, _constants, _cycle, _settling, _gains, _power)
+    tables = (_engine, _steady, _speeds, _left_out, _constants, _cycle, _climbs, _settling, _gains, _power)
     return tuple(table(gliders) for table in tables)
 
 
@@ -283,6 +284,18 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
             "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to compare them with.",
             f"Every dive ends within {far:.0e} m/s of our own steady glide; that comparison does not count.",
         ), "speeds",
+    )  # fmt: skip
+
+
+def _climbs(gliders: dict[str, Flown]) -> ComparedTable:
+    """A dive ends where its time does; the last climb ends at the surface, which only a glider that is light comes to."""
+    rows = tuple(
+        Compared(f"case {case}", "depth after the second climb", "m", 0.0, max(abs(float(f.run.depth[-1])), FINE), SURFACED, Basis.CONSISTENCY)
+        for case, f in gliders.items()
+    )  # fmt: skip
+    return ComparedTable(
+        "climbs", "Where two dive-and-surface cycles end", rows, "Figures 13 to 16",
+        ("The buoyancy engine makes the glider light on the way up: the motion ends when it meets the surface, or after its time.",),
     )  # fmt: skip
 
 
