@@ -215,7 +215,10 @@ def read_setting(key: str, text: Any) -> Any:
         raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
 
 
-_PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m)\b)?")
+_PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m|ft|in(?!\s+front))\b)?")
+_NO_METRES = re.compile(
+    r"\d\s*(?:mm|cm|m)\b|\b(?:in|ft|dm|km|yd|feet|foot|inch|inches|L)\b|^\s*(?!(?:from|m)\b)\w+\s+(?:from|von|vom)\b"
+)  # what stands beside the number of a place and would change it
 _SIZED = re.compile(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,:]*(.*)")
 _BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
 _SIDED = frozenset(
@@ -316,12 +319,22 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
     """``-2.1 from nose``, ``nose -2.1, 0, 0``, or ``midship``, which is the point itself."""
     numbers = _PLACED.search(typed)
     at = numbers[0].strip(" ,;:@") if numbers else ""
+    if (unit := re.search(r"[a-z]+$", at)) and "," in at:  # one unit behind all three
+        at = ", ".join(
+            repr(quantity(f"{x.strip()} {unit[0]}", "length", key=key)) for x in at[: unit.start()].split(",")
+        )
     rest = typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed
     words = [w for w in re.split(r"[\s,;:@()]+", rest) if w]
     if numbers and (sided := {w.casefold() for w in words} & _SIDED):
         raise InputError(
             f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
             column=key, advice=f"Leave out {sided.pop()}.",
+        )  # fmt: skip
+    beside = (typed[: numbers.start()], typed[numbers.end() :]) if numbers else ()
+    if any(_NO_METRES.search(part) for part in beside) or re.search("['\"′″]", at):
+        raise InputError(
+            f"{shown(typed)}, a place in another unit", f"{PLACE_WANTED}; or -2.1 from nose, -82.7 in from nose",
+            column=key, advice="Give it in m, mm, cm, ft or in, after the last number.",
         )  # fmt: skip
     if "/" in rest or (not numbers and len(words) > 2):
         raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=key)

@@ -18,6 +18,7 @@ from coeflab.fits.uncertainty.grid_studies import grid_studies
 from coeflab.law.symbols import MOTIONS
 from coeflab.tables.assumptions import CODE
 from coeflab.tables.force_table import COARSER, ForceTable
+from coeflab.tables.settings import read_settings
 from tests.conftest import SECTIONS
 
 Read = Callable[..., ForceTable]
@@ -380,3 +381,24 @@ def test_the_example_of_the_documentation(read_table: Read) -> None:
     np.testing.assert_allclose(table.forces["Y"], side, atol=1e-3)
     np.testing.assert_allclose(table.forces["N"], yaw, atol=2e-3)
     np.testing.assert_allclose(table.forces["X"], -0.0035 * q, atol=1e-3)
+
+
+@pytest.mark.parametrize("key", ["axes.reference_point", "table.arm_point"])
+@pytest.mark.parametrize("typed", [
+    "-6.9 ft from nose", "-82.8 in from nose", "-2103.12 mm from nose", "nose -6.9 ft",
+    "-6.9, 0, 0 ft from nose", "-2103.12,0,0 mm from nose", "-2.10312 m from nose",
+])  # fmt: skip
+def test_a_place_from_a_point_keeps_its_unit(key: str, typed: str) -> None:
+    read = read_settings(key, typed)
+    assert read["axes.datum"] == "nose"
+    assert read[key] == pytest.approx([-2.10312, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["-2.1 yd from nose", "-0.45 L from nose", "-6.9', 0, 0 from nose", "-6.9 ft, 0 ft, 0 ft from nose", "-7 inches from nose",
+     "-2.1 metres from nose", "nose -2.3 dm", "0.2 in front of midship"],
+)  # fmt: skip
+def test_a_place_in_a_unit_that_is_not_read_is_refused(typed: str) -> None:
+    with pytest.raises(InputError):
+        read_settings("axes.reference_point", typed)
