@@ -214,7 +214,8 @@ def _branched(bits: list[Bit], hull: Sections, track: list[Bit]) -> list[_Append
     stand = np.array([np.interp(at, hull.x[::-1], hull.centre[::-1, i]) for i in (0, 1)])
     way, origin = _way(bits, stand)
     trunk, branches = parted(bits, origin, way)
-    if not branches:
+    trunk = [bit for bit in trunk if bit.polygon.area() > 0.0]
+    if not branches or not trunk:
         return []
     own = _appendage(trunk, hull, track)
     if own.foil is None or own.foil.thickness > THICK:

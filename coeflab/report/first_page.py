@@ -284,6 +284,8 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
         inside, printed = printed_inside(study.fits)
         said = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
         absent = absent or said or "no published evaluation of these data"
+    if judged and all(r.status == NO_RESULT for r in rows if r.value is None):
+        absent = ""  # their rows say it
     whole = f"{first}; {absent}." if absent else f"{first}."
     return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
 

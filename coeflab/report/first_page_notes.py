@@ -169,7 +169,7 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     said = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report states for its own derivatives: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states for its own: {text.removesuffix('.')}" for text in said)
 
 
 def _independent(study: Study) -> str:
@@ -186,7 +186,7 @@ def _independent(study: Study) -> str:
     shares: dict[str, list[str]] = {}
     for v in (v for v in found if v.weak):
         shares.setdefault(primed(v.symbol), []).append(v.share)
-    weak = [f"{s} (U_V is {_span(each)} of the measured value)" for s, each in shares.items()]
+    weak = [f"{s} (U_V is {_span(each)} of it)" for s, each in shares.items()]
     wanted_first = sorted(found_without, key=lambda v: v.symbol.removesuffix("'") not in study.plan.wanted)
     uncounted = [primed(v.symbol) for v in wanted_first if v.beyond]
     said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
@@ -197,8 +197,7 @@ def _independent(study: Study) -> str:
     )
     inside = sum(all(v.within for v in one) for one in numbers)
     return (
-        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} judged coefficients within the validation "
-        f"uncertainty U_V.{said}"
+        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} judged coefficients within U_V.{said}"
     )
 
 

@@ -133,9 +133,9 @@ def law_u95(parameters: ParameterFile, nu: Array, controls: Array) -> Array:
 def _compared(
     parameters: ParameterFile, called: str, m: Motions, i: int, ours: Array, theirs: Array, u95: Array
 ) -> Finding | None:
-    at, length = parameters.conditions, parameters.scaling.length
+    at = parameters.conditions
     speed = max(float(np.max(np.linalg.norm(m.nu[:, :3], axis=1))), at.speed)
-    unit = 0.5 * at.density * speed**2 * length ** (2 if i < 3 else 3)
+    unit = parameters.scaling.unit(COMPONENTS[i], at.density, speed)
     largest = float(np.max(np.abs(theirs[:, i])))
     apart = np.abs(ours[:, i] - theirs[:, i])
     if max(largest, float(apart.max())) <= NOTHING * unit:

@@ -69,4 +69,4 @@ def test_every_command_that_writes_a_parameter_file_is_here() -> None:
         str(f.relative_to(package)) for f in package.rglob("*.py")
         if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
     }  # fmt: skip
-    assert writers == {"workbench/exports.py", "workbench/tune.py", "cli/params.py"}
+    assert writers == {"workbench/exports.py", "workbench/tune.py", "cli/params.py", "api/vehicle.py"}

@@ -280,7 +280,7 @@ def test_a_study_without_a_limit_travels_with_the_numbers() -> None:
     (warned,) = (f for f in made.findings if f.severity is Severity.WARN)
     assert warned.code == "budget.grid_not_converging"
     assert warned.statistic == pytest.approx(found[0].part("grid") / abs(found[0].value))
-    assert warned["component"] == "Y"
+    assert warned["component"] == ("Y",)
     (noted,) = (f for f in made.findings if f.code == "budget.not_assessed")
     assert "turbulence model" in noted["parts"]
     assert any(name.startswith("grid (study") for name in found[0].unassessed)

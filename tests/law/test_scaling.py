@@ -163,6 +163,7 @@ def test_no_unit_of_what_is_no_symbol(symbol: str) -> None:
 
 # Products of density, one half and a power of a length that are no unit of the prime system: lines, reason.
 NO_PRIMES = {
+    "tables/low_aspect.py": (1, "forces of a table that is not read yet: its columns, before there is a Scaling"),
     "tables/mapping.py": (1, "dynamic pressure on the reference area that a person states for a coefficient"),
     "tables/openfoam_forces.py": (1, "dynamic pressure on the Aref that forceCoeffs states, at its magUInf"),
     "law/scaling.py": (1, "the unit itself"),
@@ -173,6 +174,7 @@ NO_PRIMES = {
         "dynamic pressure on the reference area of a coefficient: frontal, wetted or a wing's",
     ),
     "estimates/propeller.py": (1, "side area of a propeller in oblique flow, m^2"),
+    "estimates/unseen.py": (1, "dynamic pressure on an area that no method sees"),
     "estimates/friction.py": (1, "dynamic pressure on a wetted surface"),
     "estimates/form_drag.py": (1, "dynamic pressure on a frontal or base area"),
     "estimates/crossflow.py": (2, "dynamic pressure on strips of a hull"),

@@ -35,7 +35,7 @@ def test_the_first_page_says_what_the_source_states_where_rig_and_balance_are_le
     study = small_study(FULL)
     tables = tuple(replace(t, source=Source("t", kind="experiment", stated_uncertainty=STATED)) for t in study.tables)
     found = tuple(replace(b, unassessed=(*b.unassessed, RIG)) for b in budgets(study))
-    wanted = f"; the test report states for its own derivatives: {STATED}."
+    wanted = f"; the test report states for its own: {STATED}."
     (said,) = (n for n in answer(replace(study, tables=tables, budgets=found)).notes if n.endswith(wanted))
     assert said.startswith("Not in U95: errors of ")
     assert not any(

@@ -189,7 +189,7 @@ def test_one_command_and_two_lines_on_a_terminal(name: str, tmp_path: Path) -> N
     assert code == 0, said
     assert said.count("N ? explains") == 2  # prompts: what the owner knows, then an empty line
     for symbol, planted in one.slopes.items():
-        found = re.search(rf"{symbol}' +(\S+) +(\S+) ", said.partition("First slopes")[2])
+        found = re.search(rf"{symbol}'(?: \*)? +(\S+) +(\S+) ", said.partition("First slopes")[2])
         assert found, said
         assert abs(float(found[1]) - planted) <= float(found[2]), (symbol, found[0], planted)
     if name == "marked":

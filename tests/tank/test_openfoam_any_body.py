@@ -78,7 +78,7 @@ ABOUT_A_PLANE = X_FINS.replace('roll = "135 deg"', 'roll = "315 deg"').rsplit("[
         pytest.param(written(ONE_FIN), Half.WHOLE, 60, 20, id="finned, no plane"),
         pytest.param(written(ABOUT_A_PLANE), Half.WHOLE, 60, 20, id="finned, one plane"),
         pytest.param(in_one_patch, Half.WHOLE, 90, 20, id="mesh, one patch with X fins"),
-        pytest.param(named("huuv"), Half.WHOLE, 60, 20, id="primitives"),
+        pytest.param(named("tow_spheroid"), Half.WHOLE, 60, 20, id="primitives"),
     ],
 )
 def test_any_body_is_meshed_with_every_patch_whole(

@@ -11,7 +11,7 @@ held fixed, then moved by the error of the reference point. Linear sensitivities
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -480,6 +480,16 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
     return replace(fit, coefficients=wider, findings=(*fit.findings, *open_parts(tuple(mine.values()))))
 
 
+def _alike(found: Sequence[Budget]) -> Iterator[list[Budget]]:
+    """Budgets by their grid study; a study and its copy by symmetry, which differ in signs alone, are one."""
+    groups: dict[tuple[Any, ...], list[Budget]] = {}
+    for b in found:
+        if b.grid is not None:
+            sizes = tuple(float(f"{abs(v):.9g}") for v in b.grid.convergence.values)
+            groups.setdefault((b.campaign, tuple(b.grid.cells), sizes), []).append(b)
+    yield from groups.values()
+
+
 def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     """What no part of some budgets holds, campaign by campaign, and grid studies that do not converge.
 
@@ -494,15 +504,14 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
         value is told from zero anyway; ``budget.not_assessed``, a note, once a campaign.
     """
     out = []
-    studies: dict[tuple[str, str, str], list[Budget]] = {}
-    for b in found:
-        if b.grid is not None:
-            studies.setdefault((b.campaign, b.grid.component, b.grid.setting), []).append(b)
-    for (campaign, component, setting), those in studies.items():
-        study = next(b.grid for b in those if b.grid is not None)
-        about = f"{campaign} {', '.join(primed(b.symbol) for b in those)}"
-        judged = study.convergence
-        where: dict[str, Any] = {"component": component, "setting": setting, "table": study.table}
+    for those in _alike([b for b in found if b.grid is not None]):
+        studies = [b.grid for b in those if b.grid is not None]
+        study, judged = studies[0], studies[0].convergence
+        about = f"{those[0].campaign} {', '.join(primed(b.symbol) for b in those)}"
+        where: dict[str, Any] = {
+            "component": tuple(dict.fromkeys(s.component for s in studies)), "setting": tuple(dict.fromkeys(s.setting for s in studies)),
+            "table": study.table,
+        }  # fmt: skip
         if not judged.convergence.converges:
             level = Severity.WARN if any(_is_told(b) for b in those) else Severity.NOTE
             out.append(
@@ -511,12 +520,19 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
                     cells=study.cells, values=judged.values, **where,
                 )
             )  # fmt: skip
-        if study.left_out:
-            out.append(
-                Finding.of(
-                    "budget.grid_run_left_out", about, Severity.WARN, cells=study.left_out, used=study.cells, **where
-                )
+    left_out: dict[tuple[str, tuple[int, ...]], list[Budget]] = {}
+    for b in found:
+        if b.grid is not None and b.grid.left_out:
+            left_out.setdefault((b.campaign, tuple(b.grid.left_out)), []).append(b)
+    for (campaign, cells), those in left_out.items():
+        studies = [b.grid for b in those if b.grid is not None]
+        out.append(
+            Finding.of(
+                "budget.grid_run_left_out", f"{campaign} {', '.join(primed(b.symbol) for b in those)}", Severity.WARN,
+                cells=cells, used=studies[0].cells, table=studies[0].table,
+                component=tuple(dict.fromkeys(s.component for s in studies)), setting=tuple(dict.fromkeys(s.setting for s in studies)),
             )
+        )  # fmt: skip
     for campaign in dict.fromkeys(c for b in found for c in b.campaign.split(", ")):
         mine = [b for b in found if campaign in b.campaign.split(", ")]
         parts = tuple(dict.fromkeys(name for b in mine for name in b.unassessed))

@@ -234,7 +234,7 @@ def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
 
 
 def _read(files: Mapping[str, bytes]) -> Torpedo:
-    (content,) = files.values()
+    (content,) = (raw for name, raw in files.items() if name.endswith(".json"))
     dynamics = json.loads(content)["agents"][0]["dynamics"]
     given = {f.name: dynamics[f.name] for f in fields(Torpedo)}
     vectors = {k: np.array(given[k]) for k in ("r_bg", "r_bb")}

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from coeflab.core.finding import Fact, Finding
 from coeflab.core.table import Check, as_check
 from coeflab.study.study import Study
 from coeflab.tables.assumptions import CODE
@@ -13,6 +15,14 @@ citations = ("sname1950",)
 
 
 def check(study: Study) -> Sequence[Check]:
-    """One finding per accepted key of a table on which a coefficient hangs."""
-    found = dict.fromkeys(f for fit in study.fits for f in fit.findings if f.code == CODE)
-    return [as_check("assumed", f) for f in found]
+    """One finding per accepted key of a table, with the coefficients of all fits that hang on it."""
+    together: dict[tuple[object, ...], Finding] = {}
+    for f in dict.fromkeys(f for fit in study.fits for f in fit.findings if f.code == CODE):
+        facts = {fact.name: fact.value for fact in f.facts}
+        key = (f.subject, *((name, value) for name, value in facts.items() if name != "symbols"))
+        known = together.get(key)
+        symbols: tuple[str, ...] = (*(known["symbols"] if known else ()), *f["symbols"])
+        together[key] = replace(
+            f, facts=tuple(Fact(n, tuple(dict.fromkeys(symbols)) if n == "symbols" else v) for n, v in facts.items())
+        )
+    return [as_check("assumed", f) for f in together.values()]
