@@ -284,6 +284,11 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
         and (name := sized[2].strip(" ()"))
         and name not in NO_LENGTHS
     ):
+        if re.match(r"(?:dm|km|yd|feet|foot|inch|inches|met(?:er|re)s?)\b|['′\"″]", name, re.IGNORECASE):
+            raise InputError(
+                shown(text), "a length in m, mm, cm, ft or in, with its name: 4.3 m LOA", column=key,
+                advice="Give it in one of these units.",
+            )  # fmt: skip
         return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
     return {key: read_setting(key, text)}
 

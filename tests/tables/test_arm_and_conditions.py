@@ -402,3 +402,9 @@ def test_a_place_from_a_point_keeps_its_unit(key: str, typed: str) -> None:
 def test_a_place_in_a_unit_that_is_not_read_is_refused(typed: str) -> None:
     with pytest.raises(InputError):
         read_settings("axes.reference_point", typed)
+
+
+@pytest.mark.parametrize("typed", ["13.8 feet LOA", "4.2 yd LOA", "165 inches LBP", "13.8' LOA"])
+def test_a_unit_that_is_not_read_is_no_name_of_a_length(typed: str) -> None:
+    with pytest.raises(InputError):
+        read_settings("scaling.length", typed)
