@@ -88,13 +88,17 @@ def _frame(said: Any) -> Any:
     return parse_axes(said).declared
 
 
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_WITH_UNIT = re.compile(rf"({_NUMBER.pattern})\s*([^\d\s.].*)")
+
+
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
     def parsed(typed: Any) -> Any:
         said = list(typed) if isinstance(typed, tuple) else typed
         if isinstance(said, str):
             inner = said.strip(" []()")
             parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
-            said = [_toml(part.strip(" \"'")) for part in parts]
+            said = [_toml(part) for part in _one_unit([part.strip(" \"'") for part in parts])]
         try:
             read(said, Path())
         except InputError as why:
@@ -105,6 +109,14 @@ def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
         return said
 
     return parsed
+
+
+def _one_unit(parts: list[str]) -> list[str]:
+    """Three numbers with a unit behind the last alone: it is that of all three."""
+    last = _WITH_UNIT.fullmatch(parts[-1]) if parts else None
+    if len(parts) == 3 and last and all(_NUMBER.fullmatch(p) for p in parts[:2]):
+        return [*(f"{p} {last[2]}" for p in parts[:2]), parts[2]]
+    return parts
 
 
 def _place(said: Any) -> Any:

@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.types import Array
+from coeflab.core.units import quantity
 from coeflab.fits import FITS
 from coeflab.fits.rows.regression import Area, response
 from coeflab.fits.uncertainty.budget import budgets_of
@@ -408,3 +409,11 @@ def test_a_place_in_a_unit_that_is_not_read_is_refused(typed: str) -> None:
 def test_a_unit_that_is_not_read_is_no_name_of_a_length(typed: str) -> None:
     with pytest.raises(InputError):
         read_settings("scaling.length", typed)
+
+
+@pytest.mark.parametrize("key", ["axes.reference_point", "table.arm_point", "inertia.centre_of_gravity"])
+def test_one_unit_behind_three_numbers_is_that_of_all(key: str) -> None:
+    """It was that of the last alone: -6.9 m beside 0 ft."""
+    said = read_settings(key, "-6.9, 0, 0.5 ft")[key]
+    found = [v if isinstance(v, float) else quantity(str(v), "length") for v in said]
+    assert found == pytest.approx([-2.10312, 0.0, 0.1524], abs=1e-12)
