@@ -47,6 +47,7 @@ from coeflab.tables.settings import (
     overruled,
     read_setting,
 )
+from coeflab.tables.time_record import record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -186,7 +187,9 @@ def understood(
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
-    complaints += (*_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings))
+    complaints += (
+        *record_over_time(raw), *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
+    )  # fmt: skip
     settled = set(said if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns

@@ -1,0 +1,42 @@
+"""A trajectory is no table of forces: its x and y move at the speed of its u and v."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.time_record import record_over_time
+
+T = np.arange(0.0, 8.0, 0.5)
+R = 0.2
+PATH = {
+    "t": T,
+    "X": 1.4 / R * np.sin(R * T),
+    "Y": 1.4 / R * (1.0 - np.cos(R * T)),
+    "u": np.full(len(T), 1.4),
+    "v": 0.0 * T,
+}
+
+
+def raw(columns: dict[str, np.ndarray]) -> RawTable:
+    return RawTable(
+        Path("run.csv"), tuple(RawColumn(n, "", v) for n, v in columns.items()), tuple(range(2, len(T) + 2))
+    )
+
+
+@pytest.mark.parametrize("names", ["t X Y u v", "time x y u v", "t X Y u"])
+def test_positions_are_no_forces(names: str) -> None:
+    made = {n: PATH[{"time": "t", "x": "X", "y": "Y"}.get(n, n)] for n in names.split()}
+    (why,) = record_over_time(raw(made))
+    assert "a record over time" in why.found
+    assert "identify" in why.advice
+
+
+def test_forces_over_time_stay_forces() -> None:
+    """Forces of a slow test beside a clock do not move at its speed; nor does what has no clock."""
+    assert not list(record_over_time(raw(PATH | {"X": np.full(len(T), -9.0), "Y": 12.0 + 0.1 * np.sin(T)})))
+    assert not list(record_over_time(raw({n: v for n, v in PATH.items() if n != "t"})))
+    assert not list(record_over_time(raw(PATH | {"t": T[::-1]})))
