@@ -77,4 +77,7 @@ def test_parts_are_recommended_only_where_they_move_what_the_mesh_moves(name: st
     off = {text.split()[0] for text in agreement.apart}
     assert off >= set(apart)
     assert bool(off) == bool(apart)
-    assert found.advice.startswith("USE THE MESH" if apart else "Parts agree with the mesh within")
+    agree = "Not known whether parts agree" if name == "sphere_with_arms" else "Parts agree with the mesh within"
+    assert found.advice.startswith(
+        "USE THE MESH" if apart else agree
+    )  # the mesh of the arms has an error of half its value

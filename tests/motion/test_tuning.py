@@ -34,7 +34,7 @@ def test_every_status() -> None:
     found = estimate(p)
     made = tuned_parameters("abcdef", ["1"] * 6, p, found)
     assert [m.status for m in made] == [PRIOR, BOUND, OK, PRIOR, OPEN, OPEN]
-    assert {m.status for m in made} == set(STATUSES)
+    assert {m.status for m in made} == set(STATUSES) - {"sign_open"}  # of which tests/motion/test_tune.py has one
     for m in made:
         assert (m.u95 is None) == (m.status in (BOUND, OPEN))
     assert made[3].prior_share == pytest.approx(1.0, abs=1e-3)
@@ -68,3 +68,11 @@ def test_where_it_went() -> None:
 def test_no_more_measurements_than_parameters_is_said() -> None:
     p = problem(lambda s: s, np.array([1.0, 2.0]), 0.1, np.ones(2))
     assert any("no more measurements" in s for s in statements(p, estimate(p)))
+
+
+def test_a_value_whose_interval_holds_zero_has_an_open_sign() -> None:
+    p = problem(lambda s: s * T, 0.02 * T, 0.2, np.array([0.0]), sizes=np.array([1.0]), prior_mean=np.zeros(1),
+                prior_error=np.array([np.inf]), high=np.array([np.inf]))  # fmt: skip
+    (made,) = tuned_parameters("a", ["1"], p, estimate(p))
+    assert made.u95 is not None and abs(made.after) <= made.u95
+    assert made.status == "sign_open"

@@ -28,7 +28,7 @@ def _table(thauv: Acceptance, key: str) -> ComparedTable:
 
 def test_every_number_holds(thauv: Acceptance) -> None:
     assert [t.key for t in thauv.tables] == [
-        "engine", "steady_glides", "speeds", "left_out", "constants", "cycle", "settling", "gains", "power", "masses",
+        "engine", "steady_glides", "speeds", "left_out", "constants", "cycle", "climbs", "settling", "gains", "power", "masses",
         "power_in_space", "cruise", "spiral", "senses", "carried",
     ]  # fmt: skip
     assert [(t.key, r.case, r.quantity) for t in thauv.tables for r in t.rows if not r.holds] == []
@@ -59,7 +59,7 @@ def test_the_cycle_settles(thauv: Acceptance) -> None:
 def test_what_is_calibrated_is_called_so(thauv: Acceptance) -> None:
     assert {t.key: (len(t.rows), {r.basis.value for r in t.rows}) for t in thauv.tables if t.key != "gains"} == {
         "engine": (1, {"verification"}), "steady_glides": (12, {"consistency"}), "speeds": (6, {"calibration"}),
-        "left_out": (6, {"verification"}), "constants": (4, {"consistency"}), "cycle": (6, {"calibration"}),
+        "left_out": (6, {"verification"}), "constants": (4, {"consistency"}), "cycle": (6, {"calibration"}), "climbs": (3, {"consistency"}),
         "settling": (1, {"calibration"}), "power": (6, {"consistency"}), "masses": (10, {"verification", "consistency"}),
         "power_in_space": (3, {"consistency"}), "cruise": (4, {"consistency"}), "spiral": (7, {"consistency"}),
         "senses": (3, {"consistency"}), "carried": (3, {"consistency"}),

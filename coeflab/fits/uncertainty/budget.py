@@ -507,7 +507,7 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     for those in _alike([b for b in found if b.grid is not None]):
         studies = [b.grid for b in those if b.grid is not None]
         study, judged = studies[0], studies[0].convergence
-        about = f"{those[0].campaign} {', '.join(primed(b.symbol) for b in those)}"
+        about = f"{those[0].campaign} {', '.join(dict.fromkeys(primed(b.symbol) for b in those))}"
         where: dict[str, Any] = {
             "component": tuple(dict.fromkeys(s.component for s in studies)), "setting": tuple(dict.fromkeys(s.setting for s in studies)),
             "table": study.table,
@@ -528,7 +528,7 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
         studies = [b.grid for b in those if b.grid is not None]
         out.append(
             Finding.of(
-                "budget.grid_run_left_out", f"{campaign} {', '.join(primed(b.symbol) for b in those)}", Severity.WARN,
+                "budget.grid_run_left_out", f"{campaign} {', '.join(dict.fromkeys(primed(b.symbol) for b in those))}", Severity.WARN,
                 cells=cells, used=studies[0].cells, table=studies[0].table,
                 component=tuple(dict.fromkeys(s.component for s in studies)), setting=tuple(dict.fromkeys(s.setting for s in studies)),
             )
