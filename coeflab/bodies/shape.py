@@ -198,6 +198,11 @@ class Agreement:
         found = zip(MOTIONS, self.entries, strict=True)
         return tuple(f"{m} {100.0 * e:+.0f} %" for m, e in found if e is not None and abs(e) > APART)
 
+    @property
+    def unresolved(self) -> bool:
+        """The mesh's own error is beyond those 15 %: no agreement can be told."""
+        return self.error is not None and self.error > APART
+
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)

@@ -109,7 +109,7 @@ def settled_turn(vehicle: Vehicle, rate: str, speed: float) -> SettledTurn | Non
     scale = np.array([ahead / vehicle.length if MOTIONS[i] in ANGULAR else ahead for i in at])
 
     def change(_time: float, state: Array) -> Array:
-        return rates(state * scale) / scale / growth
+        return np.asarray(rates(state * scale) / scale / growth)
 
     def far(_time: float, state: Array) -> float:
         return float(FARTHEST - np.max(np.abs(state)))

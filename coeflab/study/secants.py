@@ -17,7 +17,7 @@ OF_SECANT = 0.6
 
 
 def secant(tables: Sequence[ForceTable], symbol: str, scaling: Scaling) -> Coefficient | None:
-    """The secant of the smallest setting that counts; where none counts, of the smallest whose run did not converge.
+    """The secant of the smallest setting that counts.
 
     U95 is `OF_SECANT` of it, together with half the range of all secants, those of unconverged runs among them.
 
@@ -33,7 +33,7 @@ def secant(tables: Sequence[ForceTable], symbol: str, scaling: Scaling) -> Coeff
     Returns
     -------
     Coefficient or None
-        None where no run of this motion has a force.
+        None where no run of this motion counts.
     """
     component, (variable,) = symbol[:1], tuple(derivative(symbol).factors) or ("",)
     found: list[tuple[bool, float, float]] = []  # whether it counts, size of the setting, secant
@@ -52,14 +52,14 @@ def secant(tables: Sequence[ForceTable], symbol: str, scaling: Scaling) -> Coeff
                 continue
             found.append((counts, float(abs(x[i])), float(y[i] / x[i])))
             first = first or t
-    if not found or first is None:
+    counted = [f for f in found if f[0]]
+    if not counted or first is None:
         return None
-    counted = [f for f in found if f[0]] or found
     value = min(counted, key=lambda f: f[1])[2]
     spread = float(np.ptp([f[2] for f in found])) / 2.0
     u95 = float(np.hypot(OF_SECANT * abs(value), spread))
     return Coefficient(
         symbol, value, u95, Status.SIGN_OPEN if abs(value) <= u95 else Status.OK, first.body, origin="fit", table=first.name,
-        campaign=first.campaign, n_points=sum(f[0] for f in found), citation=first.source.citation,
+        campaign=first.campaign, n_points=len(counted), citation=first.source.citation,
         estimator=f"secant of one setting, U95 {OF_SECANT:.0%} of it: too few runs count for a slope",
     )  # fmt: skip

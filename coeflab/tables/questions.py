@@ -466,7 +466,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         )
     if said is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(said.value).casefold() in q.default.casefold():
-            return q
+            return replace(q, assumed=False)  # numbers and words agree
         against = f"{said.place}, but {q.default}: {q.why}"
         return replace(
             q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against

@@ -279,7 +279,9 @@ def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: flo
     more += [replace(made(f"speed{v:+.6g}", Kind.STRAIGHT, at=v), half=halves[0]) for v in sweeps.speeds]
     out = (*ahead, *swept, *more)
     _check(out, has)
-    return (*out, *(_image(name, out, has) for name in sweeps.pairs))
+    for name in sweeps.pairs:
+        out = (*out, _image(name, out, has))
+    return out
 
 
 def _image(name: str, among: Sequence[TowCondition], has: Sequence[str]) -> TowCondition:

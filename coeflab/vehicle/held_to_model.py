@@ -62,7 +62,8 @@ def held_to_model(
         A warning for each component whose difference passes both `ALLOWED` of its largest force and the U95 of the law at that
         state; a note with the largest differences of the others.
     """
-    warned, held = [], {}
+    warned: list[Finding] = []
+    held: dict[str, float] = {}
     law = full_force(parameters)
     forces = [(model(np.array(m.nu), angles_of(m.controls)), law(m.nu, m.controls)) for m in motions]
     for m, (theirs, ours), u95 in zip(motions, forces, _u95_where_apart(parameters, motions, forces), strict=True):

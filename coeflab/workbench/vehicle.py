@@ -308,6 +308,9 @@ def _carried(
     own = next((s for s in moves if s.manoeuvre.name == name), None)
     if own is None:
         return (), ()
+    ended = own.figures[0] if own.figures else None
+    if ended is not None and ended.status == "not reached":
+        return (), (f"no uncertainty of the {name.replace('_', ' ')}: its {ended.name} is not reached, {ended.why}",)
     progress(f"uncertainty of the {name.replace('_', ' ')}")
     longest = max(LONGER * float(own.trajectory.time[-1]), 1.0)
     options = {**options, "longest": longest / (2.0 if name == TURN else 1.0)} | (

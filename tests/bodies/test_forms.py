@@ -144,6 +144,12 @@ def test_a_mesh_part_is_the_panel_method_on_it() -> None:
     assert any(s.startswith("p: the panel method on the part alone") for s in result.statements)
 
 
+def test_no_agreement_is_told_where_the_mesh_itself_is_not_resolved() -> None:
+    assert Agreement((0.1, -0.13, None, 0.0, 0.0, 0.0), 0.35).unresolved
+    assert not Agreement((0.1, -0.13, None, 0.0, 0.0, 0.0), 0.14).unresolved
+    assert not Agreement((0.1, -0.13, None, 0.0, 0.0, 0.0), None).unresolved
+
+
 def test_a_tall_disagreement_makes_parts_rough() -> None:
     near = Agreement((0.1, -0.14, None, 0.0, 0.0, 0.0), 0.02)
     far = Agreement((0.1, -0.16, None, 0.0, 0.0, 0.4), 0.02)

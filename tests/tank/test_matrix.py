@@ -136,6 +136,24 @@ def test_what_the_mirror_gives_is_not_run() -> None:
         conditions(Sweeps(combined=((0.1, 0.0, 0.2, 0.0), (-0.1, 0.0, -0.2, 0.0))), with_mirrors("y"), SPEED, LENGTH)
 
 
+def test_a_pair_is_the_mirror_image_that_is_run_on_purpose() -> None:
+    both = Sweeps(
+        drift=(0.1, 0.2), yaw=(0.2,), attack=(0.1,), pitch=(0.1,), pairs=("drift+5.72958", "yaw+0.2", "pitch+0.1")
+    )
+    found = {c.name: c for c in conditions(both, with_mirrors("yz"), SPEED, LENGTH)}
+    one, other = found["drift+5.72958"], found["drift-5.72958"]
+    np.testing.assert_allclose(other.velocity, one.velocity * (1.0, -1.0, 1.0), rtol=1e-12)
+    assert (other.half, other.kind, other.grid) == (one.half, one.kind, one.grid)
+    np.testing.assert_allclose(found["yaw-0.2"].rates, -found["yaw+0.2"].rates, rtol=1e-12)
+    np.testing.assert_allclose(found["pitch-0.1"].rates, -found["pitch+0.1"].rates, rtol=1e-12)
+    for pairs, body in ((("drift+9",), "y"), (("straight",), "y"), (("drift+5.72958",), "z")):
+        with pytest.raises(InputError) as why:
+            conditions(Sweeps(drift=(0.1,), pairs=pairs), with_mirrors(body), SPEED, LENGTH)
+        assert why.value.column == "matrix.pairs"
+    with pytest.raises(InputError, match="twice"):
+        conditions(Sweeps(drift=(0.1,), pairs=("drift+5.72958",) * 2), with_mirrors("y"), SPEED, LENGTH)
+
+
 def test_names_are_of_folders_and_different() -> None:
     sweeps = Sweeps(
         drift=(0.05, -0.05), attack=(0.05,), yaw=(0.1,), pitch=(-0.1,), speeds=(1.5,), controls={"dr": (0.1, -0.1)},

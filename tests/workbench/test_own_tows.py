@@ -15,8 +15,9 @@ from coeflab.report.sections.campaign import tow_sections
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.report.tables.results import by_campaign
 from coeflab.study.plan import read_plan
+from coeflab.study.secants import OF_SECANT
 from coeflab.study.study import Study
-from coeflab.study.towed import NOT_RUN, NOT_TOWED, OPEN, Towed, towed
+from coeflab.study.towed import NOT_RUN, NOT_TOWED, OPEN, SECANT, Towed, towed
 from coeflab.study.validation import validations
 from coeflab.workbench import run
 
@@ -142,12 +143,15 @@ def test_published_columns_stand_beside_by_our_length(bodies: tuple[Towed, ...])
     assert bare["Zw"] == (None,)
 
 
-def test_what_did_not_converge_is_open_with_its_reason(bodies: tuple[Towed, ...]) -> None:
+def test_what_did_not_converge_leaves_a_secant_and_its_reason(bodies: tuple[Towed, ...]) -> None:
     by = {r.symbol: r for r in bodies[2].rows}
     assert by["Yv"].value is not None
-    assert by["Yr"].value is None
-    assert by["Yr"].missing == OPEN
-    assert by["Yr"].why == "fitted to 2 of 6 turning runs; 1 diverged, 3 still drifting"
+    assert by["Yr"].value is not None
+    assert by["Yr"].u95 is not None
+    assert by["Yr"].u95 >= OF_SECANT * abs(by["Yr"].value)
+    assert not by["Yr"].is_result
+    assert by["Yr"].missing == ""
+    assert by["Yr"].why == f"{SECANT}; fitted to 2 of 6 turning runs; 1 diverged, 3 still drifting"
     assert by["Zw"].missing == NOT_RUN
     assert by["Zw"].why == "no run varies w"
 

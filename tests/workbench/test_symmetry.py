@@ -68,11 +68,15 @@ def test_forces_of_half_of_a_body_are_named(tmp_path: Path, csv: str, halves: st
     assert f"Forces of half of the body? half_model = {halves} doubles" in found.comment
 
 
+def test_a_side_force_in_every_row_of_an_attack_sweep_is_named_without_a_declaration(tmp_path: Path) -> None:
+    (found,) = warned(tmp_path, sweep("alpha", "Z", "M", "Y", 8.0), '["up-down"]')
+    assert "Y is 44%" in found.statistic
+
+
 @pytest.mark.parametrize(
     ("csv", "declared"),
     [
         (sweep("beta", "Y", "N", "Z", -8.0), '["port-starboard"]'),  # nothing forbids it
-        (sweep("alpha", "Z", "M", "Y", 8.0), '["up-down"]'),
         (sweep("beta", "Y", "N", "Z", 0.2), '["up-down"]'),  # of a mesh that is not quite symmetric
         (sweep("beta", "Y", "N", "Z", 3.0, 1.0), '["up-down"]'),  # noise of the balance
         ("alpha [deg],beta [deg],Y [N],Z [N]\n4,4,-6,-6\n8,4,-6,-12\n", '["up-down"]'),  # not along the plane

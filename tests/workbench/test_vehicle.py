@@ -485,6 +485,20 @@ def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
         weighed(bare, Stated(390.0, np.array([1.6, 0.0, 0.02])), 998.2)
 
 
+def test_a_coast_down_that_does_not_end_has_no_stopping_time_anywhere(
+    bare: Body, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of almost no resistance: `not reached` in the table, no figure in the headline, and why among what is missing."""
+    monkeypatch.setitem(VALUES, "Xu|u|", -4e-6)
+    found = from_shape(PLAN, bare, Stated(390.0))
+    assert found.shape is not None
+    (figure,) = (f for f in found.manoeuvres[0].figures if f.name == "stopping time")
+    assert (figure.value, figure.status) == (None, "not reached")
+    assert found.shape.carried == ()
+    assert main_spread(found.shape.carried) is None
+    assert any("stopping time is not reached" in line for line in found.shape.missing)
+
+
 def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A directionally unstable body: mesh, renumbered mesh and equations coast alike, straight ahead, and X0' has the variance."""
     monkeypatch.setitem(VALUES, "Nv", -0.03)

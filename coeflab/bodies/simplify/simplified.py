@@ -353,7 +353,7 @@ class Simplification:
         """``parts`` or ``mesh``; None where they were not compared."""
         if self.left_as_mesh or (self.shape.agreement is not None and self.shape.agreement.apart):
             return "mesh"
-        return None if self.shape.agreement is None else "parts"
+        return None if self.shape.agreement is None or self.shape.agreement.unresolved else "parts"
 
     @property
     def advice(self) -> str:
@@ -371,6 +371,11 @@ class Simplification:
             alone = " Parts are computed alone: what they do to each other is left out." if len(self.parts) > 1 else ""
             return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}.{alone}{unsure}"
         worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
+        if agreement.unresolved:
+            return (
+                f"Not known whether parts agree with the mesh: they differ by {worst:.1%} at most, and the mesh's own error is up to "
+                f"{error:.0%}, beyond the bound of {APART:.0%}. Raise --panels."
+            )
         return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 
     def part_table(self) -> Table:

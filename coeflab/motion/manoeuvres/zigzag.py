@@ -18,12 +18,12 @@ from coeflab.motion.approach import (
     propulsion,
     thruster_orders,
     turning_sense,
-    unlimited,
     within_limit,
     yaw_acceleration,
 )
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 
 summary = "zigzag 10/10, 20/20 or any: overshoot angles, initial turning time and distance, reach, period"

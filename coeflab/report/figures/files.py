@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,9 +12,9 @@ from coeflab.core.errors import InputError, OutputError
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
+from coeflab.report.printable import CLOCK
 
 PAGE = b'#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes(sys.inputs.svg), format: "svg")\n'
-CLOCK = datetime(2000, 1, 1, tzinfo=UTC)  # of every file: equal drawings give equal bytes
 DENSITY = 300.0  # pixels an inch
 FAMILY = 'font-family="Helvetica, Arial, sans-serif"'
 KINDS = ("svg", "pdf", "png")

@@ -7,7 +7,6 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from datetime import UTC, datetime
 from importlib.resources import files
 from typing import Any, Literal
 
@@ -18,13 +17,12 @@ from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
-from coeflab.report.printable import BREAK, WORD, breakable, glyphs, shortened
+from coeflab.report.printable import BREAK, CLOCK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
 citations: tuple[str, ...] = ()
 
 TEMPLATE = ("data", "symbols", "page", "figures", "tables", "first_page", "report")
-CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
 LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3

@@ -367,8 +367,8 @@ def without_u95(study: Study) -> str:
         return f"The 95 % ranges on the first page are of draws of the coefficients: {members}.{rest}"
     if any(f.value is not None for made in study.manoeuvres for f in made.figures):
         return WITHOUT_U95
-    names = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
-    return f"{names[:1].upper()}{names[1:]} could not be computed, so there is no U95."
+    every = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
+    return f"{every[:1].upper()}{every[1:]} could not be computed, so there is no U95."
 
 
 def _drawn(study: Study) -> dict[str, int]:

@@ -112,6 +112,7 @@ def mesh_job(
     contents = _files(body, sizes, half, twins, cores)
     planned = {"cells": round(cells), **_geometry(body, half)}
     planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
+    planned["images"] = {image: patch for pairs in twins.values() for patch, image in pairs}
     planned["coverage"] = {
         patch: options.coverage or (FOIL_COVERAGE if patch in foils(body) else HULL_COVERAGE) for patch in sizes.layers
     }
@@ -171,10 +172,10 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, twins: Twins, cores: i
             contents[f"system/{name}"] = rendered(f"mesh/{what}Dict", name=name, normal=normal, pairs=pairs, low=low)
     for patch, ends in values["features"].items():
         points, index = np.unique(np.round(ends.reshape(-1, 3), DIGITS), axis=0, return_inverse=True)
-        pairs = index.reshape(-1, 2)
-        pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
+        edges = index.reshape(-1, 2)
+        edges = np.unique(np.sort(edges[edges[:, 0] != edges[:, 1]], axis=1), axis=0)
         name = f"{patch}.eMesh"
-        contents[f"{GEOMETRY}/{name}"] = rendered("mesh/edges.eMesh", name=name, points=points, ends=pairs)
+        contents[f"{GEOMETRY}/{name}"] = rendered("mesh/edges.eMesh", name=name, points=points, ends=edges)
     return contents | {f"{GEOMETRY}/body.stl": stl(body)}
 
 

@@ -104,9 +104,12 @@ def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
     surface, volume = _body_in_mesh(folder / "constant" / "polyMesh", list(planned["surface"]))
     asked = {patch: count for patch, count in planned["layers"].items() if planned["surface"][patch] > 0.0}
     snapped = (folder / "log.snappyHexMesh").read_text(errors="replace")
+    layers = dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked}
+    for image, patch in planned["images"].items():  # made by mirroring, of which snappyHexMesh knows nothing
+        layers |= {image: layers[patch]} if image in layers and patch in layers else {}
     return MeshMade(
         cells=int(_after("cells:", checked)),
-        layers=dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked},
+        layers=layers,
         surface={name: surface[name] / area for name, area in planned["surface"].items() if area > 0.0},
         volume=volume / planned["volume"],
         non_orthogonality=_after("Mesh non-orthogonality Max:", checked),
