@@ -87,7 +87,7 @@ def test_from_a_table_to_a_simulator(here: Path, frame_of_data: pd.DataFrame) ->
 
     assert cf.compare(auv, "remus100").frame().shape[1] == 8
     auv.export("csv", "out/")
-    assert sorted(p.suffix for p in Path("out").iterdir())[-1] == ".csv"
+    assert ".csv" in {p.suffix for p in Path("out").iterdir()}
     assert cf.estimate(body)["Yv'"].value < 0.0
     plt.close("all")
     changed = {k for k in before if before[k] != mpl.rcParams[k]}
