@@ -25,7 +25,8 @@ UNSTABLE = "reports/suboff/suboff_fully_appended.parameters.json"
 
 
 def commands() -> list[str]:
-    blocks = re.findall(r"^```\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
+    blocks = [block for language, block in fenced if not language]
     lines = [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines()]
     return [line for line in lines if line and not line.startswith("source ")]
 
@@ -92,5 +93,5 @@ def test_pages_and_pictures_exist() -> None:
 def test_it_is_short() -> None:
     """The first own result is on the first screen."""
     lines = TEXT.splitlines()
-    assert len(lines) <= 110
+    assert len(lines) <= 126  # 16 of them are the same lines in Python
     assert lines.index("## Your first own result") < 20
