@@ -110,7 +110,9 @@ def _may_be_written(out: Path, accept: bool) -> bool:
     from coeflab.core.files import names_in
 
     names = names_in(out) if out.is_dir() else [out.name]
-    return not names or (accept and out.is_dir() and all(n == "campaign.toml" or n.endswith(".csv") for n in names))
+    return not names or (
+        accept and out.is_dir() and all(n in ("campaign.toml", "mapping.toml") or n.endswith(".csv") for n in names)
+    )
 
 
 def _named_after(file: Path) -> Path:
