@@ -82,7 +82,7 @@ def test_a_file_gets_the_same_bytes(coeflab: Run, tmp_path: Path) -> None:
         (["--alpha=1:0:0.1", "--beta=0"], "low below the high"),
         (["--alpha=0:1", "--beta=0"], "low:high:step"),
         (["--alpha=ten", "--beta=0"], '"ten"'),
-        (["--alpha=", "--beta=0"], "low:high:step"),
+        (["--alpha=", "--beta=0"], "a blank value"),
         (["--alpha=inf", "--beta=0"], "low:high:step"),
         (["--alpha=0", "--beta=0", "--alpha=1"], "twice"),
         (["--alpha=0", "--beta"], "--NAME=VALUES"),

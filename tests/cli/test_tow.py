@@ -157,7 +157,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
     assert answer[0].split()[1:] == ["-0.006000", "0.000019"] or float(answer[0].split()[1]) == pytest.approx(
         -6e-3, rel=1e-2
     )
-    assert "2 runs with r count, 3 are needed" in flat(done.stdout)
+    assert "no result" in flat(done.stdout)  # two rates give a secant, whose U95 is 60 % of it
     assert max(map(len, done.stdout.splitlines())) <= 80
 
 
