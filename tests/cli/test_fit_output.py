@@ -79,7 +79,7 @@ def test_a_reading_that_the_slope_leaves_out_is_left_out_of_the_law_and_named(co
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("huuv_synthetic", "--fit", "surface", "--figure", "out.png"), "ends in .svg"),
+        (("huuv_synthetic", "--fit", "surface", "--figure", "out.gif"), "ends in .svg"),
         (("suboff_roddy_2", "--symbol", "Yw", "--figure", "out.svg"), "no sweep"),
         ((), "campaign folder"),
         (("huuv_synthetic", "--fit", "surface", "--degre", "3"), "`coeflab formats surface` explains every option"),

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.fits import FITS
 from coeflab.fits.uncertainty.budget import budgets_of, with_budget
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
@@ -17,7 +18,6 @@ from coeflab.study.study import Plan, Study
 from coeflab.tables.campaign import InputUncertainty
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
-from coeflab.workbench import FITS
 from tests.report.studies import small_table
 
 SCALING, AT = Scaling(2.0, "LOA"), Conditions(1000.0, 1.5)
