@@ -18,7 +18,11 @@ from tests.cli.conftest import Run
         (complete.manoeuvres, "zig", ["zigzag"]),
         (complete.validations, "sub", ["suboff"]),
         (complete.bodies, "remus", ["remus100"]),
-        (complete.campaigns, "suboff_roddy_", ["suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_2_dimensional", "suboff_roddy_3"]),
+        (
+            complete.campaigns,
+            "suboff_roddy_",
+            ["suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_2_dimensional", "suboff_roddy_3"],
+        ),
         (complete.fits, "slope", ["slope_at_origin"]),
         (complete.solvers, "open", ["openfoam"]),
         (complete.runners, "slu", ["slurm"]),

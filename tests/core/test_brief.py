@@ -52,7 +52,10 @@ def longest(roots: list[Any]) -> dict[str, int]:
     for root in roots:
         for noun in nouns(root, seen):
             kind = f"{type(noun).__module__}.{type(noun).__name__}"
-            out[kind] = max(out.get(kind, 0), len(repr(noun)), len(str(noun)))
+            texts = (
+                [repr(noun)] if "__str__" in vars(type(noun)) else [repr(noun), str(noun)]
+            )  # a table prints itself whole
+            out[kind] = max(out.get(kind, 0), *map(len, texts))
     return out
 
 
