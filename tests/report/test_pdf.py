@@ -333,11 +333,11 @@ def test_an_appendix_begins_on_a_page_of_its_own():
 
 
 @pytest.mark.slow
-def test_the_core_of_the_validation_has_thirteen_pages(suboff):
+def test_the_core_of_the_validation_has_twelve_pages(suboff):
     whole = document(suboff, full=False)
     made = opened(whole)
     assert flaws(made) == []
-    assert len(made) <= 13  # twelve before grid studies that diverge and biases of tows had their warnings
+    assert len(made) <= 12
     texts = [p for s in every(whole.sections) for p in (*s.texts, *(n for t in s.tables for n in t.notes))]
     assert max(map(len, texts)) <= 240
     coefficients = next(s for s in whole.sections if s.anchor == "coefficients")
