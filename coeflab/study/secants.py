@@ -8,8 +8,9 @@ import numpy as np
 
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import ANGULAR, LINEAR, derivative
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.law.symbols import derivative
+from coeflab.study.single_motion import commanded
+from coeflab.tables.force_table import ForceTable
 
 # Of the secant, that covers the slope at the origin: of the 19 odd sweeps of drift, attack and turning in the shipped SUBOFF
 # campaigns whose slope is known within half of it, every secant from .6 to 12 deg or up to r' = .5 lies that near (.59 at most).
@@ -35,28 +36,14 @@ def secant(tables: Sequence[ForceTable], symbol: str, scaling: Scaling) -> Coeff
     Coefficient or None
         None where no run of this motion counts.
     """
-    component, (variable,) = symbol[:1], tuple(derivative(symbol).factors) or ("",)
-    found: list[tuple[bool, float, float]] = []  # whether it counts, size of the setting, secant
-    names = [m for m in (*LINEAR[1:], *ANGULAR) if m != variable]
-    first: ForceTable | None = None
-    for t in tables:
-        if component not in t.forces or not variable:
-            continue
-        x, y = t.primed_motion(variable, scaling.length), t.primed_force(component, scaling.length)
-        rests = [np.abs(t.primed_motion(m, scaling.length)) <= AT_REST for m in (*names, *t.controls)]
-        states = {e.row for e in t.exclusions if e.status and e.component in ("", component)}
-        apart = {e.row for e in t.exclusions if not e.status and e.component in ("", component)}
-        for i in np.flatnonzero((np.abs(x) > AT_REST) & np.isfinite(y) & np.all(rests, axis=0)).tolist():
-            counts = bool(t.usable[component][i])
-            if i in apart or (t.variants and t.variants[i]) or not (counts or i in states):
-                continue
-            found.append((counts, float(abs(x[i])), float(y[i] / x[i])))
-            first = first or t
-    counted = [f for f in found if f[0]]
-    if not counted or first is None:
+    component, factors = symbol[:1], tuple(derivative(symbol).factors)
+    rows = [(t, r) for t in tables if len(factors) == 1 for r in commanded(t, component, factors[0], scaling.length)]
+    counted = [r for _, r in rows if r.counts]
+    if not counted:
         return None
-    value = min(counted, key=lambda f: f[1])[2]
-    spread = float(np.ptp([f[2] for f in found])) / 2.0
+    first, least = rows[0][0], min(counted, key=lambda r: r.size)
+    value = least.y / least.x
+    spread = float(np.ptp([r.y / r.x for _, r in rows])) / 2.0
     u95 = float(np.hypot(OF_SECANT * abs(value), spread))
     return Coefficient(
         symbol, value, u95, Status.SIGN_OPEN if abs(value) <= u95 else Status.OK, first.body, origin="fit", table=first.name,

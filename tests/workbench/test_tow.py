@@ -22,6 +22,7 @@ from coeflab.report.tables import tow as tables
 from coeflab.study.checks.symmetry import biases
 from coeflab.study.secants import OF_SECANT
 from coeflab.study.towed import SECANT, TowedRow
+from coeflab.tables.force_table import Exclusion
 from coeflab.tank.folder import CAMPAIGN, PLAN, has_begun, read_plan
 from coeflab.tank.jobs import EARLIER, Job, JobState, only_one, outstanding
 from coeflab.tank.states import states_of
@@ -111,14 +112,25 @@ def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: t
     sweep = fit.sweep("Yv")
     for share, severity in ((0.04, Severity.PASS), (0.06, Severity.WARN)):
         bias = share * float(np.abs(sweep.y).min())
-        (found,) = biases([replace(sweep, bias=bias)])
+        study = replace(made.study, fits=(replace(fit, sweeps=(replace(sweep, bias=bias),)),))
+        (found,) = biases(study)
         assert (found.code, found.severity) == ("symmetry.bias", severity)
         assert found.statistic == pytest.approx(share)
         assert found["of_value"] == pytest.approx(abs(bias * sweep.by_row.sum() / sweep.value))
         assert found["row"] == "drift+3"
-        study = replace(made.study, fits=(replace(fit, sweeps=(replace(sweep, bias=bias),)),))
         (line,) = tables.symmetry_checks(study)
         assert line.startswith("Warning" if severity is Severity.WARN else "Check")
+        table = next(t for t in study.tables if t.name == sweep.table)
+        at = table.labels.index("drift+3")
+        failed = Exclusion(at, 0, "", "unconverged", uncertain=True, status="unconverged")
+        usable = {c: mask & (np.arange(len(table)) != at) for c, mask in table.usable.items()}
+        without = replace(table, usable=usable, exclusions=(*table.exclusions, failed))
+        (still,) = biases(replace(study, tables=tuple(without if t is table else t for t in study.tables)))
+        assert (still["row"], still.statistic) == (
+            "drift+3",
+            pytest.approx(share),
+        )  # not over the larger one that is left
+        assert still["ended"] != found["ended"] == ""
 
 
 def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:

@@ -257,7 +257,7 @@ def symmetry_checks(study: Study | None) -> tuple[str, ...]:
     ----------
     study : Study or None
     """
-    found = () if study is None else biases([s for f in study.fits for s in f.sweeps if not s.by_symmetry])
+    found = () if study is None else biases(study)
     out = []
     for f in found:
         text = words(f)

@@ -9,6 +9,7 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check, plus_minus
 from coeflab.fits.results.fit_result import Sweep
+from coeflab.study.single_motion import commanded
 from coeflab.study.study import Study
 from coeflab.tables.campaign import CUTS, Cut
 from coeflab.tables.force_table import AT_REST, ForceTable
@@ -58,32 +59,37 @@ def check(study: Study) -> Sequence[Check]:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    found = [as_check("symmetry", f) for f in biases([s for s in sweeps if not s.by_symmetry])]
+    found = [as_check("symmetry", f) for f in biases(study)]
     return [c for s in odd if (c := _intercept(s)) is not None] + found + across
 
 
-def biases(sweeps: Sequence[Sweep]) -> tuple[Finding, ...]:
-    """What rows at rest have of a force that a declared symmetry makes zero, of every sweep over one side.
+def biases(study: Study) -> tuple[Finding, ...]:
+    """What rows at rest have of a force that a declared symmetry makes zero, over that of the smallest setting, of every sweep over one side.
+
+    The smallest that was commanded, whether its run converged or not: what is left of a sweep would make a bias look small.
 
     Parameters
     ----------
-    sweeps : sequence of Sweep
+    study : Study
     """
+    tables = {t.name: t for t in study.tables}
     out = []
-    for s in sweeps:
-        sizes = np.abs(s.y)
-        if not s.bias or s.value is None or not np.any(sizes > 0.0):
-            continue
-        least = int(np.argmin(np.where(sizes > 0.0, sizes, np.inf)))
-        share = abs(s.bias) / float(sizes[least])
-        of_value = abs(s.bias * float(s.by_row.sum()) / s.value) if s.value else np.inf
-        out.append(
-            Finding.of(
-                "symmetry.bias", s.table, Severity.WARN if share > LARGE else Severity.PASS, statistic=share, threshold=LARGE,
-                advice=f'matrix.pairs = ["{s.labels[least]}"]', component=f"{s.component}'", row=s.labels[least],
-                symbol=f"{s.symbol}'", of_value=of_value, judged="much" if share > LARGE else "little",
-            )
-        )  # fmt: skip
+    for f in study.fits:
+        for s in (s for s in f.sweeps if s.bias and s.value is not None and not s.by_symmetry):
+            length = f.coefficients.scaling.length
+            rows = commanded(tables[s.table], s.component, s.variable, length) if s.table in tables else ()
+            if (least := min((r for r in rows if r.y), key=lambda r: r.size, default=None)) is None:
+                continue
+            share = abs(s.bias) / abs(least.y)
+            of_value = abs(s.bias * float(s.by_row.sum()) / s.value) if s.value else np.inf
+            out.append(
+                Finding.of(
+                    "symmetry.bias", s.table, Severity.WARN if share > LARGE else Severity.PASS, statistic=share, threshold=LARGE,
+                    advice=f'matrix.pairs = ["{least.label}"]', component=f"{s.component}'", row=least.label,
+                    ended="" if least.counts else ", which did not converge", symbol=f"{s.symbol}'", of_value=of_value,
+                    judged="much" if share > LARGE else "little",
+                )
+            )  # fmt: skip
     return tuple(out)
 
 
