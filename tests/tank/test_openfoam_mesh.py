@@ -200,6 +200,15 @@ def test_a_mesh_that_was_not_made_is_named(body: TowedBody, tmp_path: Path) -> N
     (made.folder / "log.checkMesh").write_text("cells: 9\n")
     assert mesh_ended(made)[1] == "no mesh was made: constant/polyMesh/boundary is missing"
     assert mesh_made(made.folder) is None
+    for name, content, found in (
+        ("planned.json", '{"cells": 10}', "nothing"), ("planned.json", "[1]", "a list"), ("planned.json", '{"cells": "many"}', "many"),
+        (MADE, '{"cells": 1.5}', "1.5"), (MADE, "{", "expected JSON"),
+    ):  # fmt: skip
+        (made.folder / name).write_text(content)
+        with pytest.raises(InputError, match=name) as why:
+            mesh_made(made.folder) if name == MADE else expected_cells(made.folder)
+        assert found in str(why.value)
+        (made.folder / MADE).unlink(missing_ok=True)
 
 
 def carried_out(made: Job) -> Job:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from coeflab.core.files import write_all
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.text.records import read_record
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
-from coeflab.tank.jobs import Job
+from coeflab.tank.jobs import ANEW, Job
 
 GEOMETRY = "constant/triSurface"
 MADE, PLANNED = "mesh.json", "planned.json"
@@ -58,6 +59,21 @@ class MeshMade:
     marked: tuple[str, ...] = ()
 
 
+_BY_PATCH = {str: float}
+_PLANNED = {
+    "cells": float,
+    "volume": float,
+    "surface": _BY_PATCH,
+    "layers": _BY_PATCH,
+    "coverage?": _BY_PATCH,
+    "images?": {str: str},
+}
+_MADE = {
+    "cells": int, "layers": _BY_PATCH, "surface": _BY_PATCH, "volume": float, "non_orthogonality": float, "skewness": float,
+    "marked": [str],
+}  # fmt: skip
+
+
 def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
     """Judge a mesh whose steps have ended, and keep what it became in ``mesh.json`` beside it.
 
@@ -73,7 +89,7 @@ def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
     why : str
         Why no run may use it; empty where it is sound.
     """
-    planned = json.loads((job.folder / PLANNED).read_text())
+    planned = read_record(job.folder / PLANNED, _PLANNED, "what was planned of a mesh", advice=ANEW)
     try:
         made = _read(job.folder, planned)
     except FileNotFoundError as why:
@@ -88,7 +104,8 @@ def mesh_made(folder: Path) -> MeshMade | None:
     """The mesh in a folder as its job left it; None before it is made."""
     if not (folder / MADE).is_file():
         return None
-    kept = json.loads((folder / MADE).read_text())
+    kept = read_record(folder / MADE, _MADE, "what a mesh became", advice=ANEW)
+    kept = {f.name: kept[f.name] for f in fields(MeshMade)}
     tables = {name: MappingProxyType(kept[name]) for name in ("layers", "surface")}
     return MeshMade(**(kept | tables | {"marked": tuple(kept["marked"])}))
 
@@ -96,7 +113,9 @@ def mesh_made(folder: Path) -> MeshMade | None:
 def expected_cells(folder: Path) -> float:
     """Cells of the mesh in a folder: counted once it is made, expected before."""
     made = mesh_made(folder)
-    return float(made.cells if made else json.loads((folder / PLANNED).read_text())["cells"])
+    if made:
+        return float(made.cells)
+    return float(read_record(folder / PLANNED, _PLANNED, "what was planned of a mesh", advice=ANEW)["cells"])
 
 
 def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
