@@ -55,6 +55,21 @@ def test_a_plot_and_the_figure_of_the_report_are_one_drawing(
     plt.close("all")
 
 
+def test_a_plot_shows_the_readings_of_the_table(result: cf.Result) -> None:
+    """Against Roddy's cells as the file has them, which no drawing knows: beta in degrees, Y' as printed."""
+    import matplotlib.pyplot as plt
+
+    raw = np.genfromtxt(
+        cf.shipped("cfd_data") / "suboff_roddy_2" / "table.csv", delimiter=",", skip_header=1, usecols=(1, 2, 4)
+    )
+    printed = {(round(-beta, 6), y) for delta, beta, y in raw if delta == 0.0}
+    drawn = [p for one in lines(result.plot("Yv'", ax=plt.subplots()[1]))["data-series=points"] for p in one]
+    assert len(drawn) >= 20
+    for x, y in drawn:
+        assert min(abs(y - b) for a, b in printed if abs(a - x) < 1e-3) < 1e-9, (x, y)
+    plt.close("all")
+
+
 def test_plots_take_the_axes_and_the_colours_of_the_user(result: cf.Result) -> None:
     import matplotlib.pyplot as plt
 
