@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import friction_line
+from coeflab.bodies.hull_flow import FRICTION_APART, friction_line
 from coeflab.core.types import brief
 from coeflab.fits.uncertainty.budget import BOUND_ONLY, Budget
 from coeflab.law.coefficient import CoefficientSet
@@ -99,7 +99,6 @@ MODEL = STUDIES["turbulence"]
 REDUCTION = ("model form", "random and model form")
 WIDE = 0.25  # of the measured or published value: a wider uncertainty passes what a reader would call a difference
 AS_PRINTED = ", as printed"
-FRICTION = 0.05  # of the friction line between two Reynolds numbers: more than drag is compared to
 
 
 @brief
@@ -204,7 +203,7 @@ class Validation:
         if computed is None or measured is None:
             return "Re of both sides not known"
         ratio = friction_line(computed) / friction_line(measured) - 1.0
-        if abs(ratio) <= FRICTION:
+        if abs(ratio) <= FRICTION_APART:
             return ""
         between = between or f"Re {in_millions(computed)} and {in_millions(measured)}"
         return f"friction differs by {100.0 * abs(ratio):.0f} % between {between}, ITTC 1957"

@@ -33,6 +33,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
 from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.drag_reynolds import drag_elsewhere
 from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
 from coeflab.vehicle.from_shape import equipped
@@ -425,7 +426,13 @@ def assemble(
         models=models,
         added_mass=hull,
         findings=tuple(
-            dict.fromkeys([*(f for fit in chosen for f in fit.findings), *(() if found is None else found.findings)])
+            dict.fromkeys(
+                [
+                    *(f for fit in chosen for f in fit.findings),
+                    *(() if found is None else found.findings),
+                    *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),
+                ]
+            )
         ),
         provenance=Provenance(
             coeflab_version=VERSION,

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from coeflab.bodies.hull_flow import FRICTION_APART
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
@@ -18,7 +19,7 @@ from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import AS_PRINTED, FRICTION, WIDE, Validation
+from coeflab.study.validation import AS_PRINTED, WIDE, Validation
 from coeflab.vehicle.stability import Derived
 
 SMALL = 0.01
@@ -374,7 +375,7 @@ def predictions(found: Sequence[Validation]) -> Table:
         f"S is computed and D is measured, independently, on the same body. D is our fit to the points of the test.{printed} E is formed before "
         f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
         "There is no verdict if the grid error is not estimated, the test used another method, symmetry makes the value zero, or, for drag, friction at "
-        f"the two Reynolds numbers differs by over {100.0 * FRICTION:.0f} %.",
+        f"the two Reynolds numbers differs by over {100.0 * FRICTION_APART:.0f} %.",
     )
     return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
 
