@@ -189,7 +189,7 @@ def statements(p: Problem, found: Estimate) -> tuple[str, ...]:
             f"The residuals are {found.birge:.2g} times the stated errors; the intervals are widened by that (Birge ratio)."
         )
     if np.any(found.open):
-        out.append("Parameters without an interval stay near their start value, held by a weak prior.")
+        out.append("Parameters without an interval are no result: a weak prior at their start value alone holds them.")
     out.append("Intervals apply to this form of the model, with everything that was not free at its value.")
     if int(np.isfinite(p.measured).sum()) <= len(p.start):
         out.append("There are no more measurements than parameters; the model cannot be judged.")
