@@ -30,7 +30,8 @@ from coeflab.tables.parts_together import (
     settled_together,
     understood_together,
 )
-from coeflab.tables.settings import Setting, doubtful_setting, read_in, require_one_datum, saved_mapping
+from coeflab.tables.settings import Setting, read_in, require_one_datum, saved_mapping
+from coeflab.tables.stated_settings import doubtful_setting
 from coeflab.tables.understood import Understood, accepted_without_source
 from coeflab.tables.words.points import POINT_OF
 

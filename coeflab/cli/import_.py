@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 MODEL = "manoeuvring_model"
 FINDINGS = 12  # lines of findings below the first slopes
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
+OTHER_OUT = "Name another --out, or replace it with --force."
 
 
 def command(
@@ -85,7 +86,7 @@ def command(
     out = typed(out) if out is not None else _named_after(file)
     readable(file)
     if not force and out.exists() and not _may_be_written(out, accept):
-        raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
+        raise OutputError(f"{out} exists and is not empty. {OTHER_OUT}")
     said = said_on_command_line(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     draft = Draft(file, said, assumed(out), map_)
     draft.read()
@@ -96,7 +97,7 @@ def command(
     filled = draft.filled()
     made = contents(filled, of_campaign(draft.settings), file)
     tables = checked(made, filled)
-    write_all(out, made, new=not force)
+    write_all(out, made, new=not force, otherwise=OTHER_OUT)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
     _written(out, filled, tables)

@@ -154,7 +154,9 @@ def names_in(folder: Path) -> list[str]:
     return sorted(p.name for p in folder.iterdir() if not _LITTER.fullmatch(p.name))
 
 
-def write_all(folder: Path, contents: Mapping[str, bytes], *, new: bool = False) -> dict[str, bool]:
+def write_all(
+    folder: Path, contents: Mapping[str, bytes], *, new: bool = False, otherwise: str = OTHER_FOLDER
+) -> dict[str, bool]:
     """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
 
     A fault while a content is written, such as a full disk, leaves all files as they were. Only a stop between the
@@ -169,6 +171,8 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, new: bool = False)
         By name, or path below the folder.
     new : bool
         Whether a folder that holds anything else than these very contents is refused.
+    otherwise : str
+        What to do then.
 
     Returns
     -------
@@ -191,7 +195,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, new: bool = False)
                 locks.enter_context(_alone(folder))
                 _sweep({(folder / name).parent for name in contents})
                 if new:
-                    _require_new(folder, contents)
+                    _require_new(folder, contents, otherwise)
                 for name, content in contents.items():
                     path = folder / name
                     changed[name] = not (path.is_file() and path.read_bytes() == content)
@@ -209,13 +213,13 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, new: bool = False)
     return changed
 
 
-def _require_new(folder: Path, contents: Mapping[str, bytes]) -> None:
+def _require_new(folder: Path, contents: Mapping[str, bytes], otherwise: str) -> None:
     """Refuse a folder with other files than these, which a stopped process may have left of the same contents."""
     tops = {Path(name).parts[0] for name in contents}
     others = [name for name in names_in(folder) if name not in tops]
     others += [n for n, c in contents.items() if (folder / n).exists() and (folder / n).read_bytes() != c]
     if others:
-        raise OutputError(f"{clipped(folder)} exists and is not empty. {OTHER_FOLDER}")
+        raise OutputError(f"{clipped(folder)} exists and is not empty. {otherwise}")
 
 
 @contextmanager

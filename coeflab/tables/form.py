@@ -23,11 +23,11 @@ from coeflab.tables.settings import (
     VISCOSITY,
     Setting,
     Settings,
-    against_words,
     read_in,
     require_one_datum,
     reynolds,
 )  # fmt: skip
+from coeflab.tables.stated_settings import against_words
 from coeflab.tables.understood import Doubt, Understood
 
 MANY = 20  # columns, beyond which those that no fit uses have no line

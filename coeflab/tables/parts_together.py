@@ -13,7 +13,8 @@ from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import Question
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import Setting, Settings, against_words, read_in
+from coeflab.tables.settings import Setting, Settings, read_in
+from coeflab.tables.stated_settings import against_words
 from coeflab.tables.understood import Understood, understood
 from coeflab.tables.words.points import POINT_FROM, POINT_OF
 

@@ -19,17 +19,8 @@ from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
-from coeflab.tables.settings import (
-    ARM_POINT,
-    REFERENCE,
-    SYMMETRY,
-    Setting,
-    Settings,
-    arm_by_words,
-    frame_of,
-    of_datum,
-    point_by_words,
-)
+from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
+from coeflab.tables.stated_settings import arm_by_words, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, SIZES, area_of

@@ -1,4 +1,4 @@
-"""Keys of campaign.toml as a person types them, a file states them or an earlier import saved them."""
+"""Keys of campaign.toml as a person types them, or an earlier import saved them."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
-from coeflab.law.scaling import Scaling, doubtful_size, doubtful_viscosity, speaks_of_air
+from coeflab.law.scaling import Scaling
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.raw_table import HALF_MODEL, RawTable
+from coeflab.tables.raw_table import HALF_MODEL
 from coeflab.tables.words.above import of_the_test
-from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
+from coeflab.tables.words.points import POINT_OF
 
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
-_SIZES = {
+SIZES = {
     "conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length", "inertia.mass": "mass",
 }  # fmt: skip
 SAME_SIZE = 0.01  # share by which a setting may differ from the words of the file
@@ -315,6 +315,12 @@ def read_in(key: str, text: str) -> dict[str, Any]:
     }
 
 
+def of_datum(said: str, point: str) -> bool:
+    """Whether a datum that a person named is a point of the body by its plain name: midships is midship."""
+    found = of_the_test([("", f"reference point {said}")]).get("axes.datum")
+    return said.casefold() == point.casefold() or (found is not None and found.value == point)
+
+
 def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
     """Refuse a point of the arm or of a table from another datum than the rest: both places would move.
 
@@ -356,192 +362,6 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
     if "/" in rest or (not numbers and len(words) > 2):
         raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=key)
     return " ".join(w for w in words if w.casefold() not in _BETWEEN), at or "0"
-
-
-def stated_settings(raw: RawTable) -> dict[str, Setting]:
-    """What a file says of itself, as far as campaign.toml has keys for it.
-
-    A reference point is left out: a file counts it in its own axes from its own origin.
-    """
-    out = {}
-    for key, said in raw.stated.items():
-        section, _, name = key.partition(".")
-        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF) and not said.offered:
-            plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
-            out[key] = Setting(plain, f"stated: {said.place}")
-    return out
-
-
-def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
-    """Complaints about keys that the source itself states and a person says otherwise; words over a table are proposals only.
-
-    A reference point counts in the file's own axes and from its own origin, so that only one from that origin can be held against it.
-    """
-    out = []
-    for key, stated in raw.stated.items():
-        one = settings.get(key)
-        section, _, name = key.partition(".")
-        if (
-            one is None
-            or stated.offered
-            or stated.convention
-            or not one.origin.startswith(CONFIRMED)
-            or key in _JUDGED_BY_THEIR_OWN
-        ):
-            continue
-        if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
-            continue
-        if not _same(key, one.value, stated.value, settings):
-            value = (
-                f"({', '.join(f'{x:g}' for x in stated.value)})"
-                if isinstance(stated.value, tuple)
-                else str(stated.value)
-            )
-            said = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
-            out.append(InputError(
-                f"{key} = {said}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
-                file=raw.path, column=key, advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
-            ))  # fmt: skip
-    return out
-
-
-_JUDGED_BY_THEIR_OWN = (POINT_OF, "conditions.density", VISCOSITY)  # complained of with what each makes wrong
-ADVICE = {
-    "table.arm_point": "Leave it out: the velocities of the source already hold there, and another point would count the drift of the arm twice.",
-    "scaling.length": 'Leave it out; primes by another length are those of `coeflab fit --length "4.3 m" --length-name LOA`, or of a plan.',
-}
-
-
-def _same(key: str, said: Any, stated: Any, settings: Settings) -> bool:
-    """Whether a person says of a key what the source states."""
-    if key in _SIZES or key in ("coefficients.area", "coefficients.length"):
-        dimension = _SIZES.get(key, key.rpartition(".")[2])
-        return said != "prime" and abs(quantity(said, dimension) / float(stated) - 1.0) <= SAME_SIZE
-    if key == ARM_POINT and stated == REFERENCE:
-        about = settings.get(POINT_OF)
-        return said == REFERENCE or (about is not None and bool(np.allclose(said, about.value, rtol=0.0, atol=1e-9)))
-    if key == "axes.frame":
-        return bool(np.array_equal(parse_axes(said).rotation, parse_axes(read_setting(key, stated)).rotation))
-    if isinstance(stated, tuple):
-        return bool(np.allclose(np.asarray(said, dtype=float), stated, rtol=SAME_SIZE, atol=1e-9))
-    return str(said).casefold() == str(stated).casefold()
-
-
-def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:
-    """Settings that differ from what words over the table say: key, what is set, the words with their line."""
-    out = []
-    for key, words in raw.stated.items():
-        one = settings.get(POINT_OF if key == POINT_FROM else key)
-        if (
-            one is None
-            or not (words.offered or words.convention)
-            or words.contradicted
-            or key.startswith(("source.", "coefficients."))
-        ):
-            continue
-        if isinstance(words.value, float) and key in _SIZES:
-            same = abs(quantity(one.value, _SIZES[key]) / words.value - 1.0) <= SAME_SIZE
-        elif key == "axes.frame":
-            same = bool(
-                np.array_equal(parse_axes(one.value).rotation, parse_axes(read_setting(key, words.value)).rotation)
-            )
-        elif key == POINT_FROM:
-            _, point, x = point_by_words(raw, settings)
-            datum = settings.get("axes.datum")
-            near = SAME_SIZE * (
-                quantity(settings["scaling.length"].value, "length") if "scaling.length" in settings else 1.0
-            )
-            same = x is None or datum is None or not of_datum(str(datum.value), point) or abs(one.value[0] - x) <= near
-        elif key == "table.centre":
-            same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
-        elif key in ("table.contains_inertia", "axes.alpha", "axes.beta"):
-            same = one.value == words.value
-        else:
-            continue
-        if not same:
-            said = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
-            out.append((POINT_OF if key == POINT_FROM else key, said, words.place))
-    return out
-
-
-def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float | None]:
-    """What words over the table say of the point of the moments: as people say it, its datum, and x in m.
-
-    Shares of the length have no x while it is open: ``-0.45 L from nose``. Empty texts where no words give a number.
-    """
-    said = raw.stated.get(POINT_FROM)
-    if said is None:
-        return "", "", None
-    number, unit, named = str(said.value).split()
-    datum = named.rstrip("?")
-    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    known = unit == "m" or (length is not None and not getattr(length, "contradicted", ""))
-    if not known:
-        return f"{number} L from {datum}", datum, None
-    by = 1.0 if unit == "m" else quantity(length.value, "length")  # type: ignore[union-attr]
-    return f"{float(number) * by:.6g} from {datum}", datum, float(f"{float(number) * by:.12g}")
-
-
-def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | None:
-    """What words over the table say of the point that R and U are measured to; None where they say nothing.
-
-    Returns
-    -------
-    default, shown : str
-        x, y, z from the datum; or what it will be once the reference point or the datum is known. Both empty where open.
-    line : str
-    """
-    said = raw.stated.get(ARM_FROM)
-    if said is None:
-        return None
-    if said.contradicted or not said.value:
-        return "", "", said.contradicted or said.place
-    number, unit, point = str(said.value).split()
-    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    by = 1.0
-    if unit == "L":
-        if length is None or (not isinstance(length, Setting) and length.contradicted):
-            return "", "", said.place
-        by = quantity(length.value, "length")
-    x = float(number) * by
-    known, datum = settings.get(POINT_OF), settings.get("axes.datum")
-    if point == OF_MOMENTS:
-        if known is None:
-            return (
-                "",
-                f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of the reference point"
-                if x
-                else "the reference point",
-                said.place,
-            )
-        return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", said.place
-    if datum is None:
-        return "", f"{x:.12g} from {point}" if x else point, said.place
-    return (f"{x:.12g}, 0, 0" if of_datum(str(datum.value), point) else ""), "", said.place
-
-
-def of_datum(said: str, point: str) -> bool:
-    """Whether a datum that a person named is a point of the body by its plain name: midships is midship."""
-    found = of_the_test([("", f"reference point {said}")]).get("axes.datum")
-    return said.casefold() == point.casefold() or (found is not None and found.value == point)
-
-
-def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
-    """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
-    one = settings[key]
-    sizes = {key: _SIZES[key] for key in ("conditions.density", "conditions.speed", "scaling.length")}
-    if key == VISCOSITY and "conditions.density" in settings:
-        with suppress(InputError):
-            nu, rho = quantity(one.value, "viscosity"), quantity(settings["conditions.density"].value, "density")
-            return doubtful_viscosity(nu, rho)
-    if key not in sizes or one.origin.startswith("stated"):
-        return ""
-    texts = [
-        raw.path.name,
-        raw.dialect.get("importer", ""),
-        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source.")) and isinstance(s.value, str)),
-    ]
-    return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
 
 
 def reynolds(settings: Settings) -> float | None:

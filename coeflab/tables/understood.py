@@ -35,18 +35,8 @@ from coeflab.tables.mapping import (
 from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import (
-    EXTRA,
-    OF_ARMS,
-    SYMMETRY,
-    VISCOSITY,
-    Setting,
-    Settings,
-    against_words,
-    frame_of,
-    overruled,
-    read_setting,
-)
+from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
+from coeflab.tables.stated_settings import against_words, overruled
 from coeflab.tables.time_record import record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R

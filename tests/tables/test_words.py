@@ -17,7 +17,8 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import Setting, against_words, read_in, require_one_datum
+from coeflab.tables.settings import Setting, read_in, require_one_datum
+from coeflab.tables.stated_settings import against_words
 from coeflab.tables.understood import understood
 from coeflab.tables.words.above import words_above
 from coeflab.tables.words.axes import TURN_OF_R
