@@ -174,7 +174,7 @@ def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
     if name in ("series", "powers"):
         sign, first, step = (sides, 2, 1) if name == "powers" else (1.0, 3, 2 if odd else 1)
         size = DECAY * (np.abs(u) if name == "powers" else u)
-        power, by, total = size**first, size**step, 0.0
+        power, by, total = size**first, size**step, np.zeros(size.shape)
         for _ in range(first, ORDERS, step):
             total, power = total + power, power * by
         return np.asarray(sign * total / sum(DECAY**k for k in range(first, ORDERS, step)))
@@ -463,11 +463,11 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
         used, place = np.unique(j, return_inverse=True)
         cross = np.zeros((len(used), len(basis), len(t)))
         own = np.zeros((len(used), len(basis), len(basis)))
-        for kind in {m.kinds[i] for i in used} & REMAINDERS:
-            of = np.array([m.kinds[i] == kind for i in used])
+        for name, odd in sorted({m.kinds[i] for i in used} & REMAINDERS):
+            of = np.array([m.kinds[i] == (name, odd) for i in used])
             size = m.sizes[used[of]][:, None, None] ** 2
-            cross[of, 1:] = size * _covariance(*kind, to, t, design.strips)
-            own[of, 1:, 1:] = size * _remainder(*kind, to, to)
+            cross[of, 1:] = size * _covariance(name, odd, to, t, design.strips)
+            own[of, 1:, 1:] = size * _remainder(name, odd, to, to)
         root = m.root[used]
         cross, columns, z = cross @ np.swapaxes(root, 1, 2), root @ design.terms, root @ y
         # Rows of the priors below the whitened terms: least squares without normal equations.
