@@ -21,6 +21,7 @@ ACTIVATE = r".venv\Scripts\activate" if os.name == "nt" else "source .venv/bin/a
 GALLERY = ROOT / "reports" / "gallery" / "make.py"
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 OLDEST = (3, 11)
+WORKERS = "3"  # on two cores: tests of kills, of Slurm and of pages wait more than they compute
 
 
 def requirements(groups: tuple[str, ...]) -> list[str]:
@@ -61,7 +62,7 @@ def test(arguments: list[str]) -> int:
         [str(PYTHON), "-m", "ruff", "format", "--check", *sources],
         [str(PYTHON), "-m", "mypy"],
         [str(BIN / "lint-imports")],
-        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", "2", "--dist", "worksteal"])],
+        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", WORKERS, "--dist", "worksteal"])],
     ]
     for gate in gates:
         code = subprocess.run(gate, cwd=ROOT, env=environment, check=False).returncode
