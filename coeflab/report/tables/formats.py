@@ -250,10 +250,10 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
     )  # fmt: skip
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
     notes = (
-        f"primed by {_length(p)}; about ({point}) m from: {p.reference_point.datum}",
+        f"primed by {_length(p)}; SI at {p.conditions.speed:g} m/s and {p.conditions.density:g} kg/m^3; about ({point}) m from: {p.reference_point.datum}",
         f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid"
         if kind == "coeflab"
-        else f"read as {kind}; SI values at {p.conditions.density:g} kg/m^3 and {p.conditions.speed:g} m/s",
+        else f"read as {kind}",
         *(
             (
                 f"schema {p.schema_version} is later than {SCHEMA_VERSION}, which this release writes; empty keys passed over",
