@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.text.json import parse_json
 from coeflab.core.texts import known, remark
 from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
@@ -344,7 +345,7 @@ COLUMNS = "| Key | Type | Unit | Since | If absent | Meaning |\n| --- | --- | --
 
 def schema_page() -> bytes:
     """The page, the same bytes for the same schema."""
-    content = json.loads(schema())
+    content = parse_json(schema().decode())
     out = [HEAD, *(f"| {version} | {_cell(what)} |\n" for version, what in VERSIONS.items())]
     for place, name, table, since in _tables(content):
         out += [f"\n## {place}\n\n", f"{_plain(table.get('description', name))}\n\n", COLUMNS]
