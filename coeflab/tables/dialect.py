@@ -6,7 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
+LONGEST_LEGEND = 4000  # letters
 BLANKS = "\u00a0\u2007\u2009\u202f"  # no-break, figure, thin and narrow no-break space: marks between thousands
 _MINUS = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"), "-")
 _SWAPPED = str.maketrans(",.", ".,")
@@ -301,6 +302,31 @@ def read_head(
         return Head(plain, own, unit_line=units[0] if units else 0, remarks=tuple(remarks))
     group = next((r for r in reversed(rows) if r[0] < names[0]), None)
     return _head(names, units, group, remarks)
+
+
+_EXPLAINS = re.compile(r"(?:^|[,;#%!]\s*)(?P<short>\w{1,8})\s+(?:-|=)\s+(?P<text>[^,;=]*[^\W\d][^,;=]*)")
+
+
+def explained(head: Head, lines: Sequence[str]) -> Head:
+    """The head with what a legend above it says of short names: ``P3: drift`` in degrees where a line has ``P3 - drift [degree]``.
+
+    Parameters
+    ----------
+    head : Head
+    lines : sequence of str
+        Over the rows of numbers.
+    """
+    if not head.line or any(head.units):
+        return head
+    said: dict[str, tuple[str, str]] = {}
+    for n, line in enumerate(lines, start=1):
+        if n != head.line and len(line) < LONGEST_LEGEND:
+            said |= {m["short"]: name_and_unit(m["text"].strip()) for m in _EXPLAINS.finditer(line)}
+    if not any(name in said for name in head.names):
+        return head
+    names = tuple(f"{name}: {said[name][0]}" if name in said else name for name in head.names)
+    units = tuple(said[name][1] if name in said else "" for name in head.names)
+    return replace(head, names=names, units=units, units_stand="in a legend above the names")
 
 
 def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:

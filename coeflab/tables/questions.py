@@ -209,6 +209,10 @@ def _of_axes(
     for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
+        if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
+            why = "zeros throughout: any sign is right"
+            yield Question(f"axes.{name}", why, "", next(iter(ANGLE_SIGNS[name])), why, why, harmless=True)
+            continue
         text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []
         shown, short = "", ""

@@ -23,6 +23,7 @@ from coeflab.tables.dialect import (
     Head,
     Marks,
     Row,
+    explained,
     is_unit_row,
     numbered,
     numeric,
@@ -376,7 +377,7 @@ def _head(
                 column=what,
                 file=path,
             )
-    head = read_head(above, width, marks, numbers, options.header, options.units)
+    head = explained(read_head(above, width, marks, numbers, options.header, options.units), lines[: start - 1])
     if head.line and is_comment(lines[head.line - 1].lstrip(), comments):
         remarks.append(f"line {head.line}: the last comment over the data is taken for the names of the columns")
     return head, remarks

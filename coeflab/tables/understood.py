@@ -10,18 +10,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from coeflab.core.axes import Axes
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.units import quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import FORCES, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
 from coeflab.tables.low_aspect import above_low_aspect
 from coeflab.tables.mapping import (
     NO_FORCE,
+    SETTINGS,
     Assigned,
     another_density,
     another_viscosity,
@@ -139,7 +140,8 @@ def understood(
             still.append((column, offer))
         else:
             mapping[column.name] = one
-    tentative = {c.name: read_column_map(o.text) if o.whole else ColumnMap("ignore") for c, o in still}
+    tentative = {c.name: _likely_map(o) for c, o in still}
+    unsized = {c.name for c, o in still if not o.whole}
     said_of = mapping | tentative
     complaints: tuple[InputError, ...] = ()
     try:
@@ -148,6 +150,8 @@ def understood(
         columns = tuple(_possible(raw, said_of))
         unfinished = why.found == NO_FORCE and any(not offer.whole for _, offer in still)
         complaints = () if unfinished else (why, *why.others)
+    if not said and (bare := _no_table(raw, offers)):
+        complaints = (bare,)
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
@@ -172,7 +176,7 @@ def understood(
         shows += tuple(_at_rest(raw, columns))
     by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}
     primes = any(
-        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name for c in columns
+        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name - unsized for c in columns
     )
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
@@ -192,6 +196,29 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def _likely_map(offer: Proposal) -> ColumnMap:
+    """What a column is as far as questions hang on it: a coefficient of an area that nobody has said is a pure number."""
+    if offer.whole:
+        return read_column_map(offer.text)
+    pure = offer.text.startswith(tuple(f"{c} [coefficient" for c in FORCES))
+    return read_column_map(f"{offer.text.partition(' [')[0]}' [-]") if pure else ColumnMap("ignore")
+
+
+def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
+    """The complaint about what cannot be a table of forces: no number in it, or nothing known of forces and settings."""
+    if not any(np.any(np.isfinite(c.values)) for c in raw.columns):
+        return InputError("no number", "forces over settings", file=raw.path)
+    roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
+    units = any("or ignore" in o.why for o in offers if not o.text)
+    if units or roles & {"force", "error", *SETTINGS} or any(o.why.startswith("uncertain") for o in offers):
+        return None
+    names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
+    return InputError(
+        f"no name or unit of a force, an angle, a speed or a rate: {names}", "forces over settings", file=raw.path,
+        advice='If it is one, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+    )  # fmt: skip
 
 
 def accepted_without_source(found: Understood, settings: Settings) -> tuple[str, ...]:
