@@ -99,7 +99,9 @@ def command(
     if sys.stdin.isatty():
         draft.asked()
     else:
-        draft.unasked(_typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept)
+        draft.unasked(
+            _typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept
+        )
     filled = draft.filled()
     made = contents(filled, of_campaign(draft.settings), file)
     tables = checked(made, filled)

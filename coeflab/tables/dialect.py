@@ -120,7 +120,7 @@ _NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1
 # Units of several words behind a name, as r_rad_s, U_m_per_s, rho_kg_m3 and Mz_N_m: no name ends so by chance.
 _WORDS_BEHIND = re.compile(
     r"(?P<name>.*[^_\s])_(?:(?P<over>rad(?:ians?)?|deg(?:rees?)?|rev|m|cm|mm|ft|in|km|kg|g|lbf?|slug|t)_(?:per_)?"
-    r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in))"
+    r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in)|(?P<one>deg(?:rees?)?|rad|[kM]?Nm|mps))"
 )
 _SEPARATORS = " _-:/"
 
@@ -149,6 +149,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
 def unit_in_words(text: str) -> tuple[str, str]:
     """Split ``r_rad_s`` and ``U_m_per_s`` into name and unit, ``rad/s``; the unit is empty where no such one stands."""
     m = _WORDS_BEHIND.fullmatch(text)
+    if m is not None and m["one"]:
+        return m["name"], "m/s" if m["one"] == "mps" else m["one"]
     if m is None or _NO_UNIT_BEHIND.fullmatch(f"{m['name']}_N"):
         return text, ""
     if m["force"]:
@@ -157,7 +159,7 @@ def unit_in_words(text: str) -> tuple[str, str]:
     return m["name"], f"{m['over']}/{under}"
 
 
-def _underscored(texts: Sequence[str]) -> list[tuple[str, str]]:
+def names_and_units(texts: Sequence[str]) -> list[tuple[str, str]]:
     """Split ``Fy_N`` where at least half of the names, and two of them, end so and one of these ends is no single letter.
 
     A unit of several words, as in ``r_rad_s``, is one wherever it stands.
@@ -346,7 +348,7 @@ def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str
             split = [(n, u) if u else unit_in_words(n) for n, u in split]
             stand = "in the header"
         else:
-            split = _underscored(texts)
+            split = names_and_units(texts)
             stand = "after an underscore" if any(u for _, u in split) else stand
     found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
     remarks = [*before, *remarks]

@@ -243,7 +243,9 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     return f"{prefix}{name}{prime}", "its name", False
 
 
-_OF_ALL = re.compile(r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$")
+_OF_ALL = re.compile(
+    r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$"
+)
 
 
 def _knows(bare: str) -> bool:
@@ -306,7 +308,9 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if not unit and said.dimension != "angle" and (m := _BEHIND.search(column.name)):
         return _unread(name, said, m[1].strip(), why)
     if not np.any(np.nan_to_num(column.values)) and said.name not in ("U", "density", "R") and column.values.size:
-        return Proposal(f"{name} [{'deg' if said.dimension == 'angle' else SI[said.dimension]}]", f"{why}; zeros throughout")
+        return Proposal(
+            f"{name} [{'deg' if said.dimension == 'angle' else SI[said.dimension]}]", f"{why}; zeros throughout"
+        )
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     if said.dimension == "angle" and _whole_degrees(column.values):
@@ -398,7 +402,7 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
     """
     known = column.values[np.isfinite(column.values)]
     if "cd" in pure and one.text in (f"M [{OPEN}]", f"N [{OPEN}]") and known.size:
-        is_mach = one.text[0] == "M" and 0.0 < known.min() and known.max() < MACH
+        is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
@@ -407,7 +411,11 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
         body = "X" if folded(column.name) == "ca" else "Z"
         sign = "-" if known.size and float(np.median(known)) > 0.0 and body == "X" else ""
         unit = f"{sign}{body} [coefficient A={OPEN}]"
-        return replace(proposed(replace(column, name=f"c{body}")), text=unit, why=f"its name beside {'CN' if body == 'X' else 'CA'}")
+        return replace(
+            proposed(replace(column, name=f"c{body}")),
+            text=unit,
+            why=f"its name beside {'CN' if body == 'X' else 'CA'}",
+        )
     return one
 
 

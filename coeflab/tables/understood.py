@@ -141,7 +141,6 @@ def understood(
         else:
             mapping[column.name] = one
     tentative = {c.name: _likely_map(o) for c, o in still}
-    unsized = {c.name for c, o in still if not o.whole}
     said_of = mapping | tentative
     complaints: tuple[InputError, ...] = ()
     try:
@@ -174,10 +173,7 @@ def understood(
     )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}
-    primes = any(
-        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name - unsized for c in columns
-    )
+    primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -198,11 +194,20 @@ def understood(
     )
 
 
+def _primes_by_name(
+    raw: RawTable, columns: Sequence[Assigned], said: Mapping[str, ColumnMap], unsized: Collection[str]
+) -> bool:
+    """Whether a force is a prime by its name alone, not one of a size that is still open."""
+    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)} - set(unsized)
+    forces = (c for c in columns if c.said.role == "force" and c.column.name in by_name)
+    return any(c.said.pure and not c.said.area for c in forces)
+
+
 def _likely_map(offer: Proposal) -> ColumnMap:
     """What a column is as far as questions hang on it: a coefficient of an area that nobody has said is a pure number."""
     if offer.whole:
         return read_column_map(offer.text)
-    pure = offer.text.startswith(tuple(f"{c} [coefficient" for c in FORCES))
+    pure = offer.text.lstrip("-").startswith(tuple(f"{c} [coefficient" for c in FORCES))
     return read_column_map(f"{offer.text.partition(' [')[0]}' [-]") if pure else ColumnMap("ignore")
 
 

@@ -54,7 +54,9 @@ class Vocabulary:
 
 
 def _inverted(section: Mapping[str, Any]) -> dict[str, str]:
-    return {folded(w): name for name, words in section.items() for w in (words.split() if isinstance(words, str) else words)}
+    return {
+        folded(w): name for name, words in section.items() for w in (words.split() if isinstance(words, str) else words)
+    }
 
 
 def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
@@ -97,7 +99,9 @@ def words_of(path: Path | None) -> Iterator[None]:
 
 def _joined(path: Path) -> Vocabulary:
     file = read_toml(path)
-    known = {name for words in (_shipped().columns, _shipped().flow, _shipped().coefficients) for name in words.values()}
+    known = {
+        name for words in (_shipped().columns, _shipped().flow, _shipped().coefficients) for name in words.values()
+    }
     known |= {"label", "uncertain"}
     complaints: list[InputError] = []
     for section, entries in file.content.items():
