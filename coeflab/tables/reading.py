@@ -24,6 +24,7 @@ from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
 from coeflab.tables.mapping import Assigned, assigned, declared_mapping, mapped_table
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.runs import find_runs
+from coeflab.tables.transposed import upright
 
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
@@ -146,7 +147,7 @@ def read_raw(
     given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
-            return importer.raw(path, given)
+            return upright(importer.raw(path, given))
         names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
         return collect(
             path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
