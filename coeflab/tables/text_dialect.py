@@ -105,6 +105,7 @@ class TextDialect:
     said: Mapping[str, str]
     remarks: tuple[str, ...] = ()
     stated: Mapping[str, Stated] = field(default_factory=dict)
+    above: tuple[str, ...] = ()  # lines over the head
 
 
 def _said_delimiter(delimiter: str) -> str:
@@ -445,9 +446,11 @@ def sniff(path: Path, options: Options) -> TextDialect:
         ),
         "line ends": ends,
     }
+    over = list(_above(lines[: rows[begin][0] - 1], head, delimiter, comments))
     return TextDialect(
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
-        said, tuple(remarks), words_above(_above(lines[: rows[begin][0] - 1], head, delimiter, comments), marks),
+        said, tuple(remarks), words_above(over, marks),
+        tuple(" ".join(filter(None, cells)) for _, cells in over),
     )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, shown
-from coeflab.core.units import quantity
+from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
@@ -142,13 +142,7 @@ def understood(
             mapping[column.name] = one
     tentative = {c.name: _likely_map(o) for c, o in still}
     said_of = mapping | tentative
-    complaints: tuple[InputError, ...] = ()
-    try:
-        columns = assigned(raw, said_of, whole=False)
-    except InputError as why:
-        columns = tuple(_possible(raw, said_of))
-        unfinished = why.found == NO_FORCE and any(not offer.whole for _, offer in still)
-        complaints = () if unfinished else (why, *why.others)
+    columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
     if not said and (bare := _no_table(raw, offers)):
         complaints = (bare,)
     likely = _with_frame(raw, settings)
@@ -194,6 +188,16 @@ def understood(
     )
 
 
+def _columns(
+    raw: RawTable, said_of: Mapping[str, ColumnMap], unfinished: bool
+) -> tuple[tuple[Assigned, ...], tuple[InputError, ...]]:
+    """The columns, or those that are possible with what is wrong; that no force is said yet is not, while some are open."""
+    try:
+        return assigned(raw, said_of, whole=False), ()
+    except InputError as why:
+        return tuple(_possible(raw, said_of)), () if why.found == NO_FORCE and unfinished else (why, *why.others)
+
+
 def _primes_by_name(
     raw: RawTable, columns: Sequence[Assigned], said: Mapping[str, ColumnMap], unsized: Collection[str]
 ) -> bool:
@@ -204,11 +208,14 @@ def _primes_by_name(
 
 
 def _likely_map(offer: Proposal) -> ColumnMap:
-    """What a column is as far as questions hang on it: a coefficient of an area that nobody has said is a pure number."""
+    """What a column is as far as questions hang on it: a force in a unit, or by an area, that nobody has said shows signs all the same."""
     if offer.whole:
         return read_column_map(offer.text)
-    pure = offer.text.lstrip("-").startswith(tuple(f"{c} [coefficient" for c in FORCES))
-    return read_column_map(f"{offer.text.partition(' [')[0]}' [-]") if pure else ColumnMap("ignore")
+    name, _, unit = offer.text.partition(" [")
+    if name.lstrip("-") not in FORCES or offer.unread:
+        return ColumnMap("ignore")
+    pure = unit.startswith("coefficient")  # a sign shows in any unit
+    return read_column_map(f"{name}' [-]" if pure else f"{name} [{SI[read_column_map(name).dimension]}]")
 
 
 def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:

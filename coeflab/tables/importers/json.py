@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import JSON_BYTES, TABLE_COLUMNS
+from coeflab.core.limits import JSON_BYTES, LARGEST_NUMBER, TABLE_COLUMNS
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.json import parse_json
 from coeflab.tables.dialect import name_and_unit, names_and_units
@@ -96,7 +96,7 @@ def _content(path: Path) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST_NUMBER
 
 
 def _flat(point: Mapping[str, Any], before: str = "", depth: int = 0) -> Iterator[tuple[str, Any]]:
@@ -107,7 +107,7 @@ def _flat(point: Mapping[str, Any], before: str = "", depth: int = 0) -> Iterato
             yield from _flat(value, name, depth + 1)
         elif isinstance(value, list) and len(value) == 3 and all(map(_is_number, value)):
             yield from ((f"{name.removesuffix('s')} {axis}", number) for axis, number in zip("xyz", value, strict=True))
-        elif value is None or isinstance(value, str | bool) or _is_number(value):
+        elif value is None or isinstance(value, str | bool | int | float):
             yield name, value
 
 
@@ -150,5 +150,9 @@ def _short(points: Points) -> Points:
 
 def _column(name: str, unit: str, cells: Sequence[Any]) -> RawColumn:
     values = np.array([float(c) if _is_number(c) else np.nan for c in cells])
-    texts = tuple("" if c is None else str(c) for c in cells) if any(isinstance(c, str | bool) for c in cells) else ()
+    texts = (
+        tuple("" if c is None else str(c) for c in cells)
+        if any(not (c is None or _is_number(c)) for c in cells)
+        else ()
+    )
     return RawColumn(name, unit, values, texts)

@@ -167,12 +167,18 @@ def _of_su2(lines: Sequence[str], path: Path) -> tuple[dict[str, Stated], dict[s
     for n, line in enumerate(lines, start=1):
         place = f"{path.name}:{n}"
         for key, size in _SIZES.items():
-            if (m := size.search(line)) and float(m["value"]) > 0.0:
+            if (m := size.search(line)) and 0.0 < float(m["value"]) < math.inf:
                 stated.setdefault(key, Stated(float(m["value"]), place))
         if m := _ANGLES.search(line):
-            conditions |= {a: Stated(math.radians(float(m[a])), place) for a in ("alpha", "beta") if m[a]}
+            conditions |= {
+                a: Stated(math.radians(float(m[a])), place)
+                for a in ("alpha", "beta")
+                if m[a] and abs(float(m[a])) <= 360.0
+            }
         if (m := _FLOW.match(line)) and "U" not in conditions:
             flow = [float(x) for x in re.findall(_NUMBER, m["flow"])]
+            if len(flow) not in (2, 3) or not all(map(math.isfinite, [*flow, float(m["speed"])])):
+                continue
             conditions["U"] = Stated(float(m["speed"]), place)
             own = [0.0 - v for v in [*flow, 0.0][:3]]
             conditions |= {c: Stated(v + 0.0, place) for c, v in zip("uvw", own, strict=True)}
