@@ -16,7 +16,9 @@ GENERATED = "commands.md"
 def options(command: Any, names: tuple[str, ...] = ()) -> list[tuple[str, str]]:
     """Command and long option, of all commands."""
     found = [
-        (" ".join(names), max(p.opts, key=len)) for p in command.params if p.param_type_name == "option" and not p.hidden
+        (" ".join(names), max(p.opts, key=len))
+        for p in command.params
+        if p.param_type_name == "option" and not p.hidden
     ]
     for name, inner in getattr(command, "commands", {}).items():
         found += options(inner, (*names, name))
