@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import read_toml
 
 SECTIONS = ("columns", "flow", "coefficients", "several", "symbols", "units")
@@ -69,8 +70,8 @@ def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 @cache
 def _shipped() -> Vocabulary:
-    text = files("coeflab.tables.words").joinpath("vocabulary.toml").read_text(encoding="utf-8")
-    return Vocabulary(**_read(tomllib.loads(text)))
+    sections: dict[str, Any] = _read(tomllib.loads(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
+    return Vocabulary(**sections)
 
 
 _OWN: ContextVar[Vocabulary | None] = ContextVar("vocabulary", default=None)

@@ -12,10 +12,9 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES, LARGEST_NUMBER, TABLE_COLUMNS
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.json import parse_json
-from coeflab.tables.dialect import name_and_unit, names_and_units
+from coeflab.tables.dialect import Marks, name_and_unit, names_and_units
 from coeflab.tables.monitor_files import head
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.text_dialect import Marks
 from coeflab.tables.words.above import words_above
 
 summary = "lists of points in JSON, a row an object or a list a column"

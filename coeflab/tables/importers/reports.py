@@ -109,9 +109,9 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         )
     broken = not all(math.isfinite(float(c.values[0])) for c in columns)
     table = RawTable(path, tuple(columns), files=(path, *texts), dialect=dialect, stated=stated)
-    why = f"{path.name}: a value that is no number" * broken
+    reason = f"{path.name}: a value that is no number" * broken
     return Run(
-        path, path.stem, table, conditions, ended=Ended.DIVERGED if broken else Ended.WHOLE, why=why, is_final=True
+        path, path.stem, table, conditions, ended=Ended.DIVERGED if broken else Ended.WHOLE, why=reason, is_final=True
     )
 
 
