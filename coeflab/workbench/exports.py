@@ -63,7 +63,8 @@ def export(
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
         plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip
-    files |= _remarks(files, parameters, target, (*lacking_tables(parameters), *found_in(parameters)))
+    lacking = () if "tables" in plugin.holds else lacking_tables(parameters)
+    files |= _remarks(files, parameters, target, (*lacking, *found_in(parameters)))
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)
 
