@@ -93,7 +93,9 @@ def feet(hull: Hull) -> tuple[Array, Array]:
     bounds = -(hull.spaces[:, d] + hull.spaces[:, :d] @ hull.low)[: len(length)] / length
     normals = normals / length[:, None]
     if comb(len(normals), min(d, len(normals))) > MOST_CORNERS:
-        raise InputError(f"a hull of {len(normals)} half-spaces in {d} variables", "one of fewer corners", column="models")
+        raise InputError(
+            f"a hull of {len(normals)} half-spaces in {d} variables", "one of fewer corners", column="models"
+        )
     touched: list[frozenset[int]] = []
     for rows in combinations(range(len(normals)), d):
         at = list(rows)
@@ -156,11 +158,13 @@ def flat_tables(law: ForceLaw) -> tuple[FlatTable, ...]:
     out = []
     for terms in groups.values():
         hull, readings = terms[0].hull, dict(terms[0].readings)
-        assert hull is not None  # noqa: S101 - for mypy
+        assert hull is not None
         faces, maps = feet(hull)
         base = tuple(BASE.index(v) for v in hull.variables)
         name = f"{terms[0].symbol.split(' ')[0]} over {' and '.join(hull.variables)}"
-        out.append(FlatTable(name, tuple(terms), hull, base, tuple(readings[v].prime for v in hull.variables), faces, maps))
+        out.append(
+            FlatTable(name, tuple(terms), hull, base, tuple(readings[v].prime for v in hull.variables), faces, maps)
+        )
     return tuple(out)
 
 
@@ -186,7 +190,9 @@ def flat_law(parameters: ParameterFile) -> FlatLaw:
         at = np.ix_(free, free)
         whole = (rigid + water_inertia(parameters).matrix)[at]
         if not np.linalg.eigvalsh((whole + whole.T) / 2.0)[0] > 0.0:
-            raise InputError("an inertia M + M_A that is not positive definite", "positive masses and inertias", column="added_mass")
+            raise InputError(
+                "an inertia M + M_A that is not positive definite", "positive masses and inertias", column="added_mass"
+            )
         inverse[at] = np.linalg.inv(whole)
         if h is not None:
             weight, lift = mass.mass * h.gravity, parameters.conditions.density * h.gravity * h.volume

@@ -15,7 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.text.json import parse_json
 
 FOLDER = Path(__file__).with_name("conformance")
 TOLERANCE = 1e-12  # of the largest force, or moment, of a file; of the largest rate
@@ -160,8 +162,8 @@ def conform(command: Sequence[str], tolerance: float = TOLERANCE) -> tuple[Findi
                 done = subprocess.run(
                     [*command, str(path)], input=json.dumps(s.states), capture_output=True, text=True, timeout=LONGEST, check=False,
                 )  # fmt: skip
-                answers = json.loads(done.stdout) if done.returncode == 0 else None
-            except (OSError, ValueError, subprocess.TimeoutExpired) as why:
+                answers = parse_json(done.stdout) if done.returncode == 0 else None
+            except (OSError, ValueError, InputError, subprocess.TimeoutExpired) as why:
                 out.append(_fails(s, "conform.not_run", why=type(why).__name__))
                 continue
             if not isinstance(answers, list):

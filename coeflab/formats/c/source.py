@@ -80,7 +80,9 @@ def source(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
     def over(rows: Sequence[Sequence[float]]) -> list[float]:
         return [x for row in rows for x in wide(row)]
 
-    map_rows = [x for t in law.tables for m in t.maps for x in _padded(np.vstack([m, np.zeros((d - len(m), m.shape[1]))]), d)]
+    map_rows = [
+        x for t in law.tables for m in t.maps for x in _padded(np.vstack([m, np.zeros((d - len(m), m.shape[1]))]), d)
+    ]
     angled = any(t.component in "DSL" for t in terms) or any({10, 11} & set(t.base) for t in law.tables)
     segments, thrusters, curves, tilts, width = _thrusters(parameters)
     lines = [
@@ -163,7 +165,14 @@ def _thrusters(parameters: ParameterFile) -> tuple[list[float], list[float], lis
     for t in parameters.thrusters:
         add(t.curve)
         add(t.torque_curve)
-        rows += [*t.position, *t.direction, *(t.tilt_axis or (0.0, 0.0, 0.0)), t.tilt_low, t.tilt_high, float(t.handedness)]
+        rows += [
+            *t.position,
+            *t.direction,
+            *(t.tilt_axis or (0.0, 0.0, 0.0)),
+            t.tilt_low,
+            t.tilt_high,
+            float(t.handedness),
+        ]
     return segments, rows, curves, [t.tilt_axis is not None for t in parameters.thrusters], width
 
 
@@ -187,10 +196,23 @@ def law_of(text: str) -> ForceLaw:
         k = next((k for k in range(a["TABLES"]) if a["TERM_BEGIN"][k] <= n < a["TERM_BEGIN"][k + 1]), None)
         hull, readings = (None, ()) if k is None else tables[k]
         names = BASE if hull is None else hull.variables
-        factors = tuple(Factor(names[a["FACTORS"][3 * f]], a["FACTORS"][3 * f + 1], bool(a["FACTORS"][3 * f + 2])) for f in rows)
+        factors = tuple(
+            Factor(names[a["FACTORS"][3 * f]], a["FACTORS"][3 * f + 1], bool(a["FACTORS"][3 * f + 2])) for f in rows
+        )
         if a["COURSE"][n]:
             factors, readings = (Factor("u", 1),), (("u", AHEAD),)
-        terms.append(ForceTerm(str(n), PLACES[a["PLACE"][n]], Term(factors), a["VALUES"][n], a["SPEED"][n], 1.0, readings=readings, hull=hull))
+        terms.append(
+            ForceTerm(
+                str(n),
+                PLACES[a["PLACE"][n]],
+                Term(factors),
+                a["VALUES"][n],
+                a["SPEED"][n],
+                1.0,
+                readings=readings,
+                hull=hull,
+            )
+        )
     ideal = np.zeros((6, 6, 6))
     for n in range(a["PRODUCTS"]):
         i, j, k = a["PRODUCT"][3 * n : 3 * n + 3]
@@ -203,8 +225,16 @@ def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Hull, tuple[tuple
     size = a["DIMENSION"][k]
     at = slice(d * k, d * k + size)
     names = tuple(BASE[v] for v in a["VARIABLE"][at])
-    rows = np.array(a["SPACES"][: w * a["SPACE_BEGIN"][a["TABLES"]]]).reshape(-1, w)[a["SPACE_BEGIN"][k] : a["SPACE_END"][k]]
-    hull = Hull(names, np.array(a["LOW"][at]), np.array(a["HIGH"][at]), np.column_stack([rows[:, :size], rows[:, d]]), RULES[a["RULE"][k]])  # type: ignore[arg-type]
+    rows = np.array(a["SPACES"][: w * a["SPACE_BEGIN"][a["TABLES"]]]).reshape(-1, w)[
+        a["SPACE_BEGIN"][k] : a["SPACE_END"][k]
+    ]
+    hull = Hull(
+        names,
+        np.array(a["LOW"][at]),
+        np.array(a["HIGH"][at]),
+        np.column_stack([rows[:, :size], rows[:, d]]),
+        RULES[a["RULE"][k]],
+    )  # type: ignore[arg-type]
     boxed = a["BOXED"][k]
     readings = tuple(
         (v, Reading(p, low, high, True) if boxed else Reading(p, table=str(k)))

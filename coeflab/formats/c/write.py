@@ -24,16 +24,78 @@ from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
-summary = "C99: header and source of forces, accelerations and one step, tables, thrusters and fins in them; no allocation"
+summary = (
+    "C99: header and source of forces, accelerations and one step, tables, thrusters and fins in them; no allocation"
+)
 citations = ("sname1950", "fossen2011")
 adds_coriolis = False
 holds = frozenset({"hydrostatics", "thrusters", "surfaces", "tables"})
 not_held = not_written
 
 RESERVED = frozenset(
-    "auto break case char const continue default do double else enum extern float for goto if inline int long register restrict return short "
-    "signed sizeof static struct switch typedef union unsigned void volatile while bool class new delete this true false and or not xor "
-    "namespace template typename using public private protected virtual operator friend try catch throw main math check".split()
+    [
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "bool",
+        "class",
+        "new",
+        "delete",
+        "this",
+        "true",
+        "false",
+        "and",
+        "or",
+        "not",
+        "xor",
+        "namespace",
+        "template",
+        "typename",
+        "using",
+        "public",
+        "private",
+        "protected",
+        "virtual",
+        "operator",
+        "friend",
+        "try",
+        "catch",
+        "throw",
+        "main",
+        "math",
+        "check",
+    ]
 )
 CHECKED = 24  # states of the check program
 LONGEST_STEP = 40
@@ -117,7 +179,10 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
 def check_states(parameters: ParameterFile) -> tuple[Array, Array, Array]:
     """Velocities, angles and attitudes of the check program: over the covered grid, astern, broadside and at rest."""
     grid, rare = covered_grid(parameters)[0], rare_states(parameters)
-    chosen = [grid[np.linspace(0, len(grid) - 1, CHECKED // 2, dtype=int)], rare[np.linspace(0, len(rare) - 1, CHECKED // 2, dtype=int)]]
+    chosen = [
+        grid[np.linspace(0, len(grid) - 1, CHECKED // 2, dtype=int)],
+        rare[np.linspace(0, len(rare) - 1, CHECKED // 2, dtype=int)],
+    ]
     nu = np.vstack(chosen)
     angles = np.array([[0.1 * ((k + i) % 5 - 2) for i in range(3)] for k in range(len(nu))])
     attitudes = np.array([[1.0, 0.05 * (k % 3), -0.1 * (k % 2), 0.02 * k] for k in range(len(nu))])
@@ -133,7 +198,13 @@ def _check(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
     rates = accelerations(parameters, law, force, nu, attitudes)
     rows = []
     for k in range(len(nu)):
-        kept = [*nu[k], *angles[k], *attitudes[k], *([0.0] * 12 if strict[k] else [*force[k], *rates[k]]), float(strict[k])]
+        kept = [
+            *nu[k],
+            *angles[k],
+            *attitudes[k],
+            *([0.0] * 12 if strict[k] else [*force[k], *rates[k]]),
+            float(strict[k]),
+        ]
         rows.append("    {" + ", ".join(repr(float(x) + 0.0) for x in kept) + "}")
     scales = [float(np.abs(force[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
     turns = [float(np.abs(rates[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
@@ -190,7 +261,9 @@ int main(void)
 
 
 def _text(files: Mapping[str, bytes]) -> str:
-    return next(content for name, content in files.items() if name.endswith(".c") and not name.endswith("_check.c")).decode()
+    return next(
+        content for name, content in files.items() if name.endswith(".c") and not name.endswith("_check.c")
+    ).decode()
 
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -54,7 +54,7 @@ static const double START[STARTS] = {@START@};
 static const double UNIT[TERMS + 1] = {@UNIT@};
 static const double GIVEN[TERMS + 1] = {@GIVEN@};
 /* time in which a fin with a rate comes to its order in model exchange, s */
-#define LAG 0.02
+#define LAG 0.005
 
 typedef struct {
     double start[STARTS], value[TERMS + 1], input[INPUTS], state[STATES], time;

@@ -27,15 +27,17 @@ from coeflab.core.text.xml import sayable
 from coeflab.core.types import remembered
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.c import write as c
-from coeflab.formats.exported_law import not_written, number, propulsion, spelt, written_changes
 from coeflab.formats.export import missing_water
+from coeflab.formats.exported_law import not_written, number, propulsion, spelt, written_changes
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
 from coeflab.formats.unspoken import in_header
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
 
-summary = "FMI 2.0: an FMU in C for model exchange and co-simulation, tables, thrusters and fins in it; no Python on the host"
+summary = (
+    "FMI 2.0: an FMU in C for model exchange and co-simulation, tables, thrusters and fins in it; no Python on the host"
+)
 citations = ("sname1950", "fossen2011", "fmi2")
 adds_coriolis = False
 holds = frozenset({"hydrostatics", "thrusters", "surfaces", "tables"})
@@ -68,8 +70,14 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
     def unit(k: int, order: int) -> str:
         return (linear if k < 3 else turning)[order]
 
-    out = [Variable(f"start.{n}", "parameter", 0.0, unit(k, 0), "at the start") for k, n in enumerate((*POSITIONS, *ANGLES))]
-    out += [Variable(f"start.{m}", "parameter", start.get(m, 0.0), unit(k, 1), "at the start") for k, m in enumerate(MOTIONS)]
+    out = [
+        Variable(f"start.{n}", "parameter", 0.0, unit(k, 0), "at the start")
+        for k, n in enumerate((*POSITIONS, *ANGLES))
+    ]
+    out += [
+        Variable(f"start.{m}", "parameter", start.get(m, 0.0), unit(k, 1), "at the start")
+        for k, m in enumerate(MOTIONS)
+    ]
     out.append(Variable("step", "parameter", STEP, "s", "longest step of co-simulation"))
     for t in law.coefficients:
         says = "prime" if t.kind == "prime" else "SI"
@@ -79,7 +87,9 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
     for control in CONTROLS:
         said = ", ".join(x for x in (signs.get(control, ""), limits.get(control, "")) if x)
         out.append(Variable(f"control.{control}", "input", 0.0, "rad", said))
-    out += [Variable(f"external.{x}", "input", 0.0, unit(k, 3), "at the reference point") for k, x in enumerate(COMPONENTS)]
+    out += [
+        Variable(f"external.{x}", "input", 0.0, unit(k, 3), "at the reference point") for k, x in enumerate(COMPONENTS)
+    ]
     names = _names(parameters)
     for name, thruster in zip(names, parameters.thrusters, strict=True):
         curve = thruster.curve
@@ -89,13 +99,19 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
         says = f"{thruster.name}: {thruster.tilt_low:g} to {thruster.tilt_high:g}"
         out.append(Variable(f"tilt.{name}", "input", 0.0, "rad", says))
     first = len(out) + 1
-    states = [*((f"position.{n}", "output", "m", "m/s") for n in POSITIONS), *((f"quaternion.{n}", "local", "", "") for n in "wxyz")]
+    states = [
+        *((f"position.{n}", "output", "m", "m/s") for n in POSITIONS),
+        *((f"quaternion.{n}", "local", "", "") for n in "wxyz"),
+    ]
     states += [(f"velocity.{m}", "output", unit(k, 1), unit(k, 2)) for k, m in enumerate(MOTIONS)]
     states += [(f"angle.{n}", "output", "rad", "rad/s") for n in CONTROLS]
     out += [Variable(name, causality, None, u, "state") for name, causality, u, _ in states]
     out += [Variable(f"der({name})", "local", None, u, "", first + k) for k, (name, _, _, u) in enumerate(states)]
     out += [Variable(f"attitude.{n}", "output", None, "rad", "") for n in ANGLES]
-    out += [Variable(f"hydrodynamic.{x}", "output", None, unit(k, 3), "of the water on the body") for k, x in enumerate(COMPONENTS)]
+    out += [
+        Variable(f"hydrodynamic.{x}", "output", None, unit(k, 3), "of the water on the body")
+        for k, x in enumerate(COMPONENTS)
+    ]
     return out
 
 
@@ -127,7 +143,12 @@ def _description(parameters: ParameterFile, variables: list[Variable], name: str
     listed, structure = SubElement(root, "ModelVariables"), SubElement(root, "ModelStructure")
     lists = {tag: SubElement(structure, tag) for tag in ("Outputs", "Derivatives", "InitialUnknowns")}
     for k, v in enumerate(variables):
-        kept = {"name": v.name, "valueReference": str(k), "causality": v.causality, "variability": "fixed" if v.causality == "parameter" else "continuous"}
+        kept = {
+            "name": v.name,
+            "valueReference": str(k),
+            "causality": v.causality,
+            "variability": "fixed" if v.causality == "parameter" else "continuous",
+        }
         if v.start is None:
             kept["initial"] = "calculated"
         scalar = SubElement(listed, "ScalarVariable", {**kept, "description": sayable(one_line(v.says))})
@@ -149,7 +170,9 @@ def _row(values: list[float]) -> str:
     return ", ".join(number(x) for x in values)
 
 
-def _sources(parameters: ParameterFile, law: FlatLaw, variables: list[Variable], name: str) -> tuple[dict[str, bytes], str]:
+def _sources(
+    parameters: ParameterFile, law: FlatLaw, variables: list[Variable], name: str
+) -> tuple[dict[str, bytes], str]:
     """The C files by name, and the unit's guid, which is of their content."""
     starts = [v.start or 0.0 for v in variables if v.name.startswith("start.") or v.name == "step"]
     units = [1.0 if t.kind == "rest" else t.per_prime for t in law.coefficients]
@@ -157,7 +180,11 @@ def _sources(parameters: ParameterFile, law: FlatLaw, variables: list[Variable],
     text = (resources("coeflab.formats.fmi") / "unit.c").read_text(encoding="utf-8")
     text = text.replace("@NAME@", name).replace("@START@", _row(starts))
     text = text.replace("@UNIT@", _row([*units, 0.0])).replace("@GIVEN@", _row([*given, 0.0]))
-    files = {f"{name}.h": c.header(parameters, law, name), f"{name}.c": c.whole_source(parameters, law, name), "unit.c": text}
+    files = {
+        f"{name}.h": c.header(parameters, law, name),
+        f"{name}.c": c.whole_source(parameters, law, name),
+        "unit.c": text,
+    }
     guid = hashlib.sha256("".join(files.values()).encode()).hexdigest()[:32]
     return {file: content.replace("@GUID@", guid).encode() for file, content in files.items()}, guid
 
@@ -178,7 +205,18 @@ def compiled(sources: tuple[tuple[str, bytes], ...]) -> bytes | None:
     with tempfile.TemporaryDirectory() as folder:
         for file, content in sources:
             (Path(folder) / file).write_bytes(content)
-        command = [compiler, "-std=c99", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "unit.c", "-o", "unit.lib", "-lm"]
+        command = [
+            compiler,
+            "-std=c99",
+            "-O2",
+            "-shared",
+            "-fPIC",
+            "-fvisibility=hidden",
+            "unit.c",
+            "-o",
+            "unit.lib",
+            "-lm",
+        ]
         try:
             done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST, check=False)
         except (OSError, subprocess.TimeoutExpired):
@@ -204,23 +242,48 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     }
     if said := in_header(parameters, tables=True):
         entries["documentation/read_me.txt"] = c.lines(said)
-    if (library := compiled(tuple(sorted(sources.items())))) is not None:
-        folder, ending = platform_folder()
-        entries[f"binaries/{folder}/{name}{ending}"] = library
+    return {f"{name}.fmu": _zipped(entries)}
+
+
+def built(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
+    """With the binary for this platform, where a compiler is found; the sources alone do elsewhere.
+
+    Parameters
+    ----------
+    files : mapping of str to bytes
+        What `render` made.
+    """
+    out = {}
+    for file, content in files.items():
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = {name: archive.read(name) for name in archive.namelist()}
+        sources = sorted((n.removeprefix("sources/"), x) for n, x in entries.items() if n.startswith("sources/"))
+        if (library := compiled(tuple(sources))) is not None:
+            folder, ending = platform_folder()
+            entries[f"binaries/{folder}/{file.removesuffix('.fmu')}{ending}"] = library
+        out[file] = _zipped(entries)
+    return out
+
+
+def _zipped(entries: Mapping[str, bytes]) -> bytes:
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_STORED) as archive:
         for path in sorted(entries):
             info = zipfile.ZipInfo(path, _DATE)
             info.create_system, info.external_attr = 3, 0o644 << 16
             archive.writestr(info, entries[path])
-    return {f"{name}.fmu": made.getvalue()}
+    return made.getvalue()
 
 
 def _in_c(files: Mapping[str, bytes]) -> dict[str, bytes]:
     """The C source in the unit."""
     (content,) = (x for name, x in files.items() if name.endswith(".fmu"))
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        return {n.removeprefix("sources/"): archive.read(n) for n in archive.namelist() if n.endswith(".c") and not n.endswith("/unit.c")}
+        return {
+            n.removeprefix("sources/"): archive.read(n)
+            for n in archive.namelist()
+            if n.endswith(".c") and not n.endswith("/unit.c")
+        }
 
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -254,9 +317,11 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         *written_changes(parameters, "the unit", "terms of the source", "the source's added mass"),
         "the unit is C, sources in it; its binary is for the platform of the export",
         "positions are north, east, down; the water is at rest",
-        "a fin with a rate moves at it in co-simulation, and within 0.02 s of its order in model exchange",
+        "a fin with a rate moves at it in co-simulation, and to within 0.005 s of its order in model exchange",
         "without hydrostatics there is neither weight nor buoyancy; a righting moment goes to the inputs external.*"
         if parameters.hydrostatics is None
         else "weight and buoyancy act; the outputs hydrodynamic.* do not contain them",
-        propulsion(parameters) if not parameters.thrusters else "thrusters by their commands; other forces go to the inputs external.*",
+        propulsion(parameters)
+        if not parameters.thrusters
+        else "thrusters by their commands; other forces go to the inputs external.*",
     )
