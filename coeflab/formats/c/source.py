@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.core.text.bounded import own_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.flat_law import PLACES, RULES, FlatLaw
@@ -146,7 +147,7 @@ def source(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         _array("SEGMENTS", segments),
         "",
     ]  # fmt: skip
-    kernel = (resources("coeflab.formats.c") / "kernel.c").read_text(encoding="utf-8")
+    kernel = own_bytes(resources("coeflab.formats.c") / "kernel.c").decode()
     return "\n".join(lines) + "\n" + kernel.replace("@NAME@", name).replace("@UPPER@", name.upper())
 
 

@@ -23,6 +23,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.xml import sayable
 from coeflab.core.types import remembered
 from coeflab.core.wording import identifier, one_line
@@ -177,7 +178,7 @@ def _sources(
     starts = [v.start or 0.0 for v in variables if v.name.startswith("start.") or v.name == "step"]
     units = [1.0 if t.kind == "rest" else t.per_prime for t in law.coefficients]
     given = [t.written for t in law.coefficients]
-    text = (resources("coeflab.formats.fmi") / "unit.c").read_text(encoding="utf-8")
+    text = own_bytes(resources("coeflab.formats.fmi") / "unit.c").decode()
     text = text.replace("@NAME@", name).replace("@START@", _row(starts))
     text = text.replace("@UNIT@", _row([*units, 0.0])).replace("@GIVEN@", _row([*given, 0.0]))
     files = {
@@ -221,7 +222,7 @@ def compiled(sources: tuple[tuple[str, bytes], ...]) -> bytes | None:
             done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST, check=False)
         except (OSError, subprocess.TimeoutExpired):
             return None
-        return (Path(folder) / "unit.lib").read_bytes() if done.returncode == 0 else None
+        return own_bytes(Path(folder) / "unit.lib") if done.returncode == 0 else None
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
