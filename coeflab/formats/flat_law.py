@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
+from typing import Literal
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from coeflab.vehicle.inertia import known_mass, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
 PLACES = (*COMPONENTS, *WIND)
-RULES = ("clamp", "taper", "refuse")
+RULES: tuple[Literal["clamp", "taper", "refuse"], ...] = ("clamp", "taper", "refuse")
 MOST_CORNERS = 2_000_000
 Factors = tuple[tuple[int, int, bool], ...]
 
@@ -108,9 +109,9 @@ def feet(hull: Hull) -> tuple[Array, Array]:
     if not touched:
         chosen = {rows for k in range(1, d + 1) for rows in combinations(range(len(normals)), k)}
     maps = []
-    for at in sorted(chosen, key=lambda rows: (len(rows), rows)):
-        a, b = normals[list(at)], bounds[list(at)]
-        if np.linalg.matrix_rank(a, tol=1e-9) == len(at):
+    for several in sorted(chosen, key=lambda rows: (len(rows), rows)):
+        a, b = normals[list(several)], bounds[list(several)]
+        if np.linalg.matrix_rank(a, tol=1e-9) == len(several):
             back = np.linalg.pinv(a)
             maps.append(np.column_stack([np.eye(d) - back @ a, back @ b]))
     return np.column_stack([normals, bounds]), np.array(maps).reshape(-1, d, d + 1)

@@ -235,7 +235,7 @@ def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Hull, tuple[tuple
         np.array(a["HIGH"][at]),
         np.column_stack([rows[:, :size], rows[:, d]]),
         RULES[a["RULE"][k]],
-    )  # type: ignore[arg-type]
+    )
     boxed = a["BOXED"][k]
     readings = tuple(
         (v, Reading(p, low, high, True) if boxed else Reading(p, table=str(k)))

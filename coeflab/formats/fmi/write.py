@@ -84,7 +84,7 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
         says = "prime" if t.kind == "prime" else "SI"
         out.append(Variable(f"{_GROUPS[t.kind]}.{spelt(t.symbol)}", "parameter", t.written, "", f"{says}; {t.note}"))
     signs = {said[:2]: said for said in control_signs(parameters)}
-    limits = {s.control: f"limit {s.limit:g} rad" for s in parameters.surfaces}
+    limits: dict[str, str] = {s.control: f"limit {s.limit:g} rad" for s in parameters.surfaces}
     for control in CONTROLS:
         said = ", ".join(x for x in (signs.get(control, ""), limits.get(control, "")) if x)
         out.append(Variable(f"control.{control}", "input", 0.0, "rad", said))
@@ -133,7 +133,10 @@ def _description(parameters: ParameterFile, variables: list[Variable], name: str
         variableNamingConvention="structured", numberOfEventIndicators="0",
     )  # fmt: skip
     shared = {"modelIdentifier": name, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
-    kinds = (("ModelExchange", {}), ("CoSimulation", {"canHandleVariableCommunicationStepSize": "true"}))
+    kinds: tuple[tuple[str, dict[str, str]], ...] = (
+        ("ModelExchange", {}),
+        ("CoSimulation", {"canHandleVariableCommunicationStepSize": "true"}),
+    )
     for kind, more in kinds:
         sources = SubElement(SubElement(root, kind, {**shared, **more}), "SourceFiles")
         SubElement(sources, "File", name="unit.c")
