@@ -63,7 +63,8 @@ def command(
     They are compared with those of a parameter file. The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
     which terms the series cannot tell. Exit code 1 when nothing was identified.
 
-    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command.
+    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command; with
+    --out a copy of the parameter file has the new curves.
     """
     if thruster:
         _bench(series, params, thruster, window, out, json)
@@ -101,8 +102,9 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
+    from coeflab.core.wording import file_stem
     from coeflab.formats.model_files import read_vehicle_file
-    from coeflab.motion.identify.thruster import WINDOW, bench_test
+    from coeflab.motion.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
 
@@ -112,6 +114,9 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
         f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
         f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
     }
+    if out is not None:
+        made = with_curves(read_vehicle_file(params), found)
+        content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)

@@ -153,6 +153,13 @@ def new(
     ),
     volume: str = typer.Option("", metavar="VOLUME", help="Displaced, m^3; with --cb.", show_default=False),
     cb: str = typer.Option("", metavar="X,Y,Z", help="Centre of buoyancy from that point, m, FRD.", show_default=False),
+    thruster: list[str] = typer.Option(
+        [],
+        "--thruster",
+        metavar="TEXT",
+        help='"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0", thrust with n^2; the keys of [[thruster]] of a body.toml; again for each.',
+        show_default=False,
+    ),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -174,7 +181,7 @@ def new(
 
     made = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
-        inertia=inertia, volume=volume, cb=cb, body=body,
+        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
