@@ -164,7 +164,7 @@ def test_a_model_without_density_is_read_in_every_format(tmp_path: Path) -> None
         notes = [
             c for c in read_model_file(path).findings if c.severity is Severity.NOTE and "no density" in c.statistic
         ]
-        assert ["1000 kg/m^3 is taken" in c.statistic for c in notes] == [True]
+        assert ["1000 kg/m^3 is assumed" in c.statistic for c in notes] == [True]
         assert read_model_file(path, 1020.0).parameters.conditions.density == 1020.0
 
 

@@ -89,7 +89,9 @@ def file(request: pytest.FixtureRequest) -> ParameterFile:
 
 
 def test_every_importer_is_tried() -> None:
-    assert {*READ_BY.values(), "stonefish"} == set(PARAMETER_IMPORTERS.names())  # a scenario holds no force law to come back
+    assert {*READ_BY.values(), "stonefish"} == set(
+        PARAMETER_IMPORTERS.names()
+    )  # a scenario holds no force law to come back
     assert set(READ_BY) >= {t for t in EXPORTERS.names() if t in PARAMETER_IMPORTERS.names()} - {"stonefish"}
 
 

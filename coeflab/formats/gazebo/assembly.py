@@ -20,6 +20,7 @@ from coeflab.law.rigid_body import about_another
 from coeflab.law.transforms import rotation
 
 MOST_JOINTS = 400
+STAND_IN = "coeflab_"  # links that coeflab writes for fins and propellers hold no mass of the vehicle's
 MOVING = (
     "revolute",
     "continuous",
@@ -291,7 +292,7 @@ def lumped(found: Assembly, own: tuple[float, Array, Array | None], file: Path |
     names = []
     for name, pose in found.links.items():
         inertial = found.elements[name].find("inertial") if name in found.elements else None
-        if name == found.hull or inertial is None or inertial.find("mass") is None:
+        if name == found.hull or name.startswith(STAND_IN) or inertial is None or inertial.find("mass") is None:
             continue
         mass = numbers(inertial.findtext("mass"), (1,), f"mass of {name}", file)[0]
         if mass <= 0.0:
