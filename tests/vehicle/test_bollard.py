@@ -45,8 +45,7 @@ def test_the_command_of_a_run_ahead_is_that_rate() -> None:
 
     p = pulling("main; bollard = 60 N; rate = 720")
     found = trim(p, speed=2.0, free=("u", "v", "r"))  # type: ignore[arg-type]
-    rates = {name: value for name, (value, _) in found.figures.items()}
-    assert rates["main"] == pytest.approx(720.0 * np.sqrt(40.0 / 60.0), rel=1e-4), rates
+    assert found.point.values["main"] == pytest.approx(720.0 * np.sqrt(40.0 / 60.0), rel=1e-4)
 
 
 def test_all_keys() -> None:
