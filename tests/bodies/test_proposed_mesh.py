@@ -40,7 +40,7 @@ def written(path: Path, axes: str, scale: float, holes: int) -> Path:
     [
         ("forward,down,port", 1000.0, "mm", 1),
         pytest.param("FLU", 1.0, "m", 0, marks=pytest.mark.slow),
-        pytest.param("up,forward,starboard", 1000.0, "mm", 0, marks=pytest.mark.slow),
+        pytest.param("up,forward,port", 1000.0, "mm", 0, marks=pytest.mark.slow),
         pytest.param("aft,port,down", 1.0, "m", 0, marks=pytest.mark.slow),
     ],
 )
