@@ -150,3 +150,38 @@ def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schem
     from coeflab.vehicle import parameter_file
 
     show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))
+
+
+@app.command(cls=Command, epilog='Example: coeflab params conform "python3 docs/reference/reader.py"')
+def conform(
+    program: str = typer.Argument(..., metavar="COMMAND", help="A program with its arguments, in quotation marks."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Hold an implementation of the force law against its conformance vectors.
+
+    COMMAND FILE.parameters.json gets a JSON list of states on its standard input and prints a list of {"force": X Y Z K M N of the
+    water, "acceleration": rates of u v w p q r}, null where the law has none. docs/force_law.md is the law. Exit code 1 where one is
+    missed.
+    """
+    import shlex
+
+    from coeflab.core.errors import InputError
+    from coeflab.core.finding import Severity, worst
+    from coeflab.core.table import as_check
+    from coeflab.vehicle.conform import conform as run
+
+    try:
+        words = shlex.split(program)
+    except ValueError as why:
+        raise InputError(program, "a command with closed quotation marks", column="COMMAND") from why
+    if not words:
+        raise InputError("no command", "a program with its arguments", column="COMMAND")
+    found = run(words)
+    if json:
+        from coeflab.cli.as_json import findings
+
+        show.json_object({"findings": findings([as_check("conform", f) for f in found])})
+    else:
+        show.findings([as_check("conform", f) for f in found], notes=True)
+    if worst(found) is Severity.FAIL:
+        raise typer.Exit(1)

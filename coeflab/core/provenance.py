@@ -13,6 +13,7 @@ from typing import Annotated
 
 from coeflab.core.declarations import Declaration, Text, Words, one_of
 from coeflab.core.stored import Means, Within, stored
+from coeflab.core.text.bounded import stream_of
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate", "unstated")
 BODY_KINDS = (*TABLE_KINDS, "computed")
@@ -74,7 +75,7 @@ def sha256_of(path: Path, read: Iterable[Path] = ()) -> str:
             place = file.relative_to(path) if file.is_relative_to(path) else file
             digest.update(f"{place.as_posix()} {sha256_of(file)}\n".encode())
         return digest.hexdigest()
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         for block in iter(lambda: stream.read(1 << 20), b""):
             digest.update(block)
     return digest.hexdigest()

@@ -156,7 +156,7 @@ class Vehicle:
         ----------
         commands : mapping of str to float
             ``name`` to its command, ``name.tilt`` to rad, ``thrust`` to N ahead at the reference point. What is not named
-            is zero.
+            is zero; what is beyond a limit is held at it.
 
         Raises
         ------
@@ -176,7 +176,8 @@ class Vehicle:
             command = commands.get(t.name, 0.0)
             along = np.array(t.direction)
             if t.tilt_axis is not None:
-                along = turned_about(np.array(t.tilt_axis), commands.get(f"{t.name}.tilt", 0.0)) @ along
+                tilt = min(max(commands.get(f"{t.name}.tilt", 0.0), t.tilt_low), t.tilt_high)
+                along = turned_about(np.array(t.tilt_axis), tilt) @ along
             force = t.curve.at(command) * along
             out[:3] += force
             out[3:] += np.cross(np.array(t.position), force)

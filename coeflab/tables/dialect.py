@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.errors import shown
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
@@ -449,7 +450,7 @@ def is_of_openfoam(lines: Sequence[str]) -> bool:
 def is_house_table(path: Path) -> bool:
     """Whether a file is a comma CSV whose names of columns are ours, each with its unit in brackets; never raises."""
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             sample = stream.read(SNIFFED)
         text = sample[: sample.rfind(b"\n") + 1 if len(sample) == SNIFFED else None].decode("utf-8-sig")
     except (OSError, UnicodeDecodeError):

@@ -12,6 +12,7 @@ import numpy as np
 from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import readable
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
@@ -103,7 +104,7 @@ def importer_of(path: Path, name: str = "") -> str:
 def _first_lines(path: Path) -> list[tuple[int, str]]:
     """The first lines of a text that are not blank, by their numbers and cut; none of what is no text."""
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             sample = stream.read(1 << 14)
     except OSError:
         return []

@@ -15,6 +15,7 @@ from statistics import median
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
 from coeflab.core.options import bounded, one_of
+from coeflab.core.text.bounded import stream_of
 from coeflab.tables.dialect import (
     BLANKS,
     ERRORS,
@@ -144,7 +145,7 @@ def first_bytes(path: Path) -> tuple[bytes, bool]:
     try:
         if not path.is_file():
             raise InputError("a folder" if path.is_dir() else "no such file", "a table", file=path)
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             content = stream.read(SNIFFED + 1)
     except OSError as why:
         raise unread(path, why) from None

@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.text.bounded import own_bytes
+from coeflab.core.text.json import parse_json
 from coeflab.core.text.xml import sayable
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water
@@ -224,7 +226,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """One FMU: a zip file, stored, its entries in order and dated alike, so that the same file gives the same bytes."""
     name, model = identifier(parameters.name), _model(parameters)
     content = (json.dumps(model, indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
-    unit = (resources("coeflab.formats.fmi") / "unit.py").read_bytes()
+    unit = own_bytes(resources("coeflab.formats.fmi") / "unit.py")
     guid = hashlib.sha256(content + unit).hexdigest()[:32]
     entries = {
         "modelDescription.xml": _description(parameters, model["variables"], guid),
@@ -282,7 +284,7 @@ def _read(files: Mapping[str, bytes]) -> tuple[dict[str, Any], dict[str, float]]
     """The model of the unit, and the values of its variables."""
     (content,) = (c for name, c in files.items() if name.endswith(".fmu"))
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        model = json.loads(archive.read("resources/model.json"))
+        model = parse_json(archive.read("resources/model.json").decode())
     return model, {v["name"]: v["start"] for v in model["variables"]}
 
 

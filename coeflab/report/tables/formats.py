@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.text.json import parse_json
 from coeflab.core.texts import known, remark
 from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
@@ -250,10 +251,10 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
     )  # fmt: skip
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
     notes = (
-        f"primed by {_length(p)}; about ({point}) m from: {p.reference_point.datum}",
+        f"primed by {_length(p)}; SI at {p.conditions.speed:g} m/s and {p.conditions.density:g} kg/m^3; about ({point}) m from: {p.reference_point.datum}",
         f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid"
         if kind == "coeflab"
-        else f"read as {kind}; SI values at {p.conditions.density:g} kg/m^3 and {p.conditions.speed:g} m/s",
+        else f"read as {kind}",
         *(
             (
                 f"schema {p.schema_version} is later than {SCHEMA_VERSION}, which this release writes; empty keys passed over",
@@ -344,7 +345,7 @@ COLUMNS = "| Key | Type | Unit | Since | If absent | Meaning |\n| --- | --- | --
 
 def schema_page() -> bytes:
     """The page, the same bytes for the same schema."""
-    content = json.loads(schema())
+    content = parse_json(schema().decode())
     out = [HEAD, *(f"| {version} | {_cell(what)} |\n" for version, what in VERSIONS.items())]
     for place, name, table, since in _tables(content):
         out += [f"\n## {place}\n\n", f"{_plain(table.get('description', name))}\n\n", COLUMNS]

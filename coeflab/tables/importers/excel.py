@@ -21,6 +21,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_COLUMNS
 from coeflab.core.options import bounded, parse_options, text
+from coeflab.core.text.bounded import part_of, stream_of, whole_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
@@ -78,10 +79,10 @@ def _kind(path: Path) -> str:
     try:
         if not path.is_file():
             return ""
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             start = stream.read(1 << 16)
         if start.startswith(OLE):
-            with path.open("rb") as stream:
+            with stream_of(path) as stream:
                 whole = stream.read(SHEET_BYTES)
             return (
                 "locked" if _LOCKED in whole else "xls" if _BOOK in whole or "Book".encode("utf-16-le") in whole else ""
@@ -112,7 +113,7 @@ def _column(letters: bytes) -> int:
 def _pieces(packed: zipfile.ZipFile, name: str) -> Iterator[bytes]:
     """A part of a workbook, piece by piece, each with the end of the one before, cut at the last tag."""
     rest = b""
-    with packed.open(name) as stream:
+    with part_of(packed, name) as stream:
         while piece := stream.read(_CHUNK):
             whole = rest + piece
             end = whole.rfind(b"<") if len(whole) < 4 * _CHUNK else -1
@@ -160,7 +161,7 @@ def _checked(path: Path, kind: str) -> list[str]:
     found, cells, blank = "", 0, list[str]()
     try:
         if kind == "xls":
-            cells = _cells_of_xls(path.read_bytes())
+            cells = _cells_of_xls(whole_bytes(path, SHEET_BYTES))
         else:
             with zipfile.ZipFile(path) as packed:
                 found = _too_much(packed, packed.infolist())
@@ -281,7 +282,7 @@ def _require_whole_xml(packed: zipfile.ZipFile) -> None:
     """Refuse parts that are no whole XML: in an ods that is cut the reader looks for the end for ever."""
     for name in packed.namelist():
         if name.endswith((".xml", ".rels")):
-            with packed.open(name) as stream:
+            with part_of(packed, name) as stream:
                 expat.ParserCreate().ParseFile(stream)
 
 
@@ -291,7 +292,7 @@ def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
     if (said := sum(part.file_size for part in parts)) > left:
         return f"{said:,} bytes when unpacked"
     for part in parts:
-        with packed.open(part) as stream:
+        with part_of(packed, part) as stream:
             while piece := stream.read(_CHUNK):
                 left -= len(piece)
                 if left < 0:

@@ -29,6 +29,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.text.bounded import stream_of
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of, one_run, su2_names
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
@@ -271,7 +272,7 @@ def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], l
 
 def _read_config(path: Path) -> _Config:
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             raw = stream.read(TOML_BYTES + 1)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None

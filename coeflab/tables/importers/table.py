@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_CELLS, TABLE_CUT_LINES, TABLE_TEXTS
 from coeflab.core.options import parse_options
+from coeflab.core.text.bounded import text_stream_of
+from coeflab.core.text.series import matrix_of
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables import text_dialect
@@ -35,7 +37,7 @@ _PIECE = 32  # lines: where a block has a cell without number, most of its piece
 def _blocks(path: Path, dialect: text_dialect.TextDialect) -> Iterator[tuple[int, list[str], bool]]:
     """Lines from the first row on, many at a time: number of the first, lines, whether the last has an end."""
     rest, line = "", 1
-    with path.open(encoding=dialect.encoding, newline=None) as stream:
+    with text_stream_of(path, dialect.encoding) as stream:
         while text := stream.read(_BLOCK):
             *lines, rest = (rest + text).split("\n")
             if len(rest) > CSV_LINE:
@@ -125,11 +127,7 @@ class _Body:
                 return None
             lines = [line.replace(",", ".") for line in lines]
         try:
-            block = (
-                np.loadtxt(lines, delimiter=d.delimiter.strip(" ") or None, comments=None, ndmin=2)
-                if any(lines)
-                else None
-            )
+            block = matrix_of(lines, d.delimiter.strip(" ")) if any(lines) else None
         except ValueError:
             return None
         right = block is not None and block.shape == (len(lines), d.width) and bool(np.isfinite(block).all())
