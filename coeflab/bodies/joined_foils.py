@@ -14,6 +14,7 @@ from coeflab.bodies.cuts import Bit, merged
 from coeflab.core.types import Array
 
 SLIT = 0.1  # of both pieces together, along the slit's normal
+FEWEST = 3  # stations
 ALIKE, BESIDE = 0.95, 0.5  # cosine between their directions; of the shorter one, which lies beside the other
 
 Way = Callable[[list[Bit]], tuple[Array, Array]]
@@ -32,9 +33,16 @@ def joined(clusters: Sequence[list[Bit]], way_of: Way, one_foil: Callable[[list[
         Whether a cluster is a foil.
     """
     out = [list(c) for c in clusters]
+    known: dict[int, tuple[Array, Array]] = {}
+
+    def way(bits: list[Bit]) -> tuple[Array, Array]:
+        if id(bits) not in known:
+            known[id(bits)] = way_of(bits)
+        return known[id(bits)]
+
     k = 0
     while k < len(out):
-        fits = (j for j in range(len(out)) if j != k and _one_plane(out[k], out[j], way_of))
+        fits = (j for j in range(len(out)) if j != k and _one_plane(out[k], out[j], way))
         for j in fits:
             whole = merged([*out[k], *out[j]])
             whole.sort(key=lambda bit: bit.step)
@@ -49,10 +57,14 @@ def joined(clusters: Sequence[list[Bit]], way_of: Way, one_foil: Callable[[list[
 
 def _one_plane(a: list[Bit], b: list[Bit], way_of: Way) -> bool:
     """Beside each other with a small slit, in one plane through the hull's axis or beside it."""
-    points = [np.concatenate([bit.points for bit in c]) for c in (a, b)]
-    size = float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0)))
-    if len(a) < 3 or len(b) < 3 or size == 0.0:
+    chords = [(c[-1].x, c[0].x) for c in (a, b)]
+    if (
+        len(a) < FEWEST
+        or len(b) < FEWEST
+        or not (_beside(chords, SLIT, narrow=True) or _beside(chords, BESIDE, narrow=False))
+    ):
         return False
+    points = [np.concatenate([bit.points for bit in c]) for c in (a, b)]
     (way, origin), (other, _) = way_of(a), way_of(b)
     if way @ other < ALIKE:
         return False
@@ -63,7 +75,6 @@ def _one_plane(a: list[Bit], b: list[Bit], way_of: Way) -> bool:
         return False
     heights = [(p - origin) @ way for p in points]
     along = [(float(h.min()), float(h.max())) for h in heights]
-    chords = [(c[-1].x, c[0].x) for c in (a, b)]
     return any(
         _beside(one, SLIT, narrow=True) and _beside(two, BESIDE, narrow=False)
         for one, two in ((along, chords), (chords, along))
