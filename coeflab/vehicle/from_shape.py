@@ -5,24 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.mass_model import at_rest, rest_words
-from coeflab.bodies.pieces import Control
 from coeflab.bodies.shape import Parts, Revolution
-from coeflab.bodies.thrusters import Thruster
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import brief, locked
 from coeflab.core.wording import listed
-from coeflab.estimates import Estimates
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
-from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import CONTROLS
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import (
     CurveSegment,
     ParameterCurve,
@@ -30,6 +25,15 @@ from coeflab.vehicle.parameter_parts import (
     ParameterSurface,
     ParameterThruster,
 )
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body, Configuration
+    from coeflab.bodies.pieces import Control
+    from coeflab.bodies.thrusters import Thruster
+    from coeflab.core.types import Array
+    from coeflab.estimates import Estimates
+    from coeflab.law.scaling import Conditions
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 CLOSED = "A vehicle needs a closed hull; coeflab added-mass takes sheets alone."
 ESTIMATES = "estimates"  # what fit and campaign are called

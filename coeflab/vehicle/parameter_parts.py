@@ -6,19 +6,21 @@ The models refuse unknown keys. What makes a body a vehicle is in the file since
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.stored import Finite, Means, Name, Positive, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import AddedMass, OtherMethod, definiteness
+
+if TYPE_CHECKING:
+    from coeflab.bodies.triangulation import Triangulation
 
 
 @brief

@@ -8,6 +8,7 @@ Whether damping damps, its rates are in radians, and both planes are written in 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +16,21 @@ from numpy.typing import NDArray
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.texts import known
-from coeflab.core.types import Array, brief
+from coeflab.core.types import brief
 from coeflab.law.added_mass import ROUNDING, definiteness
-from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
 from coeflab.vehicle.stated_twice import twice_findings
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.law.force_law import ForceTerm
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 X_APART = "The law of X ends before these points. X does not limit exports and motions; the other components do."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth

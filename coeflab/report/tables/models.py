@@ -11,19 +11,23 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import degrees
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability, with_u95
-from coeflab.fits.results.fit_result import FitResult, Pooling
-from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
 from coeflab.fits.statistics.least_squares import factorise
 from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
 from coeflab.report.figures.variables import domain_in_words
-from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison, Verdict
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.comparison import Verdict
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult, Pooling
+    from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
+    from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:
