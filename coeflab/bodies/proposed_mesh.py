@@ -20,7 +20,7 @@ from coeflab.core.axes import Datum, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import Source
-from coeflab.core.types import Array
+from coeflab.core.types import Array, Faces
 from coeflab.core.units import factor
 
 UNITS = ("m", "mm", "cm", "in")  # the first that makes it as long as a vehicle is; ft is told from m by nothing
@@ -112,7 +112,7 @@ def _unit(numbers: float) -> str:
     return UNITS[0]
 
 
-def _surface(vertices: Array, faces: Array, path: Path) -> tuple[SoundMesh | None, bool, str]:
+def _surface(vertices: Array, faces: Faces, path: Path) -> tuple[SoundMesh | None, bool, str]:
     """The surface as it is, else repaired, else none and why."""
     why = ""
     for repair in (False, True):
