@@ -17,7 +17,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.text.bounded import own_text
+from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.json import parse_json
 
 FOLDER = Path(__file__).with_name("conformance")
@@ -61,7 +61,7 @@ def vector_sets() -> tuple[VectorSet, ...]:
     """
     out = []
     for path in sorted(FOLDER.glob("*.json")):
-        content = parse_json(own_text(path))
+        content = parse_json(own_bytes(path).decode())
         out.append(VectorSet(path.stem, content["rules"], content["parameters"], tuple(content["vectors"])))
     return tuple(out)
 

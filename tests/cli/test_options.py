@@ -67,6 +67,8 @@ FREE = {
     ("params new", "--body"),
     ("merge", "--name"),
     ("params new", "--about"),
+    ("params new", "--thruster"),
+    ("params convert", "--name"),
 }
 Main = Callable[[list[str]], tuple[int, str]]
 
@@ -108,7 +110,7 @@ def _words(line: str) -> list[str]:
 def with_files(folder: Path, words: list[str]) -> list[str]:
     """The words of a line, with what its capitals stand for."""
     made = {
-        "TABLE": folder / "t.csv", "MAPPING": folder / "mapping.toml", "RUNS": folder / "runs", "LIST": folder / "list.csv", "OUT": folder / "out",
+        "TABLE": folder / "t.csv", "WORDS": folder / "words.toml", "MAPPING": folder / "mapping.toml", "RUNS": folder / "runs", "LIST": folder / "list.csv", "OUT": folder / "out",
         "MESH": folder / "body.stl", "BOXES": folder / "boxes.toml", "TANK": shipped("cfd_data") / "tank" / "spheroid.toml",
         "STUDY": folder / "study" / "plan.toml", "STYLE": folder / "a.mplstyle", "HUUV": shipped("cfd_data") / "huuv" / "huuv.parameters.json",
         "MOTION": CORPUS / "motion.csv", "CAMPAIGN": "suboff_roddy_2", "FOLDER": folder / "empty", "FIFO": folder / "pipe", "LOOP": folder / "loop",
@@ -129,6 +131,7 @@ def place(tmp_path: Path) -> Path:
     folder.mkdir()
     (folder / "t.csv").write_text("beta [deg],Y [N],N [N*m]\n-6,33,11\n-3,16,6\n0,0,0\n3,-16,-6\n6,-33,-11\n")
     (folder / "mapping.toml").write_text('[columns]\n"Y [N]" = "Y [N]"\n')
+    (folder / "words.toml").write_text("")
     (folder / "a.mplstyle").write_text("lines.linewidth: 2\n")
     for name in ("taken", "nothing"):
         (folder / name).write_text("taken"[: 5 * (name == "taken")])
