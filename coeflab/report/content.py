@@ -371,10 +371,11 @@ def _not_in_a_file(campaigns: Sequence[str]) -> str:
 def _comparison(study: Study) -> tuple[Section, ...]:
     if not study.comparisons:
         return ()
-    text = ["Published values are rescaled to our length before they are compared."]
+    text = ("Published values are rescaled to our length before they are compared.",)
+    lengths = []
     for r in study.references:
         if r.other_scaling is not None:
-            text.append(
+            lengths.append(
                 f'"{r.name}" has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or '
                 f"{r.other_scaling} (every value rescaled)."
             )
@@ -384,8 +385,12 @@ def _comparison(study: Study) -> tuple[Section, ...]:
         tables.without(tables.verdicts(study), "combined"),
     )
     apart = filled(tables.without(tables.side_by_side(study), "random", "form"), tables.differences(study))
-    more = (Section("distances", "Published columns and distances", tables=apart, appendix=True),) if apart else ()
-    return (Section("comparison", "Comparison with published values", tuple(text), shown, subsections=more),)
+    more = (
+        (Section("distances", "Published columns and distances", tuple(lengths), tables=apart, appendix=True),)
+        if apart
+        else ()
+    )
+    return (Section("comparison", "Comparison with published values", text, shown, subsections=more),)
 
 
 def _with_campaigns(study: Study, coefficients: Section) -> Section:
