@@ -244,7 +244,7 @@ def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> 
     return TriangleMesh(whole.vertices, whole.faces, volume, partial(_of_panels, with_sail, with_planes, share, volume))
 
 
-def _of_panels(with_sail: bool, with_planes: bool, share: float, volume: float, panels: int) -> TriangleMesh:
+def _of_panels(with_sail: bool, with_planes: bool, share: float, volume: float | None, panels: int) -> TriangleMesh:
     """The same body on about so many panels; ``share`` of them on the hull."""
     other = _whole(with_sail, with_planes, max(round(panels * share), FEWEST_HULL))
     return TriangleMesh(other.vertices, other.faces, volume)
