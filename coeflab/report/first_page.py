@@ -420,7 +420,7 @@ def _of_models(study: Study) -> Answer:
     name = _short(study.plan.title or study.plan.name)
     n = spelled_out(len(models))
     sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
-    return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
+    return Answer(sentence, chips=_chips(study), table=_narrow(quality(models), ("", "form", "n", "R2")))
 
 
 def _of_publication(found: Acceptance) -> Answer:
