@@ -68,9 +68,9 @@ def command(
     if thruster:
         _bench(series, params, thruster, window, out, json)
         return
+    from coeflab.api.parameters import read_parameters
     from coeflab.motion.identify.identify import identify_from
     from coeflab.report.tables import motion as identified_tables
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     options: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
@@ -81,7 +81,7 @@ def command(
         options["window"] = window
     with show.progress(json) as say:
         say(f"reading {len(series)} time series")
-        found = identify_from(series, read_parameter_file(params), options)
+        found = identify_from(series, read_parameters(params), options)
     written = [] if out is None else _write(found, out)
     if json:
         show.json_object({**as_json(found), "files": [str(p) for p in written]})
@@ -99,15 +99,15 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     """Curves of a thruster from its bench tests."""
     from json import dumps
 
+    from coeflab.api.parameters import read_parameters
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
     from coeflab.motion.identify.thruster import WINDOW, bench_test
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     within = quantity(window, "time", key="--window") if window else WINDOW
-    found = bench_test(series, read_parameter_file(params), thruster, within)
+    found = bench_test(series, read_parameters(params), thruster, within)
     content = {
         f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
         f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",

@@ -14,13 +14,16 @@ MAY = ("coeflab", "coeflab.api", "coeflab.cli", "coeflab.core", "coeflab.report"
 # The folder of an application is its command's own.
 OWN = {
     "derive": ("coeflab.motion.multibody",),
+    "glide": ("coeflab.motion.glider", "coeflab.workbench.glide"),
+    "identify": ("coeflab.motion.identify",),
+    "tune": ("coeflab.motion.tune", "coeflab.workbench.tune"),
     "tow": ("coeflab.tank", "coeflab.workbench.tow"),
 }
 # Commands that reach below the front door; this list may only become shorter.
 NOT_YET = frozenset(
     {
-        "added_mass", "as_json", "complete", "draft", "draw", "fit", "formats", "glide", "identify", "import_",
-        "inspect", "mass", "merge", "params", "run", "schema", "show", "simplify", "simulate", "table", "tune",
+        "added_mass", "as_json", "complete", "draft", "draw", "fit", "formats", "import_",
+        "inspect", "merge", "params", "run", "schema", "show", "simplify", "simulate", "table",
         "uncertainty", "validate", "vehicle",
     }
 )  # fmt: skip
