@@ -43,10 +43,20 @@ def test_one_speed_keeps_its_rudder_where_it_has_one_run_at_drift(
 ) -> None:
     """Of four speeds one was run at drift; at the others Ydr' was refused for the sake of Yv'."""
     rows = [f"{b},0,1.3,{-0.02 * -np.sin(np.radians(b)):.8g},0.001" for b in (-8, -4, 0, 4, 8)]
-    rows += [f"0,{d},{u},{0.01 * np.radians(d) / u:.8g},{-0.004 * np.radians(d):.8g}" for u in (0.5, 1.3) for d in (-20, -10, 10, 20)]
+    rows += [
+        f"0,{d},{u},{0.01 * np.radians(d) / u:.8g},{-0.004 * np.radians(d):.8g}"
+        for u in (0.5, 1.3)
+        for d in (-20, -10, 10, 20)
+    ]
     rows += ["0,0,0.5,0,0"]
     (tmp_path / "t.csv").write_text("\n".join(["beta (deg),rudder angle (deg),speed (m/s),Y',N'", *rows]) + "\n")
-    known = ("axes.frame=FRD", "axes.beta=-", "axes.reference_point=midship", "scaling.length=3 LPP", "coefficients.area=prime")
+    known = (
+        "axes.frame=FRD",
+        "axes.beta=-",
+        "axes.reference_point=midship",
+        "scaling.length=3 LPP",
+        "coefficients.area=prime",
+    )
     sets = [w for k in known for w in ("--set", k)]
     done = invoke("import", tmp_path / "t.csv", "--out", tmp_path / "made", *sets, "--accept")
     assert done.exit_code == 0, done.output

@@ -237,7 +237,9 @@ class _Config:
         return self.at(key, *(f"{key}_{axis}" for axis in "XYZ"))
 
 
-_SYMMETRY_IN_LOG = re.compile(r"(?i)^[\s|]*symmetry plane(?: boundary)?\s*[|:]\s*(?P<name>[^|]*)|^\s*MARKER_SYM\w*\s*=[\s(]*(?!NONE\b)(?P<marker>[^\s,()]+)")
+_SYMMETRY_IN_LOG = re.compile(
+    r"(?i)^[\s|]*symmetry plane(?: boundary)?\s*[|:]\s*(?P<name>[^|]*)|^\s*MARKER_SYM\w*\s*=[\s(]*(?!NONE\b)(?P<marker>[^\s,()]+)"
+)
 
 
 def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[str], list[Path]]:
@@ -245,7 +247,9 @@ def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[st
     places = []
     for config in configs:
         for key in ("MARKER_SYM", "MARKER_SYMMETRY"):
-            names = [n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() not in ("NONE", "\\")]
+            names = [
+                n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() not in ("NONE", "\\")
+            ]
             places += [f"{config.at(key)}: marker {name} is a symmetry plane" for name in names]
     return (places, []) if places else planes_beside(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
 

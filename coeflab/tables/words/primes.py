@@ -74,7 +74,10 @@ _AREA_IS = re.compile(
     r"(?i)(?:reference\s+area|(?:referenz|bezugs)fl(?:ä|ae)che|surface\s+de\s+r[ée]f[ée]rence)\s*(?:=|:|\bis\b|\bist\b|\best\b)?\s*(?:the\s+|die\s+|la\s+)?"
 )
 # The prime system II of SNAME has L T for an area; the bis system divides by the mass.
-_SYSTEM = ((re.compile(r"(?i)\bprime(?:[\s-]*system)?[\s-]*(?:II|2)\b"), "L T"), (re.compile(r"(?i)\bbis[\s-]*system\b"), "mass"))
+_SYSTEM = (
+    (re.compile(r"(?i)\bprime(?:[\s-]*system)?[\s-]*(?:II|2)\b"), "L T"),
+    (re.compile(r"(?i)\bbis[\s-]*system\b"), "mass"),
+)
 LONGEST = 60
 
 
