@@ -39,7 +39,7 @@ def written(folder: Path, kind: str, own: Axes, suffix: str = "stl") -> Path:
 
 
 def proposed(why: InputError) -> str:
-    return why.advice.partition("--axes ")[2].partition(".")[0]
+    return re.findall(r"--axes ([\w,]+)", why.advice)[0]
 
 
 @pytest.mark.parametrize("own", RIGHT, ids=lambda a: a.typed)
