@@ -21,6 +21,8 @@ ACTIVATE = r".venv\Scripts\activate" if os.name == "nt" else "source .venv/bin/a
 GALLERY = ROOT / "reports" / "gallery" / "make.py"
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 OLDEST = (3, 11)
+EXTRA = "derive"  # the one that a command of the README needs
+WORKERS = "3"  # on two cores: tests of kills, of Slurm and of pages wait more than they compute
 
 
 def requirements(groups: tuple[str, ...]) -> list[str]:
@@ -45,7 +47,7 @@ def set_up(groups: tuple[str, ...]) -> None:
         if made.returncode:
             raise SystemExit("This Python cannot make virtual environments; install its venv module (python3-venv).")
     install = [str(PYTHON), "-m", "pip", "install", "-qq", "--disable-pip-version-check"]
-    packages = ["-c", str(ROOT / "constraints.txt"), "-e", str(ROOT), *requirements(groups)]
+    packages = ["-c", str(ROOT / "constraints.txt"), "-e", f"{ROOT}[{EXTRA}]", *requirements(groups)]
     if subprocess.run(install + packages, check=False).returncode:
         raise SystemExit("The packages could not be installed; pip says why above.")
     kept = set(groups) | (set(done[1:]) if done[:1] == [state] else set())
@@ -61,7 +63,7 @@ def test(arguments: list[str]) -> int:
         [str(PYTHON), "-m", "ruff", "format", "--check", *sources],
         [str(PYTHON), "-m", "mypy"],
         [str(BIN / "lint-imports")],
-        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", "2", "--dist", "worksteal"])],
+        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", WORKERS, "--dist", "worksteal"])],
     ]
     for gate in gates:
         code = subprocess.run(gate, cwd=ROOT, env=environment, check=False).returncode

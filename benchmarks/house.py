@@ -1,6 +1,8 @@
 """Size and shape of the package: files, lines of code, imports, circles, modules with a single importer.
 
 python benchmarks/house.py [--list]     --list names the circles, the long files and the modules with a single importer
+python benchmarks/house.py --lines      writes `lines_of_code.toml` where a subject fell; the ratchet of CI is `tests/core/test_lines_of_code.py`
+python benchmarks/house.py --lines --because "REASON"      also where one rose
 
 Lines of code leave out blank lines, comments and docstrings. Imports count wherever they stand, in functions and under
 TYPE_CHECKING too. A circle is a set of modules that import each other, at any time. Plugins are the modules that a registry of
@@ -13,6 +15,7 @@ from __future__ import annotations
 
 import ast
 import io
+import json
 import sys
 import tokenize
 import tomllib
@@ -27,6 +30,7 @@ PLUGINS = (
 )  # fmt: skip
 PURE = {"coeflab.core.types"}
 LONGEST = 600
+LINES = Path(__file__).with_name("lines_of_code.toml")
 
 
 def modules() -> dict[str, Path]:
@@ -129,8 +133,35 @@ def apart(name: str, importer: str, lines: int) -> str:
     return f"{lines} lines together" if lines > LONGEST else ""
 
 
+def by_subject() -> dict[str, int]:
+    """Lines of code of every folder and file right below the package."""
+    out: dict[str, int] = defaultdict(int)
+    for name, path in modules().items():
+        out[[*name.split("."), "__init__"][1]] += len(code_lines(path.read_text(encoding="utf-8")))
+    return dict(sorted(out.items()))
+
+
+def written(found: dict[str, int], table: dict[str, dict[str, int | str]], because: str) -> str:
+    """The table of lines of code with the numbers that fell, and with those that rose where a reason is given."""
+    rose = {name for name, n in found.items() if n > int(table.get(name, {}).get("lines", 0))}
+    if rose and not because:
+        raise SystemExit(f"More lines of code in {', '.join(sorted(rose))}; --because states why.")
+    out = [
+        "# Lines of code a subject may have: they only fall. A number that rises states its reason (house.py --lines).\n"
+    ]
+    for name, n in found.items():
+        reason = because if name in rose else str(table.get(name, {}).get("reason", ""))
+        out.append(f"[{name}]\nlines = {n}\n" + f"reason = {json.dumps(reason)}\n" * bool(reason))
+    return "\n".join(out)
+
+
 def main() -> None:
     """Print the figures."""
+    if "--lines" in sys.argv:
+        because = sys.argv[sys.argv.index("--because") + 1] if "--because" in sys.argv else ""
+        table = tomllib.loads(LINES.read_text(encoding="utf-8")) if LINES.exists() else {}
+        LINES.write_text(written(by_subject(), table, because), encoding="utf-8")
+        return
     known = modules()
     texts = {name: path.read_text(encoding="utf-8") for name, path in known.items()}
     found = {name: imports(name, text, known) for name, text in texts.items()}

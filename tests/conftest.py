@@ -32,6 +32,13 @@ settings.load_profile("unhurried")
 
 # Peak memory of a process itself in kB: ru_maxrss holds that of the process which it was forked from, too.
 PEAK_KILOBYTES = "int(next(line for line in open('/proc/self/status') if line.startswith('VmHWM')).split()[1])"
+
+
+def peak_kilobytes() -> int:
+    """Of this process."""
+    return int(eval(PEAK_KILOBYTES))
+
+
 FLAGS = [
     "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-sync",
     "--disable-component-update", "--no-first-run", "--disable-dev-shm-usage",

@@ -122,7 +122,9 @@ def _module(name: str) -> str:
 
 
 def _summary(name: str) -> str:
-    text = Path(__file__).with_name(f"{_module(name)}.py").read_text(encoding="utf-8")
+    from coeflab.core.text.bounded import own_text
+
+    text = own_text(Path(__file__).with_name(f"{_module(name)}.py"))
     found = _SUMMARY.search(text)
     return cleandoc(found[1] or found[2]) if found else ""
 
@@ -230,7 +232,8 @@ def _ready_to_print() -> None:
         except OSError:
             while os.open(os.devnull, os.O_RDWR) < number:
                 pass
-        setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115, PTH123 - it stays open to the end
+        nothing = os.open(os.devnull, os.O_RDWR)
+        setattr(sys, name, os.fdopen(nothing, mode, encoding="utf-8"))  # it stays open to the end
         if name == "stdout":
             typer.echo(
                 "error: found a closed standard output; expected one to print to (>/dev/null discards).", err=True

@@ -46,6 +46,7 @@ def command(
     from coeflab.bodies.simplify.source import mesh_body
     from coeflab.core.errors import OutputError
     from coeflab.core.files import write_all
+    from coeflab.core.text.bounded import holds
     from coeflab.report.figures.three_views import three_views
     from coeflab.report.tables.added_mass import particulars
 
@@ -55,7 +56,7 @@ def command(
     files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}
     for file, content in files.items():
         path = folder / file
-        if not force and path.exists() and not (path.is_file() and path.read_bytes() == content):
+        if not force and path.exists() and not holds(path, content):
             raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
     outline = found.outline
     show.table(particulars(found))

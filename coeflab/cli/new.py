@@ -19,13 +19,14 @@ def command(folder: Path = typer.Argument(..., metavar="FOLDER", help="A folder 
     from coeflab.cli.schema import schema
     from coeflab.core.errors import OutputError
     from coeflab.core.files import names_in, typed, write_all
+    from coeflab.core.text.bounded import own_bytes
 
     folder = typed(folder)
     if folder.exists() and (not folder.is_dir() or names_in(folder)):
         raise OutputError(f"{folder} exists and is not empty. Name a new folder.")
     template = files("coeflab.cli") / "template"
     names = ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv")
-    contents = {name: template.joinpath(*name.split("/")).read_bytes() for name in names}
+    contents = {name: own_bytes(template.joinpath(*name.split("/"))) for name in names}
     contents |= {f"schemas/{kind}.schema.json": schema(kind) for kind in ("plan", "campaign", "body")}
     write_all(folder, contents, new=True)
     for name in contents:

@@ -121,26 +121,33 @@ def summarise(study: Study, folder: Path) -> None:
 
 
 def _moved(study: Study) -> None:
-    """What the planned manoeuvres come to: their first figures with a value; with ``--wide`` all, with their definitions."""
+    """What the planned manoeuvres come to: their first figures with a value, or why there is none; with ``--wide`` all."""
+    from coeflab.core.finding import Severity
     from coeflab.core.table import Table
+    from coeflab.core.wording import listed
     from coeflab.report.sections.parameter_file import without_u95
     from coeflab.report.tables.motion import figure_table
-    from coeflab.report.tables.nouns import NO_VALUE
 
     rows = []
+    without: dict[str, list[str]] = {}
     for made in study.manoeuvres:
         name = made.manoeuvre.name.replace("_", " ")
         found = figure_table(made.figures, f"{name} of {made.vehicle.name}", made.vehicle.length)
         if show.whole():
             show.table(found)
         known = [row for row, figure in zip(found.rows, made.figures, strict=True) if figure.value is not None]
+        if not known:
+            without.setdefault(f"of {made.vehicle.name}, no value: {_why(made)}", []).append(name)
         rows += [
             (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
-        ] or [(made.vehicle.name, name, "all", NO_VALUE, "", _why(made))]
-    if not show.whole():
+        ]
+    for why, names in without.items():
+        line = listed(names)
+        show.marked(str(Severity.WARN), f"{line[:1].upper()}{line[1:]} {why}")
+    if rows and not show.whole():
         headers = ("file", "manoeuvre", "quantity", "value", "unit", "status")
-        notes = (without_u95(study),) if rows else ()
+        notes = (without_u95(study),)
         show.table(Table("Simulated manoeuvres", headers, tuple(rows), notes, frozenset({0, 1, 2, 4, 5})))
 
 
@@ -158,7 +165,8 @@ def answered(found: Answer) -> None:
     show.text()
     show.table(answer_table(found))
     for chip in found.chips:
-        show.marked(str(chip.severity), f"{chip.name}: {chip.text}")
+        if chip.anchor != "checks":  # which `show.findings` counts
+            show.marked(str(chip.severity), f"{chip.name}: {chip.text}")
 
 
 def _tows(study: Study) -> None:
@@ -167,13 +175,13 @@ def _tows(study: Study) -> None:
     from coeflab.report.tables import own_cfd
     from coeflab.study.towed import towed
 
-    absent = []
-    for tow in towed(study):
-        if not tow.tow.campaign:
-            absent.append(f"{tow.tow.name} ({listed(tow.tow.absent)})")
-            continue
+    found = [tow for tow in towed(study) if tow.tow.campaign]
+    for tow in found if show.whole() else ():
         show.table(own_cfd.own_tow(tow))
         show.table(own_cfd.tow_against(tow))
+    if found and not show.whole():
+        show.marked("note", f"Own CFD of {'; '.join(t.tow.name for t in found)}: values and E = S - D by --wide")
+    absent = [f"{t.tow.name} ({listed(t.tow.absent)})" for t in towed(study) if not t.tow.campaign]
     if absent:
         show.sentence(f"Not towed yet: {listed(absent)}.")
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 
 SLOW = 2.0
+MOST_WARNINGS, MOST_FILES = 8, 4  # before they are named in short
 ACCELERATIONS = (
     "Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed "
     "throughout."
@@ -308,6 +309,7 @@ def written(folder: Path, names: Sequence[str], changed: int, exported: Sequence
     ranks = ((".html", ".pdf"), (".parameters.json",))
     first = [n for ends in ranks for n in names if n.endswith(ends)] or list(names[:1])
     first += [n for n in names if n in exported and n not in first]
+    first = first if len(first) <= MOST_FILES else first[:1]
     for name in names if whole() else first:
         path(folder / name)
     if not whole() and len(names) > len(first):
@@ -317,19 +319,24 @@ def written(folder: Path, names: Sequence[str], changed: int, exported: Sequence
 def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> None:
     """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted.
 
-    With ``most`` no finding begins below that many lines, failures first; what is left out is counted.
+    Of more than `MOST_WARNINGS` warnings those of one check are a line, with ``--wide`` all. With ``most`` no finding begins below that many lines, failures first; what is left out is counted.
     """
     from coeflab.core.finding import Severity
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
     notes = notes or whole()
+    in_short = not notes and not most and sum(c.severity is Severity.WARN for c in found) > MOST_WARNINGS
     for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
         for c in found:
             if c.severity is severity:
-                groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
+                alone = ("", "") if in_short and severity is Severity.WARN else (c.rule, c.comment)
+                groups.setdefault((severity, c.name, *alone), []).append(c)
     printed = left = 0
     for (severity, name, rule, comment), same in groups.items():
+        if in_short and severity is Severity.WARN:
+            marked(str(severity), _in_short(name, same))
+            continue
         if most and printed >= most:
             left += len(same)
             continue
@@ -356,10 +363,18 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
         printed, left = printed + len(shown), left + len(same) - len(shown)
     if left:
         text(f"        and {left} more, which `coeflab fit` shows")
-    hint = (
+    held_back = {Severity.WARN.value: " (--wide shows their numbers)"} if in_short else {}
+    hint = held_back or (
         {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes and not most else {}
     )
     text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
+
+
+def _in_short(name: str, same: Sequence[Check]) -> str:
+    """The warnings of one check: whose they are, and the first advice."""
+    others = len({c.subject for c in same}) - 1
+    more = f" and {others} more" if others else ""
+    return f"{name.replace('_', ' ')}, {same[0].subject}{more}: {_short(same[0].comment)}"
 
 
 def file_findings(name: str, found: Sequence[Check]) -> None:

@@ -72,6 +72,7 @@ def command(
     from coeflab.bodies.simplify.source import mesh_body
     from coeflab.core.errors import InputError, OutputError, shown
     from coeflab.core.files import write_all
+    from coeflab.core.text.bounded import holds
     from coeflab.core.wording import Verbatim
     from coeflab.report.figures.body import body_figure
     from coeflab.report.figures.body_scene import body_scene
@@ -95,7 +96,7 @@ def command(
     }
     for file, content in files.items():
         path = folder / file
-        if not force and path.exists() and not (path.is_file() and path.read_bytes() == content):
+        if not force and path.exists() and not holds(path, content):
             raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
     changed = write_all(folder, files)
     if json:

@@ -15,6 +15,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from coeflab.core.errors import InputError, OutputError, clipped, shown
+from coeflab.core.text.bounded import holds
 from coeflab.core.wording import repeated
 
 if sys.platform != "win32":
@@ -198,7 +199,7 @@ def write_all(
                     _require_new(folder, contents, otherwise)
                 for name, content in contents.items():
                     path = folder / name
-                    changed[name] = not (path.is_file() and path.read_bytes() == content)
+                    changed[name] = not holds(path, content)
                     if changed[name]:
                         staged[path] = _staged(path, content, locks)
                 for path, temporary in staged.items():
@@ -217,7 +218,7 @@ def _require_new(folder: Path, contents: Mapping[str, bytes], otherwise: str) ->
     """Refuse a folder with other files than these, which a stopped process may have left of the same contents."""
     tops = {Path(name).parts[0] for name in contents}
     others = [name for name in names_in(folder) if name not in tops]
-    others += [n for n, c in contents.items() if (folder / n).exists() and (folder / n).read_bytes() != c]
+    others += [n for n, c in contents.items() if (folder / n).exists() and not holds(folder / n, c)]
     if others:
         raise OutputError(f"{clipped(folder)} exists and is not empty. {otherwise}")
 
@@ -339,20 +340,3 @@ def write_atomically(path: Path, content: bytes) -> bool:
         The folder cannot be made or written.
     """
     return write_all(path.parent, {path.name: content})[path.name]
-
-
-def leading_bytes(file: Path, most: int) -> bytes:
-    """The first bytes of a file, to see what it is or names; never more than ``most``.
-
-    Parameters
-    ----------
-    file : Path
-    most : int
-
-    Raises
-    ------
-    OSError
-        It cannot be read.
-    """
-    with file.open("rb") as stream:
-        return stream.read(most)

@@ -17,6 +17,10 @@ JSON_BYTES = 16 << 20
 M_FILE_BYTES = 1 << 18
 RECORD_BYTES = 4 << 20  # files of a tow; that of 1,000 conditions has 500 kB
 
+# What our own processes and solvers printed, from the end; a mesh of a tow, which a solver wrote: 20 million cells.
+LOG_BYTES = 64 << 20
+MESH_BYTES = 4 << 30
+
 # Depth. Parsers call themselves once a level; Python allows some 1000 calls. Models nest 10 deep at most.
 JSON_DEEPEST = 150
 YAML_DEEPEST = 60

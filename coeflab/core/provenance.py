@@ -13,6 +13,7 @@ from typing import Annotated
 
 from coeflab.core.declarations import Declaration, Text, Words, one_of
 from coeflab.core.stored import Means, Within, stored
+from coeflab.core.text.bounded import stream_of
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate", "unstated")
 BODY_KINDS = (*TABLE_KINDS, "computed")
@@ -74,7 +75,7 @@ def sha256_of(path: Path, read: Iterable[Path] = ()) -> str:
             place = file.relative_to(path) if file.is_relative_to(path) else file
             digest.update(f"{place.as_posix()} {sha256_of(file)}\n".encode())
         return digest.hexdigest()
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         for block in iter(lambda: stream.read(1 << 20), b""):
             digest.update(block)
     return digest.hexdigest()
@@ -250,8 +251,6 @@ WORKS: dict[str, str] = {
     "chapter Fluid forces, and engine_passive.c, commit 01a932e, github.com/google-deepmind/mujoco.",
     "fmi2": "Modelica Association, Functional Mock-up Interface for Model Exchange and Co-Simulation, version 2.0.4, 2022, "
     "fmi-standard.org.",
-    "pythonfmu": "L. I. Hatledal, H. Zhang, F. Collonval, Enabling Python Driven Co-Simulation Models with PythonFMU, ECMS 2020; "
-    "PythonFMU 0.7, github.com/NTNU-IHB/PythonFMU.",
     "holoocean": "E. Potokar, S. Ashford, M. Kaess, J. G. Mangelson, HoloOcean: An Underwater Robotics Simulator, ICRA 2022; "
     "version 2.3, client/src/holoocean/fossen_dynamics/torpedo.py and helper_functions.py.",
     "stonefish": "P. Cieslak, Stonefish: An Advanced Open-Source Simulation Tool Designed for Marine Robotics, OCEANS 2019; "

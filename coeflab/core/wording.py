@@ -20,6 +20,8 @@ from math import isfinite
 from pathlib import Path
 from typing import TypeVar
 
+from coeflab.core.text.bounded import own_text
+
 Item = TypeVar("Item", bound=Hashable)
 
 
@@ -107,7 +109,7 @@ DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("co
 @cache
 def matlab() -> frozenset[str]:
     """Keywords and functions of GNU Octave 7.3, some of MATLAB's and of MSS: ``matlab_names.txt``."""
-    return frozenset(Path(__file__).with_name("matlab_names.txt").read_text(encoding="ascii").split())
+    return frozenset(own_text(Path(__file__).with_name("matlab_names.txt")).split())
 
 
 def python() -> frozenset[str]:

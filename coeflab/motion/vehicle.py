@@ -15,7 +15,8 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
-from coeflab.motion.dynamics import restoring, turned_about
+from coeflab.law.transforms import turned_about
+from coeflab.motion.dynamics import restoring
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
@@ -156,7 +157,7 @@ class Vehicle:
         ----------
         commands : mapping of str to float
             ``name`` to its command, ``name.tilt`` to rad, ``thrust`` to N ahead at the reference point. What is not named
-            is zero.
+            is zero; what is beyond a limit is held at it.
 
         Raises
         ------
@@ -176,7 +177,8 @@ class Vehicle:
             command = commands.get(t.name, 0.0)
             along = np.array(t.direction)
             if t.tilt_axis is not None:
-                along = turned_about(np.array(t.tilt_axis), commands.get(f"{t.name}.tilt", 0.0)) @ along
+                tilt = min(max(commands.get(f"{t.name}.tilt", 0.0), t.tilt_low), t.tilt_high)
+                along = turned_about(np.array(t.tilt_axis), tilt) @ along
             force = t.curve.at(command) * along
             out[:3] += force
             out[3:] += np.cross(np.array(t.position), force)

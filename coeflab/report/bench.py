@@ -19,7 +19,7 @@ from coeflab.core.types import brief
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.slope_at_origin import NODES
-from coeflab.fits.statistics import origin_slope, slope_mixture, slopes
+from coeflab.fits.statistics import origin_slope, slope_mixture, slopes, student_mixture
 from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
@@ -76,7 +76,7 @@ class BenchData:
         constants |= {"ODD": list(slope_mixture.ODD.items()), "SIDES": list(slope_mixture.SIDES.items())}
         constants |= {"NODES": slope_mixture.NODES.tolist(), "WEIGHTS": slope_mixture.WEIGHTS.tolist()}
         return {
-            "constants": constants | {"KEPT": slope_mixture.KEPT, "HALVINGS": slope_mixture.HALVINGS},
+            "constants": constants | {"KEPT": student_mixture.KEPT, "HALVINGS": student_mixture.HALVINGS},
             "nodes": NODES,
             "sameLevel": slopes.SAME_LEVEL,
             "sweeps": list(self.sweeps),

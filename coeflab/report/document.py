@@ -255,7 +255,7 @@ class Chip:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a reader wants first: one sentence, the wanted coefficients beside published ones, two pictures, four chips.
+    """What a reader wants first: one sentence, the wanted coefficients beside published ones, two pictures, chips.
 
     Terminal, notebook, HTML, PDF and summary show this one object.
 

@@ -1,4 +1,4 @@
-"""The first page of a study or a publication: what came out, in one sentence, six rows, two pictures and four chips.
+"""The first page of a study or a publication: what came out, in one sentence, six rows, two pictures and chips.
 
 Everything that shows it takes it from here: terminal, notebook, HTML, PDF, and the summary, a report of that page alone.
 """
@@ -50,7 +50,6 @@ PLACES = 4  # of a line, which has no U95 to say how many count
 BAR = 6  # letters of a difference that is as large as U95
 HALF_WIDTH = "U95: half-width of the 95 % interval."
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
-WIDE = 0.5  # a U95 of half the value asks for more runs
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
 
@@ -85,7 +84,7 @@ def _of_study(study: Study) -> Answer:
         if not others:
             return _of_models(study)
         rows = others
-    said, chips, below = _sentence(study, beside, rows), _chips(study, rows), notes(study, beside, rows)
+    said, chips, below = _sentence(study, beside, rows), _chips(study), notes(study, beside, rows)
     lines = [_line(study, r) for r in rows] if study.plan.tows and names else []
     if any(x is not None for x in lines):
         names, below = (*names, NAME), (*below, MEANING_OF_LINE)
@@ -321,8 +320,8 @@ def _absent(rows: tuple[AnswerRow, ...], for_body: str) -> str:
     )
 
 
-def _chips(study: Study, rows: tuple[AnswerRow, ...]) -> tuple[Chip, ...]:
-    return tuple(c for c in (_stability(study), _largest(rows), _warnings(study), _exports(study)) if c is not None)
+def _chips(study: Study) -> tuple[Chip, ...]:
+    return tuple(c for c in (_stability(study), _warnings(study), _exports(study)) if c is not None)
 
 
 def _stability(study: Study) -> Chip:
@@ -359,20 +358,6 @@ def _of_study_named(study: Study, name: str) -> str:
     """A parameter file as people say it, without the name of the study that it begins with."""
     words = name.removeprefix(f"{study.plan.name}_").replace("_", " ")
     return f"{words[:1].upper()}{words[1:]}"
-
-
-def _largest(rows: Sequence[AnswerRow]) -> Chip:
-    shares = {r.symbol: abs(r.u95 / r.value) for r in rows if r.u95 and r.value}
-    if not shares:
-        return Chip("Largest U95 in the first table", "no U95", Severity.NOTE, "coefficients")
-    symbol = max(shares, key=lambda s: shares[s])
-    grave = Severity.WARN if shares[symbol] > WIDE else Severity.NOTE
-    return Chip(
-        "Largest U95 in the first table",
-        f"{primed(symbol)}, {share_text(shares[symbol])} of the value",
-        grave,
-        "coefficients",
-    )
 
 
 def _warnings(study: Study) -> Chip:
@@ -435,7 +420,7 @@ def _of_models(study: Study) -> Answer:
     name = _short(study.plan.title or study.plan.name)
     n = spelled_out(len(models))
     sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
-    return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
+    return Answer(sentence, chips=_chips(study), table=_narrow(quality(models), ("", "form", "n", "R2")))
 
 
 def _of_publication(found: Acceptance) -> Answer:

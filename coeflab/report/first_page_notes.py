@@ -85,7 +85,7 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:
         if r.other_scaling is not None:
-            out.append(f"{r.name}: length not stated; {_readings(r.scaling, r.other_scaling)}.")
+            out.append(f"{r.name}: {_readings(r.scaling, r.other_scaling)}.")
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
@@ -210,7 +210,7 @@ def _span(shares: Sequence[str]) -> str:
 def _readings(first: Scaling, other: Scaling) -> str:
     """The length that a column is read with, and what the other would make of it."""
     force, moment = (f"{100.0 * (other.ratio(symbol, first) - 1.0):+.1f} %" for symbol in ("Yv", "Nr"))
-    return f"{first.length_name} assumed (if {other.length_name}: Yv' {force}, Nr' {moment})"
+    return f"{first.length_name} assumed, not stated (if {other.length_name}: Yv' {force}, Nr' {moment})"
 
 
 def _with_symbols(sources: Sequence[str], rows: Sequence[AnswerRow]) -> list[str]:

@@ -20,6 +20,7 @@ from html import escape
 from typing import ParamSpec, TypeVar
 
 from coeflab.core.errors import InputError
+from coeflab.core.text.patterns import one_of
 from coeflab.core.types import brief
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROLS, derivative
@@ -213,7 +214,7 @@ def _beginnings(texts: tuple[str, ...]) -> re.Pattern[str]:
     """Where a text may begin. A short one must be a word of its own, and part of no symbol."""
     long = sorted({re.escape(t[:BEGINNING]) for t in texts if len(t) >= SHORT}, key=len, reverse=True)
     short = [rf"(?<![\w|'^]){re.escape(t)}(?![\w|'^])" for t in texts if len(t) < SHORT]
-    return re.compile("|".join([*long, *short]))
+    return one_of([*long, *short])
 
 
 def _covered(text: str, kept: Kept | None) -> str:

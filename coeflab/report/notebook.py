@@ -20,6 +20,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.finding import Severity
 from coeflab.core.several import labels
 from coeflab.core.table import ABSENT, Table, number, percent
+from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
@@ -94,7 +95,7 @@ def _card(make: Maker) -> Callable[[Any], str]:
 
 @cache
 def _style() -> str:
-    symbols = (files("coeflab.report.formats") / "_html" / "symbols.css").read_text(encoding="utf-8")
+    symbols = own_text(files("coeflab.report.formats") / "_html" / "symbols.css")
     return f"{STYLE}.coeflab {{\n{symbols}}}\n"
 
 

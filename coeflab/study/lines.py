@@ -16,7 +16,7 @@ from coeflab.tables.force_table import AT_REST, ForceTable
 LARGEST_ANGLE = 6.0  # deg, of that study's drifts and attacks
 SLACK = 1e-3
 NAME = "our line"
-MEANING = f"Our line: one straight line through all points to {LARGEST_ANGLE:g} deg and all rates, the CFD paper's way; no U95."
+MEANING = f"Our line: one straight line through all points to {LARGEST_ANGLE:g} deg and all rates; no U95."
 
 
 def line(tables: Sequence[ForceTable], symbol: str, length: float) -> float | None:

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.files import leading_bytes
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, MONITOR_FILES
+from coeflab.core.text.bounded import leading_bytes
 from coeflab.core.types import Array
 from coeflab.law.symbols import FORCES
 from coeflab.tables.campaign import HALVES, PORT_STARBOARD, Cut

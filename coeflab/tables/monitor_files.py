@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from coeflab.core.limits import MONITOR_FILES
+from coeflab.core.text.bounded import stream_of
 
 HEAD = 1 << 16
 SUFFIXES = (".csv", ".dat", ".out", ".txt", ".frp", ".trn")
@@ -37,7 +38,7 @@ def head(path: Path) -> bytes:
     try:
         if not path.is_file():
             return b""
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             return stream.read(HEAD)
     except OSError:
         return b""

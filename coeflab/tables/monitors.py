@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, MONITOR_COLUMNS, MONITOR_NUMBERS
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.types import Array
 from coeflab.tables.monitor_files import HEAD, decoded, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Stated
@@ -265,7 +266,7 @@ class _Rows:
 def _blocks(path: Path, offset: int) -> Iterator[tuple[bytes, bool]]:
     """Whole lines, some MiB at a time, then what follows the last line end, and whether it is that."""
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             stream.seek(offset)
             rest = b""
             while read := stream.read(BLOCK):

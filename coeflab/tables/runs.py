@@ -27,6 +27,8 @@ import numpy as np
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, UnitsError, clipped
 from coeflab.core.machine import cores, end_with_parent
+from coeflab.core.text.bounded import stream_of
+from coeflab.core.text.json import parse_json
 from coeflab.core.types import brief
 from coeflab.core.units import factor
 from coeflab.core.version import VERSION
@@ -334,7 +336,7 @@ def _averaged(at: RawColumn | None, first: int, rows: int) -> str:
 
 
 def _ends_within_a_line(file: Path) -> bool:
-    with suppress(OSError), file.open("rb") as stream:
+    with suppress(OSError), stream_of(file) as stream:
         if stream.seek(0, os.SEEK_END):
             stream.seek(-1, os.SEEK_END)
             return stream.read(1) not in b"\r\n"
@@ -450,11 +452,11 @@ class State:
         self._load()
 
     def _load(self) -> None:
-        with suppress(OSError), self.path.open("rb") as stream:
+        with suppress(OSError), stream_of(self.path) as stream:
             for line in stream:
-                with suppress(ValueError, KeyError, TypeError):  # a line that a kill cut short
+                with suppress(InputError, ValueError, KeyError, TypeError):  # a line that a kill cut short
                     digest, text = line.decode().rstrip("\n").split(" ", 1)
-                    content = json.loads(text) if digest == _digest(text) else {}
+                    content = parse_json(text) if digest == _digest(text) else {}
                     if content["kind"] == STATE_KIND and content["key"] == self.key:
                         self._known[content["path"]] = content["mark"], content["run"]
 

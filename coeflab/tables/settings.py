@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields
@@ -17,7 +16,7 @@ from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
-from coeflab.core.text.toml import read_toml
+from coeflab.core.text.toml import read_toml, typed_value
 from coeflab.core.units import quantity
 from coeflab.law.scaling import Scaling
 from coeflab.tables import campaign
@@ -98,7 +97,7 @@ def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
         if isinstance(said, str):
             inner = said.strip(" []()")
             parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
-            said = [_toml(part) for part in _one_unit([part.strip(" \"'") for part in parts])]
+            said = [typed_value(part) for part in _one_unit([part.strip(" \"'") for part in parts])]
         try:
             read(said, Path())
         except InputError as why:
@@ -200,13 +199,6 @@ READERS: dict[str, Callable[[Any], Any]] = {
 }  # fmt: skip
 
 
-def _toml(text: str) -> Any:
-    try:
-        return tomllib.loads(f"x = {text}")["x"]
-    except (tomllib.TOMLDecodeError, RecursionError):
-        return text
-
-
 def read_setting(key: str, text: Any) -> Any:
     """A value of campaign.toml as a person types it: TOML, or bare words.
 
@@ -220,7 +212,7 @@ def read_setting(key: str, text: Any) -> Any:
         known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
         expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
         raise InputError(f"the key {shown(key)}", expected)
-    typed = _toml(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
+    typed = typed_value(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
     try:
         return READERS.get(key, lambda said: said)(typed)
     except InputError as why:

@@ -31,6 +31,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
+from coeflab.core.text.bounded import log_text
 from coeflab.tank.jobs import (
     EARLIER,
     PATIENCE,
@@ -355,7 +356,7 @@ class _Attempt:
         with suppress(OSError):
             if disk_is_full(self.job.folder):
                 return f"the disk is full ({self.now.step}: {how})"
-            lines = log.read_text(errors="replace").splitlines()
+            lines = log_text(log).splitlines()
             number, text = fatal_error(lines)
             if not number:
                 number = max((i for i, line in enumerate(lines, 1) if line.strip()), default=0)

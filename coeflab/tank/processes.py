@@ -12,6 +12,8 @@ from contextlib import suppress
 from math import isnan, nan
 from pathlib import Path
 
+from coeflab.core.text.bounded import leading_bytes
+
 PR_SET_PDEATHSIG = 1  # of Linux, <sys/prctl.h>
 PROC = Path("/proc")
 POLL = 0.05  # s
@@ -48,10 +50,14 @@ def lives(process: int, since: float) -> bool:
     return True
 
 
+def _of(process: int, name: str) -> str:
+    return leading_bytes(PROC / str(process) / name, 1 << 16).decode("utf-8", "replace")
+
+
 def _stat(process: int) -> list[str]:
     """Fields of /proc/PID/stat behind the name, the state first; empty where there are none."""
     try:
-        return (PROC / str(process) / "stat").read_text(errors="replace").rpartition(")")[2].split()
+        return _of(process, "stat").rpartition(")")[2].split()
     except OSError:
         return []
 
@@ -71,7 +77,7 @@ def memory(session: int) -> float:
     total = 0.0
     for process in of_session(session):
         with suppress(OSError, ValueError, IndexError):  # it ended meanwhile
-            text = (PROC / str(process) / "status").read_text(errors="replace")
+            text = _of(process, "status")
             total += 1024.0 * float(text.partition("VmHWM:")[2].split(maxsplit=1)[0])
     return total
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.registry import Registry
-from coeflab.core.text.toml import TomlFile, quoted, read_toml, value
+from coeflab.core.text.toml import TomlFile, own_toml, quoted, read_toml, value
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank import test_matrix
 from coeflab.tank.runners import RUNNERS
@@ -72,7 +71,7 @@ def read_tank(
 def default_tank(body_file: Path, body: TowedBody, *, solver: str = "", runner: str = "") -> Tank:
     """The tank of a body for which nobody wrote a tank.toml: that of `default_text`."""
     text = default_text(body)
-    file = TomlFile(body_file.parent / "tank.toml", tomllib.loads(text), text)
+    file = TomlFile(body_file.parent / "tank.toml", own_toml(text), text)
     return _tank(file, body, body_file, solver, runner)
 
 

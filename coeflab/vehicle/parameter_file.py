@@ -28,6 +28,7 @@ from coeflab.core.finding import Finding
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, RefusedError, Words, stored_fields
+from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
@@ -466,7 +467,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
     try:
         return _validated(text, version)
     except ValidationError as why:
-        told = complaints(why, text, path, SCHEMA_FILE.read_bytes(), advice(version))
+        told = complaints(why, text, path, own_bytes(SCHEMA_FILE), advice(version))
         if not is_later(version, SCHEMA_VERSION):
             raise told from None
         raise InputError(
@@ -490,4 +491,4 @@ def _validated(text: str, version: str) -> ParameterFile:
         ]
         if not unknown:
             raise
-    return ParameterFile.model_validate_json(json.dumps(without(json.loads(text), unknown)))
+    return ParameterFile.model_validate_json(json.dumps(without(parse_json(text), unknown)))

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from coeflab.core.errors import MOST_LISTED, InputError, shown, together
 from coeflab.core.stored import RefusedError
-from coeflab.core.text.json import Place, lines_of
+from coeflab.core.text.json import Place, lines_of, parse_json
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import derivative
 
@@ -34,7 +34,7 @@ def complaints(why: ValidationError, text: str, file: Path, schema: bytes, advic
     advice : str
         What to do about each.
     """
-    content = json.loads(text)
+    content = parse_json(text, file)
     found = list(_refusals(_sorted(_all_coefficients(why, content)), content, schema))
     lines = lines_of(text, [place for place, _ in found])
     return together([
@@ -120,7 +120,7 @@ def _missing(where: Place, content: Any, schema: bytes) -> tuple[str, str]:
             if key == "unit_si":
                 return f'"{unit}", the unit of its symbol', ""
             return f"the value in {unit} at the density and speed of conditions, or null", ""
-    said = _meaning(where, json.loads(schema))
+    said = _meaning(where, parse_json(schema.decode()))
     return (f"a value: {said}" if said else "a value"), ""
 
 

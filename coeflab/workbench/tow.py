@@ -17,6 +17,7 @@ from coeflab.core.declarations import declared
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.bounded import log_text
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult
@@ -290,7 +291,7 @@ def _case_of(folder: Path) -> dict[str, str]:
     own = re.compile(r"(?m)^(stopAt|endTime|writeInterval)\s.*$")
     found = [f for d in ("0", "constant", "system") for f in sorted((folder / d).glob("*"))]
     return {
-        str(f.relative_to(folder)): own.sub("", f.read_text(errors="replace"))
+        str(f.relative_to(folder)): own.sub("", log_text(f))
         for f in found
         if f.is_file() and f.name != "decomposeParDict" and f.stat().st_size < SMALL
     }

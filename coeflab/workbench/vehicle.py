@@ -22,6 +22,7 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
+from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.formats.export import PlannedExport
@@ -408,7 +409,7 @@ def completed_by_hand(
         body, shape, path, folder, unit or own[0], axes or own[1], repair=repair, fill=fill, sheets=sheets
     ).encode()
     there = folder / BODY
-    kept = there.exists() and not is_untouched(there.read_text(encoding="utf-8", errors="replace"))
+    kept = there.exists() and not is_untouched(log_text(there))
     return {} if kept else {BODY: text}, kept
 
 

@@ -53,6 +53,7 @@ def test_validation_prints_the_verdict(validated: Validated) -> None:
     assert done.returncode == (0 if all(judged) else 1), done.stderr
     assert done.stderr == ""
     assert too_long(done.stdout) == []
+    assert done.stdout.count("\n") <= 60
     assert all(judged)
     assert "SUBOFF: our fits to the data of experiment 1990 reproduce its Yv', Nv', Zw' and Mw' within U95" in flat(
         done.stdout

@@ -11,8 +11,6 @@ from pathlib import Path
 import pytest
 
 from coeflab.cli import ORDER
-from coeflab.motion.simulation import simulate
-from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import Run
 
 ROOT = Path(__file__).parents[2]
@@ -20,8 +18,7 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 REMUS = ROOT / "cfd_data" / "remus100" / "remus100.parameters.json"
 BY_CI = ("validate suboff", "test")  # .ci/run, as they stand
 # tests/reports/test_gallery.py and tests/report make these pages, tests/workbench_page that one; tests/cli/test_serve.py serves.
-ELSEWHERE = ("report suboff --to html,pdf", "report suboff --to workbench", "serve reports")
-UNSTABLE = "reports/suboff/suboff_fully_appended.parameters.json"
+ELSEWHERE = ("report suboff --to html,pdf", "serve reports")
 
 
 def commands() -> list[str]:
@@ -38,23 +35,15 @@ def test_the_two_commands_of_ci_are_the_first() -> None:
 
 
 @pytest.mark.slow
-def test_every_other_command_runs_in_turn(coeflab: Run, tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    """In one folder, as a reader types them; SUBOFF's zigzag on the parameter file of the shared study."""
+def test_every_other_command_runs_in_turn(coeflab: Run, tmp_path: Path) -> None:
+    """In one folder, as a reader types them."""
     shutil.copytree(ROOT / "cfd_data" / "remus100", tmp_path / "cfd_data" / "remus100")
-    suboff = request.getfixturevalue("suboff")
-    appended = suboff.parameter_files["suboff_fully_appended"]
-    (tmp_path / UNSTABLE).parent.mkdir(parents=True)
-    (tmp_path / UNSTABLE).write_bytes(appended.to_json())
     for command in commands()[2:]:
         program, *words = shlex.split(command)
         assert program == "coeflab"
-        if command.removeprefix("coeflab ") in ELSEWHERE:
-            continue
-        done = coeflab(*words)
-        unstable = UNSTABLE in words
-        assert done.returncode == (1 if unstable else 0), (command, done.stderr, done.stdout)
-        if unstable:
-            assert "no data on r'" in " ".join(done.stdout.split())
+        if command.removeprefix("coeflab ") not in ELSEWHERE:
+            done = coeflab(*words)
+            assert done.returncode == 0, (command, done.stderr, done.stdout)
     made = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
     assert {"reports/my_study/report.html", "reports/zigzag/zigzag.csv", "reports/zigzag/zigzag.svg"} <= made
 
@@ -63,20 +52,6 @@ def test_every_command_that_is_named_exists() -> None:
     named = {line.split()[1] for line in commands()[2:] if not line.split()[1].startswith("-")}
     named |= set(re.findall(r"`coeflab ([a-z-]+)", TEXT))
     assert named <= set(ORDER)
-
-
-def test_the_zigzag_has_the_figures_that_are_printed() -> None:
-    found = simulate(read_parameter_file(REMUS), "zigzag", {"rudder": "20 deg"})
-    degrees = {"rad": (57.29577951308232, "deg")}
-    ours = {
-        f.name: (f.value * degrees.get(f.unit, (1.0, ""))[0], degrees.get(f.unit, (1.0, f.unit))[1])
-        for f in found.figures
-    }
-    printed = re.findall(r"^\| ([a-z ]+) \| ([\d.]+) \| (s|m|deg) \|$", TEXT, flags=re.MULTILINE)
-    assert [name for name, _, _ in printed] == list(ours)
-    for name, value, unit in printed:
-        assert (f"{ours[name][0]:.3g}", ours[name][1]) == (value, unit)
-    assert {f.status for f in found.figures} == {"extrapolated"}
 
 
 def test_the_shipped_file_is_what_its_maker_writes() -> None:
@@ -93,5 +68,5 @@ def test_pages_and_pictures_exist() -> None:
 def test_it_is_short() -> None:
     """The first own result is on the first screen."""
     lines = TEXT.splitlines()
-    assert len(lines) <= 126  # 16 of them are the same lines in Python
+    assert len(TEXT.split()) <= 700
     assert lines.index("## Your first own result") < 20

@@ -11,7 +11,8 @@ from inspect import signature
 import pytest
 
 from coeflab.cli import show, vehicle
-from coeflab.core.table import Table
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, Table
 from coeflab.tank.tank_keys import FRESH_WATER
 from tests.cli.conftest import COEFLAB, flat
 from tests.cli.test_compare import VALUES, made
@@ -111,3 +112,15 @@ def test_a_bar_is_drawn_on_a_terminal_and_stays_letters_in_a_pipe(capsys, monkey
 def test_one_default_density_of_water() -> None:
     assert FRESH_WATER.density == show.FRESH_WATER
     assert f"{show.FRESH_WATER:g} kg/m^3" in (signature(vehicle.command).parameters["density"].default.help or "")
+
+
+def test_many_warnings_are_a_line_a_check(capsys: pytest.CaptureFixture[str]) -> None:
+    """Nine of one check are one line with the number of the others; eight stand whole, and so does a failure among them."""
+    found = [Check("signs", f"tow_{i}", Severity.WARN, f"Yv' = 0.{i}", "below zero", "Turn it.") for i in range(9)]
+    show.findings(found)
+    assert capsys.readouterr().out.splitlines()[0] == "warn  signs, tow_0 and 8 more: Turn it."
+    show.findings(found[:8])
+    whole = capsys.readouterr().out
+    assert all(f"Yv' = 0.{i}" in whole for i in range(8))
+    show.findings([*found, Check("signs", "out", Severity.FAIL, "Yv' = 0.03", "below zero", "Turn it.")])
+    assert "Yv' = 0.03" in capsys.readouterr().out

@@ -1,14 +1,18 @@
-"""Every place that reads a file or a text of somebody else is a reader with a budget, listed here with its reason."""
+"""Files are opened, and texts of others parsed, by the readers in ``core/text`` alone."""
 
 from __future__ import annotations
 
 import ast
+import os
 import re
-from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.core.text.bounded import leading_bytes, stream_of, whole_bytes
 
 PACKAGE = Path(__file__).parents[2] / "coeflab"
 READS = {"open", "read_text", "read_bytes"}
@@ -18,27 +22,12 @@ PARSES = {
 }  # fmt: skip
 PATTERNS = {f"re.{n}" for n in ("compile", "match", "fullmatch", "search", "sub", "findall", "finditer", "split")}
 
+NO_READS = {"os.open", "webbrowser.open", "read_text"}  # the last, bare, is the bounded one
 MAY_READ = re.compile(
     r"open\(|read_(?:text|bytes)\(|loads?\(|loadtxt|genfromtxt|parse\(|fromstring|safe_load|re\.\w+\([a-z]"
 )
 
-# The readers: they bound bytes, depth and counts, and raise `InputError`.
-READERS = (
-    "core/text/", "core/files.py", "tables/text_dialect.py", "tables/dialect.py", "tables/monitors.py", "tables/monitor_files.py",
-    "tables/reading.py", "tables/importers/", "tables/openfoam_case.py", "tables/openfoam_forces.py", "bodies/mesh/",
-)  # fmt: skip
-# Elsewhere, each with what it reads: files of the package itself, what this process wrote, or bytes that are only compared.
-ELSEWHERE = {
-    "cli/__init__.py": 2, "cli/draw.py": 1, "cli/new.py": 1, "cli/simplify.py": 1,  # ours; compared with what would be written
-    "report/figures/arm.py": 1, "report/formats/html.py": 4, "report/formats/pdf.py": 1, "report/formats/workbench.py": 1,
-    "report/notebook.py": 1, "report/gallery/server.py": 3, "report/gallery/listing.py": 4, "report/tables/formats.py": 1,
-    "published/thauv/acceptance.py": 1, "formats/fmi/unit.py": 2, "formats/fmi/write.py": 2, "formats/holoocean/write.py": 1,
-    "tank/openfoam/__init__.py": 1, "tank/openfoam/case.py": 2, "tank/processes.py": 2, "tank/solvers/openfoam.py": 1,
-    "tank/solvers/external.py": 1, "tank/jobs.py": 1, "tables/runs.py": 4, "tables/settings.py": 1, "workbench/tow.py": 1,
-    "workbench/vehicle.py": 1, "core/provenance.py": 1, "core/texts/__init__.py": 2, "core/wording.py": 1, "formats/xdyn/read.py": 1,
-    "motion/uncertainty/batches.py": 2, "report/notation.py": 1, "tank/job.py": 2, "tank/runners/local.py": 2,
-    "tank/tank_file.py": 1, "vehicle/parameter_file.py": 2, "vehicle/parameter_refusals.py": 2, "tank/openfoam/mesh_made.py": 4,
-}  # fmt: skip
+READER = "core/text/"  # the readers: they open regular files alone and bound bytes, depth and counts
 
 
 def called(node: ast.Call) -> str:
@@ -47,6 +36,12 @@ def called(node: ast.Call) -> str:
         owner = what.value.id if isinstance(what.value, ast.Name) else ""
         return f"{owner}.{what.attr}"
     return what.id if isinstance(what, ast.Name) else ""
+
+
+def writes(node: ast.Call) -> bool:
+    """Whether a file is opened to be written: its mode says so."""
+    modes = [a.value for a in node.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
+    return any(set(mode) & set("wax+") and len(mode) <= 3 for mode in modes)
 
 
 def foreign(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -62,9 +57,7 @@ def foreign(tree: ast.AST) -> Iterator[tuple[int, str]]:
         if not isinstance(node, ast.Call):
             continue
         name = called(node)
-        if (
-            name.rpartition(".")[2] in READS and name not in ("os.open", "webbrowser.open", "read_text")
-        ) or name in PARSES:  # bare, the bounded one
+        if (name.rpartition(".")[2] in READS and name not in NO_READS and not writes(node)) or name in PARSES:
             yield node.lineno, name
         elif (
             name in PATTERNS
@@ -80,8 +73,8 @@ def found(package: Path) -> dict[str, list[str]]:
     out: dict[str, list[str]] = {}
     for file in sorted(package.rglob("*.py")):
         name = file.relative_to(package).as_posix()
-        if not name.startswith(READERS):
-            text = file.read_text()
+        if not name.startswith(READER):
+            text = file.read_text(encoding="utf-8")
             calls = [f"{at}: {call}" for at, call in foreign(ast.parse(text))] if MAY_READ.search(text) else []
             if calls:
                 out[name] = calls
@@ -89,18 +82,46 @@ def found(package: Path) -> dict[str, list[str]]:
 
 
 def test_foreign_files_are_read_by_the_readers_alone() -> None:
-    calls = found(PACKAGE)
-    counted = Counter({name: len(of) for name, of in calls.items()})
-    more = {n: calls[n] for n, many in counted.items() if many > ELSEWHERE.get(n, 0)}
-    assert not more, "read it by core/text (read_text, read_toml, parse_json, read_record, read_cells, pattern)"
-    assert {n: counted[n] for n in ELSEWHERE} == ELSEWHERE, "an entry that lets more in than stands there"
+    assert found(PACKAGE) == {}, (
+        "core/text has stream_of, read_text, read_toml, parse_json, read_record, own_text, holds"
+    )
 
 
 @pytest.mark.parametrize(
     "line",
-    ["json.loads(text)", "Path(name).read_text()", "open(name)", "p.open()", "re.compile(text)", "yaml.load(text)"],
+    [
+        "json.loads(text)",
+        "Path(name).read_text()",
+        "open(name)",
+        "p.open()",
+        "re.compile(text)",
+        "yaml.load(text)",
+        "p.read_bytes()",
+        "np.loadtxt(p)",
+    ],
 )
 def test_a_reader_in_a_command_is_found(tmp_path: Path, line: str) -> None:
     (tmp_path / "cli").mkdir()
     (tmp_path / "cli" / "fit.py").write_text(f"import json\ndef command(text, name, p):\n    return {line}\n")
     assert list(found(tmp_path)) == ["cli/fit.py"]
+
+
+def test_a_reader_in_a_command_of_ours_is_found(tmp_path: Path) -> None:
+    copy = tmp_path / "cli" / "export.py"
+    copy.parent.mkdir()
+    copy.write_text(
+        (PACKAGE / "cli" / "export.py").read_text()
+        + "\n\ndef _more(text):\n    import json\n\n    return json.loads(text)\n"
+    )
+    assert [call.partition(": ")[2] for call in found(tmp_path)["cli/export.py"]] == ["json.loads"]
+
+
+def test_pipes_are_no_files(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for read in (stream_of, partial(whole_bytes, most=10), partial(leading_bytes, most=10)):
+        with pytest.raises((OSError, InputError), match="pipe"):
+            read(tmp_path / "pipe")
+    (tmp_path / "long").write_bytes(b"a" * 11)
+    with pytest.raises(InputError, match="at most 10"):
+        whole_bytes(tmp_path / "long", 10)
+    assert leading_bytes(tmp_path / "long", 10) == b"a" * 10

@@ -13,16 +13,15 @@ from scipy import special, stats
 from coeflab.core.types import Array
 from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
 from coeflab.fits.statistics.slope_mixture import (
-    ODD,
     PARTS,
     POWER,
-    SIDES,
+    REMAINDERS,
     SIZES,
     estimate_many,
-    mixture_quantiles,
     prepare,
 )
 from coeflab.fits.statistics.slopes import by_largest
+from coeflab.fits.statistics.student_mixture import mixture_quantiles
 
 SLOPE = -0.028
 NOISE = 1e-4
@@ -277,22 +276,24 @@ def test_shorter_sweeps_are_wider(clean: OriginSlope) -> None:
 @pytest.mark.parametrize("name", ["none", "series", "p1", "on.4"])
 def test_one_member_is_the_dense_restricted_likelihood(name: str) -> None:
     design = prepare(X)
-    members = [m for m in design.members if m.name == name and m.odd]
-    m = members[0]
-    got = estimate_many(replace(design, members=(m,)), Y, deletions=False)
+    m = next(m for m in design.members if (name, True) in m.kinds)
+    here = [i for i, kind in enumerate(m.kinds) if kind == (name, True)]
+    alone = np.full(m.log_prior.shape, -np.inf)
+    alone[:, here] = m.log_prior[:, here]
+    got = estimate_many(replace(design, members=(replace(m, log_prior=alone),)), Y, deletions=False)
     size = np.abs(Y - np.median(Y)).max()
     flat, sized = design.terms[:, :2], design.terms[:, 2:]
     log_weight, slopes, scales = [], [], []
-    for j in range(len(m.sizes)):
+    for j in here:
         remainder = np.linalg.inv(m.root[j].T @ m.root[j])
-        for k in range(m.log_prior.shape[1]):
+        for k in range(len(m.precision)):
             full = remainder + sized @ np.diag(1.0 / m.precision[k, 2:]) @ sized.T
             solved = np.linalg.solve(full, np.column_stack([flat, Y / size]))
             normal = flat.T @ solved[:, :2]
             b = np.linalg.solve(normal, flat.T @ solved[:, 2])
             squares = (Y / size - flat @ b) @ (solved[:, 2] - solved[:, :2] @ b)
             log = -0.5 * np.linalg.slogdet(full)[1] - 0.5 * np.linalg.slogdet(normal)[1] - 8.5 * np.log(squares)
-            log_weight.append(m.log_prior[j, k] + POWER * log)
+            log_weight.append(m.log_prior[k, j] + POWER * log)
             slopes.append(b[1])
             scales.append(np.sqrt(squares / 17.0 * np.linalg.inv(normal)[1, 1]))
     w = special.softmax(log_weight)
@@ -365,5 +366,5 @@ def test_a_part_that_may_not_be_there_is_not_there():
     line = estimate(x, y, without=PARTS)
     assert line.value == pytest.approx(np.polyfit(x, y, 1)[0], rel=0.02)
     assert estimate(x, y, without=("v|v|", "even")).value == pytest.approx(whole.value, abs=whole.u95)
-    assert [m.name for m in line.design.members if m.name in ODD or m.name in SIDES] == []
+    assert not {kind for m in line.design.members for kind in m.kinds} & REMAINDERS
     assert estimate(x, y, without=()).value == whole.value

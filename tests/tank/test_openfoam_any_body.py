@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -24,18 +23,11 @@ from coeflab.tank.towed_body import TowedBody, stl, towed
 from tests.tank.towed_bodies import X_FINS
 
 WATER = Conditions(density=998.2, speed=1.5, viscosity=1e-6)
-SECONDS = 20.0
 
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("snappyHexMesh") is None, reason="OpenFOAM is not installed"),
 ]
-
-
-def cpu() -> float:
-    """Seconds that the processes which this one has waited for took."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def named(name: str) -> Callable[[Path], TowedBody]:
@@ -88,12 +80,10 @@ def test_any_body_is_meshed_with_every_patch_whole(
     tank = Tank("t", "t", Path("b"), None, np.zeros(3), Scaling(1.0, "length"), WATER, ())  # type: ignore[arg-type]
     keys = MeshKeys(cells_per_length=length, cells_per_chord=chord, ahead=0.7, behind=0.7, beside=0.7)
     job = mesh_job(tank, body, Grid("medium", 1.0), half, {}, keys, tmp_path, "1912")
-    begun = cpu()
     for step in job.steps:
         with (job.folder / f"log.{step.name}").open("w") as log:
             done = subprocess.run(step.command, cwd=job.folder, stdout=log, stderr=log, timeout=300, check=False)
         assert done.returncode == 0, (job.folder / f"log.{step.name}").read_text()[-2000:]
-    assert cpu() - begun < 2.0 * SECONDS  # idle each takes SECONDS at most
     remarks, why = mesh_ended(job)
     assert why == ""
     found = mesh_made(job.folder)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import GLB_DEEPEST, GLB_NODES, JSON_BYTES
 from coeflab.core.machine import physical_memory, stage
+from coeflab.core.text.bounded import stream_of, whole_bytes
 from coeflab.core.text.json import parse_json
 from coeflab.core.types import Array
 
@@ -45,7 +46,7 @@ def glb_faces(path: Path) -> int:
         file holds, or with nodes that are no tree.
     """
     size = path.stat().st_size
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         head = stream.read(20)
         words = [int.from_bytes(head[k : k + 4], "little") for k in range(0, 20, 4)]
         if len(head) < 20 or head[:4] != b"glTF":
@@ -125,7 +126,7 @@ def require_corners(path: Path) -> None:
     InputError
         By file and line: a corner that is no whole number, that is zero, or whose vertex does not exist.
     """
-    lines = path.read_bytes().splitlines()
+    lines = whole_bytes(path, LARGEST_TEXT).splitlines()
     total = sum(line.split(maxsplit=1)[:1] == [b"v"] for line in lines)
     above = 0
     for number, line in enumerate(lines, 1):
@@ -165,7 +166,7 @@ def _text(path: Path) -> bytes:
             file=path,
             advice="Save the mesh as binary STL or PLY.",
         )
-    return path.read_bytes()
+    return whole_bytes(path, LARGEST_TEXT)
 
 
 def _is_text(head: bytes) -> bool:
@@ -175,7 +176,7 @@ def _is_text(head: bytes) -> bool:
 def stl_faces(path: Path) -> int:
     """Triangles of an STL, binary or text."""
     size = path.stat().st_size
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         head = stream.read(1024)
     claimed = int.from_bytes(head[80:84], "little") if len(head) >= 84 else 0
     if len(head) >= 84 and size == 84 + 50 * claimed:
@@ -221,7 +222,7 @@ def obj_faces(path: Path) -> int:
 def ply_faces(path: Path) -> int:
     """Faces of a PLY, by its header; the elements that it promises must fit into the file."""
     size = path.stat().st_size
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         head = stream.read(PLY_HEADER)
     begin, _, _ = head.partition(b"end_header")
     if not head.startswith(b"ply") or len(begin) == len(head):
@@ -253,7 +254,7 @@ def text_of(path: Path, faces: int) -> int:
     """Bytes of a mesh file that is text, whose faces have been counted; 0 of a binary one."""
     size, kind = path.stat().st_size, path.suffix.lower()
     if kind == ".ply":
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             head = stream.read(PLY_HEADER).partition(b"end_header")[0]
         return size if b"format ascii" in head else 0
     text = kind == ".obj" or (kind == ".stl" and size != 84 + 50 * faces)
@@ -281,7 +282,7 @@ def dae_faces(path: Path) -> int:
 
 def metres_of_dae(path: Path) -> float:
     """Metres of one unit of a COLLADA: ``<unit meter="0.001">``; 1 where it states none (COLLADA 1.4.1, asset)."""
-    found = UNIT_OF_DAE.search(path.read_bytes())
+    found = UNIT_OF_DAE.search(whole_bytes(path, LARGEST_TEXT))
     try:
         unit = float(found[1]) if found else 1.0
     except ValueError:
@@ -423,7 +424,7 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
         extra = {"tol_angular": STEP_ANGLE}
     metres = metres_of_dae(path) if kind == "dae" else 1.0
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             scene = trimesh.load_scene(stream, file_type=kind, process=False, **extra)
         found = _only(scene)
         vertices, faces = np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)

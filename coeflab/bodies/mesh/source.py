@@ -10,13 +10,14 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.mesh.file import load
+from coeflab.bodies.mesh.file import LARGEST_TEXT, load
 from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Frame
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.text.bounded import leading_bytes
 from coeflab.core.types import Array, locked
 from coeflab.core.units import factor
 
@@ -87,7 +88,7 @@ class MeshSource:
         """
         from scipy.spatial import cKDTree
 
-        data = self.file.read_bytes() if self.file.suffix.lower() == ".stl" else b""
+        data = leading_bytes(self.file, LARGEST_TEXT) if self.file.suffix.lower() == ".stl" else b""
         found = [(name.decode("utf-8", "replace"), VERTEX.findall(rest)) for name, rest in SOLID.findall(data)]
         names = tuple(dict.fromkeys(name for name, corners in found if corners))
         if len(names) < 2:

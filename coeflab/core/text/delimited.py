@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.csv_rows import plain
 from coeflab.core.units import Header, parse_header
 
@@ -94,7 +95,7 @@ def _lines(path: Path) -> Iterator[str]:
             raise InputError("a folder", "a CSV file", file=path)
         if not path.is_file():
             raise InputError("no such file", "a CSV file", file=path)
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             for number, raw in enumerate(iter(lambda: stream.readline(CSV_LINE), b""), start=1):
                 yield _decoded(raw, path, number)
     except OSError as why:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from coeflab.core.text.bounded import stream_of
+
 _KINDS = (
-    ("an SDF", re.compile(r"\s*<.*<sdf\b", re.DOTALL)),
-    ("a URDF", re.compile(r"\s*<.*<robot\b", re.DOTALL)),
+    ("an SDF", re.compile(r"\s*<(.*<)?sdf\b", re.DOTALL)),
+    ("a Stonefish scenario", re.compile(r"\s*<(.*<)?scenario\b", re.DOTALL)),
+    ("a URDF", re.compile(r"\s*<(.*<)?robot\b", re.DOTALL)),
     ("an xdyn YAML", re.compile(r"(?:.*\n)?rotations convention\s*:", re.DOTALL)),
     ("a MATLAB file", re.compile(r"(?:\s*%[^\n]*\n)*\s*function\b")),
 )
@@ -23,7 +26,7 @@ def model_kind(text: str) -> str:
 def model_kind_of(path: Path) -> str:
     """The same of a file; empty where it cannot be read."""
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             return model_kind(stream.read(_FIRST).decode("utf-8", "ignore"))
     except OSError:
         return ""

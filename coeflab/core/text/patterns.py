@@ -5,6 +5,7 @@ Ken Thompson (1968): Regular expression search algorithm. Communications of the 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
@@ -241,3 +242,8 @@ class _Reading:
         if max(int(low), most) > PATTERN_STATES:
             raise PatternProblem(f"a pattern of more than {PATTERN_STATES} steps")
         return int(low), most
+
+
+def one_of(escaped: Iterable[str]) -> re.Pattern[str]:
+    """A search for any of several texts, each escaped by `re.escape`: no pattern of anybody's is among them."""
+    return re.compile("|".join(escaped))

@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, HISTORY_ROWS
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.types import Array
 
 _BLOCK = 4 << 20
@@ -61,7 +62,7 @@ def opened(file: Path) -> Iterator[IO[bytes]]:
             with gzip.open(file, "rb") as unpacked:
                 yield unpacked  # type: ignore[misc]
         else:
-            with file.open("rb") as stream:
+            with stream_of(file) as stream:
                 yield stream
     except (OSError, EOFError, zlib.error) as why:
         raise InputError(str(getattr(why, "strerror", None) or why), "a readable file", file=file) from None
@@ -155,6 +156,17 @@ def _blocks(stream: IO[bytes], file: Path) -> Iterator[tuple[bytes, bool]]:
         yield block + rest, is_last
         if is_last:
             return
+
+
+def matrix_of(lines: Sequence[str], delimiter: str) -> Array:
+    """Rows of plain numbers.
+
+    Raises
+    ------
+    ValueError
+        Some line is none, or of another width.
+    """
+    return np.loadtxt(lines, delimiter=delimiter or None, comments=None, ndmin=2)
 
 
 def _numbers(text: bytes, width: int, file: Path, line: int) -> tuple[Array, list[int] | None]:

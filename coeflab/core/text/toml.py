@@ -17,6 +17,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES
+from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.json import NUL
 
 _NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
@@ -116,7 +117,7 @@ def read_text(path: Path, largest: int = TOML_BYTES) -> str:
             raise InputError("a device or pipe", "a file", file=path)
         if path.stat().st_size > largest:
             raise InputError(f"{path.stat().st_size} bytes", f"at most {largest} bytes", file=path)
-        content = path.read_bytes()
+        content = whole_bytes(path, largest)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None
     try:
@@ -167,6 +168,26 @@ def read_toml(path: Path) -> TomlFile:
         raise InputError("an integer of thousands of digits", expected, file=path, line=line) from None
 
 
+def own_toml(text: str) -> dict[str, Any]:
+    """What a text of the package itself holds."""
+    return tomllib.loads(text)
+
+
+def typed_value(text: str) -> Any:
+    """What a person typed for a key: a value of TOML, else the very text.
+
+    Raises
+    ------
+    InputError
+        A text that would cost time and memory to parse.
+    """
+    _within_bounds(text, None)
+    try:
+        return tomllib.loads(f"x = {text}")["x"]
+    except (ValueError, RecursionError):
+        return text
+
+
 def _placeholder(text: str, why: str) -> tuple[str, int] | None:
     """A bare word in capitals on the line that the parser names, such as NEWTON in ``curve = [[0, 0], [RPM, NEWTON]]``."""
     at = _AT_LINE.search(why)
@@ -179,7 +200,7 @@ def _placeholder(text: str, why: str) -> tuple[str, int] | None:
     return (" and ".join(words), line) if words else None
 
 
-def _within_bounds(text: str, path: Path) -> None:
+def _within_bounds(text: str, path: Path | None) -> None:
     """Refuse what would cost time and memory to parse."""
     match = _LONG_KEY.search(text)
     if match:

@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 from coeflab.core.errors import PluginError
 from coeflab.core.finding import Finding
+from coeflab.core.text.bounded import own_text
+from coeflab.core.text.toml import own_toml
 from coeflab.core.wording import listed
 
 PARTS = ("statement", "rule", "advice")
@@ -31,12 +33,10 @@ class Wording(NamedTuple):
 @cache
 def templates(subject: str) -> dict[str, dict[str, Any]]:
     """The templates of a subject, by code without the subject."""
-    import tomllib
-
     file = files(__name__).joinpath(f"{subject}.toml")
     if not file.is_file():
         raise PluginError(f"no words for findings of {subject!r}")
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    return own_toml(own_text(file))
 
 
 class _Words(Formatter):

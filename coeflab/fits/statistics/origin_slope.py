@@ -51,8 +51,6 @@ class OriginSlope:
         Rows that carry the value: neither repeated nor left out.
     with_all : float
         Slope with every row, wrong or not.
-    shares : dict
-        Parts of the secant to the largest |x|: linear, v|v|, cubic, smooth remainder; they add up to one.
     with_all_u95 : float
         Of ``with_all`` where rows are left out, else NaN.
     """
@@ -71,11 +69,15 @@ class OriginSlope:
     without: Array
     used: NDArray[np.bool_]
     with_all: float
-    shares: dict[str, float]
     design: Design | None
     y: Array
     weights: Array
     with_all_u95: float = float("nan")
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Parts of the secant to the largest |x|: linear, v|v|, cubic, smooth remainder; they add up to one; empty without a value."""
+        return {} if self.design is None else _shares(self.design, self.y, self.weights)
 
     @property
     def u95_with_all(self) -> float:
@@ -160,7 +162,7 @@ def _estimate(
             nan, reason = float("nan"), f"{len(np.unique(x[kept]))} different settings, at least 3 are needed"
             return OriginSlope(
                 nan, nan, nan, nan, nan, Status.TOO_FEW, reason, notes, nan, nan, wrong, without, used, nan,
-                {}, None, y[kept], np.zeros(0),
+                None, y[kept], np.zeros(0),
             )  # fmt: skip
         design = prepare(
             x[kept], None if variance is None else variance[kept], symmetric=symmetric,
@@ -194,8 +196,7 @@ def _estimate(
     return OriginSlope(
         value, lower, upper, u95, widen * float(many.sd[0]), status, reason, notes,
         float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
-        _shares(design, y[kept], many.weights[0]), design, y[kept], many.weights[0],
-        all_u95,
+        design, y[kept], many.weights[0], all_u95,
     )  # fmt: skip
 
 

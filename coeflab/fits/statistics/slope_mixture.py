@@ -18,18 +18,19 @@ processes, kinks, onsets, saturation, even parts) and the families of ``tests/co
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
+from functools import lru_cache
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
-from coeflab.core.types import Array, remembered
+from coeflab.core.types import Array, locked, remembered
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.many_rows import Strips
+from coeflab.fits.statistics.prior_grid import Rotations, rotated
+from coeflab.fits.statistics.student_mixture import mixture_quantiles
 
 # Sizes in units of the noise; pairs and products with them are prior odds.
 NOTHING = 0.1
@@ -55,28 +56,49 @@ ROUNDING, WEIGHTLESS = 3e-8, 1e-10
 PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, MOST_LIKELY = 0.8, 16, 2.0, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
-# Members kept for the quantiles of a mixture, steps of bisection, and where its distribution is tabulated.
-KEPT = 256
-HALVINGS = 22
-TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
+REMAINDERS = {(name, True) for name in ODD} | {(name, False) for name in SIDES}
+# Numbers in one array of a batch: larger ones leave the processor's cache.
+AT_ONCE = 30_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Member:
-    """One remainder, all its sizes (j) by all sizes of the polynomial terms (k); p columns, n rows."""
+class Members:
+    """Remainders of one grid of sizes of the polynomial terms: j remainders with their size by k combinations; p columns, n rows.
 
-    name: str
-    odd: bool
+    Attributes
+    ----------
+    kinds : tuple of (str, bool)
+        Name of each remainder, and whether it is odd.
+    sizes : (j,) array
+        Of the remainders.
+    root : (j, n, n) array
+        Inverse Cholesky factor of noise and remainder.
+    base : (j, n, min(n, p)) array
+        Orthonormal columns that span the whitened terms.
+    turned : (p, n, j) array
+        ``base`` times ``root``, zeros where n < p.
+    beside : (n, j) array
+        Squares of what ``base`` does not span of each column of ``root``.
+    weightless : (n, j) array
+        Leverage that is rounding.
+    rotations : Rotations
+        Terms in `Design.order`.
+    precision : (k, p) array
+        Of the polynomial terms, in their own order.
+    log_prior, log_det : (k, j) array
+    """
+
+    kinds: tuple[tuple[str, bool], ...]
     sizes: Array
-    root: Array  # (j, n, n) inverse Cholesky factor of noise + remainder
-    columns: Array  # (j, p, n) whitened columns
-    inverse: Array  # (j, k, p, p)
-    precision: Array  # (k, p) of the polynomial terms
-    log_prior: Array  # (j, k)
-    log_det: Array  # (j, k)
-    leverage: Array  # (j, k, n) diagonal of the residual projection
-    slope_by_row: Array  # (j, k, n)
-    checkable: Array  # (j, k, n)
+    root: Array
+    base: Array
+    turned: Array
+    beside: Array
+    weightless: Array
+    rotations: Rotations
+    precision: Array
+    log_prior: Array
+    log_det: Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,6 +115,11 @@ class Design:
         Noise variance of each row, relative.
     flat : int
         Columns without a prior.
+    terms : (n, p) array
+        1, t, t^2 where there is an even part, t|t|, t^3.
+    order : tuple of int
+        Of the terms in the factorisations, the slope last.
+    members : tuple of Members
     strips : Strips or None
         Of what the rows are means.
     """
@@ -103,7 +130,8 @@ class Design:
     flat: int
     settings: Index
     terms: Array
-    members: tuple[_Member, ...]
+    order: tuple[int, ...]
+    members: tuple[Members, ...]
     strips: Strips | None = None
 
 
@@ -145,9 +173,11 @@ def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
         return np.asarray(sides * ((0.5 * WEIGHTS * left) @ right.T))
     if name in ("series", "powers"):
         sign, first, step = (sides, 2, 1) if name == "powers" else (1.0, 3, 2 if odd else 1)
-        terms = {k: DECAY**k for k in range(first, ORDERS, step)}
-        total = sum(w * (np.abs(u) if name == "powers" else u) ** k for k, w in terms.items())
-        return np.asarray(sign * total / sum(terms.values()))
+        size = DECAY * (np.abs(u) if name == "powers" else u)
+        power, by, total = size**first, size**step, np.zeros(size.shape)
+        for _ in range(first, ORDERS, step):
+            total, power = total + power, power * by
+        return np.asarray(sign * total / sum(DECAY**k for k in range(first, ORDERS, step)))
     p, onset = (int(name[1:]), 0.0) if name[0] == "p" else (0, float(name[2:]))
     u, v = (np.maximum(np.abs(t) - onset, 0.0) / (1.0 - onset) for t in (a[:, None], b[None, :]))
     m, k = np.minimum(u, v), 2 * p + 1
@@ -159,17 +189,31 @@ def _terms(t: Array, even: bool) -> Array:
     return np.stack([np.ones(len(t)), t, *([t * t] if even else []), t * np.abs(t), t**3], 1)
 
 
-def _log_prior(remainder: Array | None, curved: Array, odds: float) -> Array:
-    """(j, k): the decade of the largest size is uniform, "nothing" apart; within it v|v| and v^3 are most often alike."""
-    sizes = np.broadcast_to(np.log10(curved), (1 if remainder is None else len(remainder), *curved.shape))
-    if remainder is not None:
-        sizes = np.concatenate([sizes, np.broadcast_to(np.log10(remainder)[:, None, None], (*sizes.shape[:2], 1))], 2)
-    decade = np.clip(np.floor(sizes.max(2) + 0.01), -1.0, 5.0)
-    weight = np.where(curved[:, 0] > NOTHING, QUADRATIC_ODDS, 1.0) * np.ones(decade.shape)
-    weight[:, (curved[:, 0] > NOTHING) & (curved[:, 0] == curved[:, 1])] *= ALIKE
-    for d in np.unique(decade):
-        weight[decade == d] *= (NOTHING_CURVED if d < 0.0 else 1.0) / weight[decade == d].sum()
-    return np.asarray(np.log(odds * weight))
+@lru_cache(64)
+def _log_prior(
+    kinds: tuple[tuple[str, float, float], ...], nuisance: tuple[tuple[float, float], ...], curved: tuple[tuple[float, ...], ...]
+) -> Array:  # fmt: skip
+    """(k, j): the decade of the largest size is uniform, "nothing" apart; within it v|v| and v^3 are most often alike.
+
+    ``kinds`` are name, size and odds of each remainder.
+    """
+    pairs = np.array(list(product(*curved)))
+    odds = np.log([w / sum(w for _, w in nuisance) for _, w in nuisance])
+    out = []
+    for name, own in groupby(kinds, key=lambda kind: kind[0]):
+        some = list(own)
+        sizes = np.broadcast_to(np.log10(pairs), (len(some), *pairs.shape))
+        if name != "none":
+            also = np.log10([size for _, size, _ in some])[:, None, None]
+            sizes = np.concatenate([sizes, np.broadcast_to(also, (*sizes.shape[:2], 1))], 2)
+        decade = np.clip(np.floor(sizes.max(2) + 0.01), -1.0, 5.0)
+        weight = np.where(pairs[:, 0] > NOTHING, QUADRATIC_ODDS, 1.0) * np.ones(decade.shape)
+        weight[:, (pairs[:, 0] > NOTHING) & (pairs[:, 0] == pairs[:, 1])] *= ALIKE
+        for d in np.unique(decade):
+            weight[decade == d] *= (NOTHING_CURVED if d < 0.0 else 1.0) / weight[decade == d].sum()
+        log = np.log(some[0][2] * weight)
+        out.append((log[:, None] + odds[:, None]).reshape(len(some), -1))
+    return locked(np.concatenate(out).T)
 
 
 def _covariance(name: str, odd: bool, to: Array | None, t: Array, strips: Strips | None) -> Array:
@@ -242,48 +286,40 @@ def prepare(
     even = not symmetric and not one_sided and not odd and "even" not in without
     terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
     p = terms.shape[1]
-    members = []
     specifications = _specifications(t, even, labels, variance is not None, strips)
     if "remainder" in without:
         specifications = [s for s in specifications if s[0] not in ODD and s[0] not in SIDES]
     total = sum(s[4] for s in specifications)
-    for name, is_odd, sizes, kernel, odds in specifications:
-        polynomial = SIZES if name == "none" else COARSE
-        nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
-        curved = [(NOTHING,) if part in without else polynomial for part in ("v|v|", "cubic")]
-        grid = np.array(list(product(range(len(nuisance)), *curved)))
-        first = np.array(nuisance)[grid[:, 0].astype(int)]
-        precision = np.zeros((len(grid), p))
-        if even or one_sided or odd:
-            precision[:, 2 if even else 0] = first[:, 0] ** -2.0
-        precision[:, -2:] = grid[:, 1:] ** -2.0
-        log_prior = _log_prior(None if name == "none" else sizes, grid[:, 1:], odds / total)
-        log_prior = log_prior + np.log(first[:, 1] / sum(w for _, w in nuisance))
-        factor = np.linalg.cholesky(np.diag(ratios) + sizes[:, None, None] ** 2 * kernel)
+    nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
+    order = (0, *range(2, p), 1)
+    members = []
+    for alone in (True, False):
+        some = [s for s in specifications if (s[0] == "none") is alone]
+        if not some:
+            continue
+        kinds = tuple((s[0], float(size), s[4] / total) for s in some for size in s[2])
+        curved = tuple((NOTHING,) if w in without else SIZES if alone else COARSE for w in ("v|v|", "cubic"))
+        kernel = np.concatenate([s[2][:, None, None] ** 2 * s[3] for s in some])
+        factor = np.linalg.cholesky(np.diag(ratios) + kernel)
         root = np.linalg.solve(factor, np.broadcast_to(np.eye(n), factor.shape))
-        a = root @ terms
-        prior = precision[:, :, None] * np.eye(p)
-        normal = (np.swapaxes(a, 1, 2) @ a)[:, None] + prior
-        scales = 1.0 / np.sqrt(np.einsum("jkpp->jkp", normal))
-        both = scales[..., :, None] * scales[..., None, :]
-        inverse = both * np.linalg.inv(both * normal)
-        c = inverse @ (np.swapaxes(a, 1, 2) @ root)[:, None]
-        a4 = a[:, None]
-        c += inverse @ (np.swapaxes(a4, 2, 3) @ (root[:, None] - a4 @ c) - prior @ c)
-        left = root[:, None] - a4 @ c
-        leverage = (left * left).sum(2) + np.einsum("jkpn,kp->jkn", c * c, precision)
+        base, upper = np.linalg.qr(root @ terms[:, order])
+        triangle, turned = np.zeros((len(kinds), p, p)), np.zeros((p, n, len(kinds)))
+        spanned = np.swapaxes(base, 1, 2) @ root
+        triangle[:, : upper.shape[1]], turned[: upper.shape[1]] = upper, spanned.transpose(1, 2, 0)
+        priors = [(1 if even else 0, [size for size, _ in nuisance]), (p - 3, curved[0]), (p - 2, curved[1])]
+        rotations = rotated(triangle, priors)
+        precision = np.zeros((len(nuisance) * len(curved[0]) * len(curved[1]), p))
+        precision[:, [2 if even else 0, -2, -1]] = np.array(list(product(priors[0][1], *curved))) ** -2.0
         scale = np.where(precision > 0.0, -np.log(np.where(precision > 0.0, precision, 1.0)), 0.0).sum(1)
-        scale = scale - 2.0 * np.log(scales).sum(2)
-        log_det = (
-            2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(both * normal)[1]
-        )
+        log_det = 2.0 * np.log(np.einsum("jii->ji", factor)).sum(1) + scale[:, None]
         members.append(
-            _Member(
-                name, is_odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
-                log_det, leverage, c[:, :, 1], leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
+            Members(
+                tuple((s[0], s[1]) for s in some for _ in s[2]), np.concatenate([s[2] for s in some]), root, base, turned,
+                ((root - base @ spanned) ** 2).sum(1).T.copy(), WEIGHTLESS * (root * root).sum(1).T, rotations,
+                precision, _log_prior(kinds, nuisance, curved), log_det + rotations.log_det().reshape(log_det.shape),
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, tuple(members), strips)
+    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, order, tuple(members), strips)
 
 
 def _log_density(freedom: float) -> float:
@@ -291,38 +327,66 @@ def _log_density(freedom: float) -> float:
 
 
 def _evaluate(
-    m: _Member, start: Array, rest: Array, nu: float, floor: Array, least: Array, deletions: bool
-) -> tuple[list[Array], list[Array]]:
-    """Log weight, slope, its variance, noise variance (jk, b); the first three again without each row (j, b, n)."""
-    b = len(start)
-    whitened, across = np.swapaxes(m.root @ rest.T, 1, 2)[:, None], np.swapaxes(m.columns, 1, 2)[:, None]
-    precision = m.precision[:, None]
-    d = (whitened @ across - start * precision) @ m.inverse
-    left = whitened - d @ m.columns[:, None]
-    d += (left @ across - (start + d) * precision) @ m.inverse  # without this sizes of 1e5 leave six digits
-    left, terms = whitened - d @ m.columns[:, None], start + d
-    squares = (left * left).sum(-1) + (terms * terms * precision).sum(-1) + floor
-    mean, unit_variance = terms[..., 1], m.inverse[:, :, 1, 1]
-    likelihood = _log_density(nu) - 0.5 * m.log_det[..., None] - 0.5 * nu * np.log(squares)
-    weight, variance = m.log_prior[..., None] + POWER * likelihood, np.maximum(squares / nu, least)
-    main = [z.reshape(-1, b) for z in (weight, mean, variance * unit_variance[..., None], variance)]
+    m: Members, order: tuple[int, ...], start: Array, rest: Array, nu: float, floor: Array, least: Array, deletions: bool
+) -> tuple[list[Array], list[Array]]:  # fmt: skip
+    """Log weight, slope, its variance, noise variance (b, kj); the first three again without each row (b, n, j)."""
+    (k, j), (b, n), rotations = m.log_prior.shape, rest.shape, m.rotations
+    grid = (*(rotations.triangle[-1][0].shape[:-1]), j)
+
+    def flat(values: Array, many: int) -> Array:
+        return np.broadcast_to(values, (many, *grid)).reshape(many, k, j)
+
+    whitened = m.root @ rest.T
+    spanned = np.swapaxes(m.base, 1, 2) @ whitened
+    beside = whitened - m.base @ spanned
+    top = np.zeros((len(order), b, j))
+    top[: spanned.shape[1]] = spanned.transpose(1, 2, 0)
+    below = [-inverse * start[:, order[column]].reshape(b, 1, 1, 1, 1) for column, inverse in rotations.sizes]
+    last, own = rotations.turned(top, below)
+    end = rotations.triangle[-1][0]
+    squares = (beside * beside).sum(1).T[:, None] + floor[:, None, None] + flat(_sum([e * e for e in own]), b)
+    mean, unit_variance = flat(last / end, b) + start[:, 1, None, None], flat(end**-2.0, 1)
+    likelihood = _log_density(nu) - 0.5 * m.log_det - 0.5 * nu * np.log(squares)
+    weight, variance = m.log_prior + POWER * likelihood, np.maximum(squares / nu, least[:, None, None])
+    main = [z.reshape(b, -1) for z in (weight, mean, variance * unit_variance, variance)]
     if not deletions:
         return main, []
-    error = left @ m.root[:, None]
-    step = error / m.leverage[:, :, None]
-    after = np.maximum(squares[..., None] - error * step, floor[:, None])
-    likelihood = _log_density(nu - 1.0) - 0.5 * (m.log_det[..., None] + np.log(m.leverage))[:, :, None]
-    weight = m.log_prior[..., None, None] + POWER * (likelihood - 0.5 * (nu - 1.0) * np.log(after))
-    weight = np.where(m.checkable[:, :, None], weight, -np.inf)
-    slope = mean[..., None] - m.slope_by_row[:, :, None] * step
-    ratio = unit_variance[..., None] + m.slope_by_row**2 / m.leverage
-    variance = np.maximum(after / (nu - 1.0), least[:, None]) * ratio[:, :, None]
-    top = np.maximum(weight.max(1), -1e300)
-    w = np.exp(weight - top[:, None])
-    total = np.maximum(w.sum(1), 1e-300)
-    centre = (w * slope).sum(1) / total
-    spread = (w * (variance + (slope - centre[:, None]) ** 2)).sum(1) / total
-    return main, [top + np.log(total), centre, spread]
+    ahead = np.ascontiguousarray((np.swapaxes(m.root, 1, 2) @ beside).transpose(2, 1, 0))
+    prior = m.log_prior + POWER * (_log_density(nu - 1.0) - 0.5 * m.log_det)
+    found = []
+    some = max(1, AT_ONCE // (k * j * b))
+    for rows in (slice(i, i + some) for i in range(0, n, some)):
+        last, each = rotations.turned(m.turned[:, rows], [0.0] * len(own))
+        many = len(last)
+        leverage = m.beside[rows, None] + flat(_sum([e * e for e in each]), many)
+        error = _sum([z[:, None] * e for z, e in zip(own, each)])
+        error = ahead[:, rows, None] + error.reshape(b, many, k, j)
+        step = error / leverage
+        after = np.maximum(squares[:, None] - error * step, floor[:, None, None, None])
+        weight = prior - (0.5 * POWER) * np.log(leverage)
+        weight = np.where(leverage > m.weightless[rows, None], weight, -np.inf)
+        weight = weight - (0.5 * POWER * (nu - 1.0)) * np.log(after)
+        by_row = flat(last / end, many)
+        slope = mean[:, None] - by_row * step
+        variance = np.maximum(after / (nu - 1.0), least[:, None, None, None])
+        variance *= unit_variance + by_row * by_row / leverage
+        highest = np.maximum(weight.max(2), -1e300)
+        w = np.exp(weight - highest[:, :, None])
+        total = np.maximum(w.sum(2), 1e-300)
+        centre = (w * slope).sum(2) / total
+        slope -= centre[:, :, None]
+        slope *= slope
+        slope += variance
+        found.append([highest + np.log(total), centre, (w * slope).sum(2) / total])
+    return main, [np.concatenate(z, 1) for z in zip(*found)]
+
+
+def _sum(values: list[Array]) -> Array:
+    """The coarsest first."""
+    total = values[0]
+    for v in values[1:]:
+        total = total + v
+    return total
 
 
 def estimate_many(design: Design, y: Array, stated: float | None = None, *, deletions: bool = True) -> Slopes:
@@ -353,9 +417,9 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     least = np.zeros(b) if stated is None else stated / size**2
     deletions = deletions and n - design.flat >= 3
 
-    parts = [_evaluate(m, start, rest, nu, floor, least, deletions) for m in design.members]
+    parts = [_evaluate(m, design.order, start, rest, nu, floor, least, deletions) for m in design.members]
     main, gone = [p[0] for p in parts], [p[1] for p in parts]
-    weight, mean, variance, noise = (np.concatenate(z).T for z in zip(*main))
+    weight, mean, variance, noise = (np.concatenate(z, 1) for z in zip(*main))
     evidence = special.logsumexp(weight, axis=1)
     weights = special.softmax(weight, axis=1)
     noise, middle = np.sqrt((weights * noise).sum(1)), (weights * mean).sum(1)
@@ -363,15 +427,16 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     scale, freedom = np.sqrt(variance), np.full(mean.shape, float(nu))
     wrong, without = np.zeros((b, n)), np.full((b, n), np.nan)
     if deletions:
-        weight_i, mean_i, variance_i = (np.concatenate(z) for z in zip(*gone))
-        each = special.logsumexp(weight_i, axis=0)
+        weight_i, mean_i, variance_i = (np.concatenate(z, 2) for z in zip(*gone))
+        each = special.logsumexp(weight_i, axis=2)
         odds = np.concatenate(
             [(evidence + n * np.log1p(-WRONG))[:, None], each + POWER * np.log(0.5) + np.log(WRONG)], 1
         )  # a wrong reading lies anywhere within the range
         odds -= special.logsumexp(odds, axis=1, keepdims=True)
         wrong = np.exp(odds[:, 1:])
-        without = (np.exp(weight_i - each) * mean_i).sum(0) * (size / design.largest)[:, None]
-        flat = [z.transpose(1, 0, 2).reshape(b, -1) for z in (weight_i - each + odds[:, 1:], mean_i, variance_i)]
+        share = weight_i - each[:, :, None]
+        without = (np.exp(share) * mean_i).sum(2) * (size / design.largest)[:, None]
+        flat = [z.reshape(b, -1) for z in (share + odds[:, 1:, None], mean_i, variance_i)]
         weight = np.concatenate([weight - evidence[:, None] + odds[:, :1], flat[0]], 1)
         mean, scale = np.concatenate([mean, flat[1]], 1), np.concatenate([scale, np.sqrt(flat[2])], 1)
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
@@ -386,78 +451,41 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
     p, nu = design.terms.shape[1], len(t) - design.flat
     basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
-    ends = np.cumsum([m.log_prior.size for m in design.members])
-    known: dict[int, tuple[Array, Array]] = {}  # covariances of the remainders, alike for all sizes
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
+    shares = weights[best] / weights[best].sum()
     mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
-    for share, c in zip(weights[best] / weights[best].sum(), best):
-        m = design.members[i := int(np.searchsorted(ends, c, "right"))]
-        j, k = divmod(int(c - ends[i]) + m.log_prior.size, m.log_prior.shape[1])
-        root, columns, precision = m.root[j], m.columns[j].T, m.precision[k]
-        cross, own = np.zeros((len(basis), len(t))), np.zeros((len(basis), len(basis)))
-        if m.name in ODD or m.name in SIDES:
-            if i not in known:
-                known[i] = _covariance(m.name, m.odd, to, t, design.strips), _remainder(m.name, m.odd, to, to)
-            cross[1:], own[1:, 1:] = (m.sizes[j] ** 2 * z for z in known[i])
-        cross = cross @ root.T
-        b = np.zeros(p)
-        for _ in range(2):
-            b = b + m.inverse[j, k] @ (columns.T @ (root @ y - columns @ b) - precision * b)
-        left = root @ y - columns @ b
-        variance = (left @ left + precision @ b**2) / nu
+    first = 0
+    for m in design.members:
+        many = m.log_prior.shape[1]  # remainders and their sizes
+        here = (best >= first) & (best < first + m.log_prior.size)
+        (k, j), share = np.divmod(best[here] - first, many), shares[here]
+        first += m.log_prior.size
+        used, place = np.unique(j, return_inverse=True)
+        cross = np.zeros((len(used), len(basis), len(t)))
+        own = np.zeros((len(used), len(basis), len(basis)))
+        for name, odd in sorted({m.kinds[i] for i in used} & REMAINDERS):
+            of = np.array([m.kinds[i] == (name, odd) for i in used])
+            size = m.sizes[used[of]][:, None, None] ** 2
+            cross[of, 1:] = size * _covariance(name, odd, to, t, design.strips)
+            own[of, 1:, 1:] = size * _remainder(name, odd, to, to)
+        root = m.root[used]
+        cross, columns, z = cross @ np.swapaxes(root, 1, 2), root @ design.terms, root @ y
+        # Rows of the priors below the whitened terms: least squares without normal equations.
+        prior = np.sqrt(m.precision[k])
+        full = np.concatenate([columns[place], prior[:, :, None] * np.eye(p)], 1)
+        q, r = np.linalg.qr(full)
+        right = np.concatenate([z[place], np.zeros((len(k), p))], 1)[..., None]
+        b = np.linalg.solve(r, np.swapaxes(q, 1, 2) @ right)[..., 0]
+        left = z[place] - (columns[place] @ b[..., None])[..., 0]
+        variance = share * ((left * left).sum(1) + (m.precision[k] * b * b).sum(1)) / nu
         rest = basis - cross @ columns
-        centre = basis @ b + cross @ left
-        spread = variance * (rest @ m.inverse[j, k] @ rest.T + own - cross @ cross.T)
-        mean, terms = mean + share * centre, terms + share * b
-        second = second + share * (spread + np.outer(centre, centre))
+        centre = b @ basis.T + (cross[place] @ left[..., None])[..., 0]
+        half = np.linalg.solve(np.swapaxes(r, 1, 2), np.swapaxes(rest, 1, 2)[place]) * np.sqrt(variance)[:, None, None]
+        half = half.reshape(-1, len(basis))
+        of_size = np.bincount(place, variance, len(used))
+        known = np.swapaxes(cross, 1, 2) * np.sqrt(of_size)[:, None, None]
+        known = known.reshape(-1, len(basis))
+        second += half.T @ half - known.T @ known + np.einsum("j,jab->ab", of_size, own)
+        second += (centre * share[:, None]).T @ centre
+        mean, terms = mean + share @ centre, terms + share @ b
     return mean, second - np.outer(mean, mean), terms
-
-
-def mixture_quantiles(
-    log_weight: Array, mean: Array, scale: Array, freedom: Array, tail: Array
-) -> tuple[Array, Array, Array]:
-    """Of Student mixtures (b, c), by the tail beyond each end (b,).
-
-    Returns
-    -------
-    ends : (b, 3) array
-        Lower, median, upper.
-    half : (b,) array
-        median +- half has the probability 1 - 2 tail.
-    sd : (b,) array
-    """
-    keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
-    log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
-    w = special.softmax(log_weight, axis=1)
-    middle = (w * mean).sum(1)
-    sd = np.sqrt((w * (scale**2 + (mean - middle[:, None]) ** 2)).sum(1))
-    goal = np.stack([tail, np.full(len(tail), 0.5), 1.0 - tail], 1)
-    reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - tail) / 4.0) * sd
-    most = freedom.max()
-    tables = [special.stdtr(nu, TABLE * np.sqrt(nu / (1.0 - TABLE**2))) for nu in (most, most - 1.0)]
-    first = (freedom == most)[:, None]
-
-    def below(z: Array) -> Array:
-        u = (z[..., None] - mean[:, None]) / scale[:, None]
-        u /= np.sqrt(freedom[:, None] + u * u)
-        share = np.interp(u, TABLE, tables[0])
-        if not first.all():
-            share = np.where(first, share, np.interp(u, TABLE, tables[1]))
-        return np.asarray((w[:, None] * share).sum(2))
-
-    def bisected(short: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
-        for _ in range(HALVINGS):
-            z = 0.5 * (low + high)
-            right = short(z)
-            low, high = np.where(right, z, low), np.where(right, high, z)
-        return 0.5 * (low + high)
-
-    start = (np.repeat((middle + side * reach)[:, None], 3, 1) for side in (-1.0, 1.0))
-    ends = bisected(lambda z: below(z) < goal, *start)
-    value, sides = ends[:, 1:2], np.sort(np.abs(ends[:, ::2] - ends[:, 1:2]), 1)
-
-    def short_half(z: Array) -> NDArray[np.bool_]:
-        both = below(np.concatenate([value - z, value + z], 1))
-        return both[:, 1:] - both[:, :1] < 1.0 - 2.0 * tail[:, None]
-
-    return ends, bisected(short_half, sides[:, :1], sides[:, 1:])[:, 0], sd

@@ -154,10 +154,13 @@ def by_row(slope: OriginSlope, term: int) -> Array:
     if design is None:
         return np.zeros(0)
     out, start = np.zeros(len(design.x)), 0
+    place = design.order.index(term)
     for m in design.members:
-        own = weights[start : start + m.log_prior.size].reshape(m.log_prior.shape)
+        own = weights[start : start + m.log_prior.size].reshape(m.rotations.triangle[-1][0].shape)
         start += m.log_prior.size
-        out += np.einsum("jk,jkp,jpn,jnr->r", own, m.inverse[:, :, term], m.columns, m.root, optimize=True)
+        column = np.stack([(own * v).sum((0, 1, 2)) for v in m.rotations.inverse_column(place)], 1)
+        columns = m.root @ design.terms[:, design.order]
+        out += np.einsum("jp,jnp,jnr->r", column, columns, m.root, optimize=True)
     return out / (design.largest if term else 1.0)
 
 

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.text.json import parse_json
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier
 from coeflab.formats.export import unheld
@@ -235,7 +236,7 @@ def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
 
 def _read(files: Mapping[str, bytes]) -> Torpedo:
     (content,) = (raw for name, raw in files.items() if name.endswith(".json"))
-    dynamics = json.loads(content)["agents"][0]["dynamics"]
+    dynamics = parse_json(content.decode())["agents"][0]["dynamics"]
     given = {f.name: dynamics[f.name] for f in fields(Torpedo)}
     vectors = {k: np.array(given[k]) for k in ("r_bg", "r_bb")}
     return Torpedo(**{**given, **vectors})

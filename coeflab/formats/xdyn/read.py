@@ -321,6 +321,7 @@ citations = ("sname1950", "fossen2011", "xdyn")
 reads = "xdyn YAML"
 signs = "xdyn takes the added mass and both damping matrices positive."
 
+KEYS = re.compile(r"^[ \t-]*(dynamics|external forces|rotations convention)[ \t]*:", re.MULTILINE)
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Lwl")
 SPEED, CLOSE = 1.0, 1e-9
 
@@ -328,8 +329,7 @@ SPEED, CLOSE = 1.0, 1e-9
 def recognises(path: Path) -> bool:
     """Whether the file is YAML with a key of xdyn's bodies."""
     text = read_text(path, JSON_BYTES)
-    keys = r"^[ \t-]*(dynamics|external forces|rotations convention)[ \t]*:"
-    return text.lstrip()[:1] not in ("<", "{") and re.search(keys, text, re.MULTILINE) is not None
+    return text.lstrip()[:1] not in ("<", "{") and KEYS.search(text) is not None
 
 
 def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: ARG001 - the file states it

@@ -24,7 +24,10 @@ import numpy as np
 
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.files import write_atomically
+from coeflab.core.limits import JSON_BYTES
 from coeflab.core.machine import dask_client, end_with_parent, one_thread
+from coeflab.core.text.bounded import whole_bytes
+from coeflab.core.text.json import parse_json
 from coeflab.core.types import Array, brief
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import CONTROLS
@@ -228,16 +231,16 @@ class Store:
         if not path.is_file():
             return None, ""
         try:
-            digest, text, rest = path.read_text(encoding="utf-8").split("\n")
+            digest, text, rest = whole_bytes(path, JSON_BYTES).decode().split("\n")
             if rest or digest != _digest(text):
                 return None, "it is damaged"
-            content = json.loads(text)
+            content = parse_json(text, path)
             if content["key"] != self.key or content["batch"] != index:
                 return None, "it belongs to another run"
             values = [[math.nan if v is None else v for v in row] for row in content["values"]]
             found = np.array(values, dtype=np.float64)
             statuses, ended = tuple(tuple(row) for row in content["statuses"]), tuple(content["ended"])
-        except (OSError, ValueError, KeyError, TypeError):
+        except (InputError, ValueError, KeyError, TypeError):
             return None, "it is damaged"
         if found.shape != (members, figures) or len(statuses) != members or len(ended) != members:
             return None, "it belongs to another run"

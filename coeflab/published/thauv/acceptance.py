@@ -17,6 +17,7 @@ import numpy as np
 
 from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread
+from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array, brief
 from coeflab.motion.glider.glide import steady_glides
 from coeflab.motion.glider.glider import Glider, GliderPhase
@@ -187,8 +188,8 @@ def compared(gliders: dict[str, Flown]) -> tuple[ComparedTable, ...]:
 
 
 def _published(table: str) -> list[dict[str, str]]:
-    with (shipped("cfd_data") / "thauv" / "published.csv").open(encoding="utf-8", newline="") as lines:
-        return [row for row in csv.DictReader(lines) if row["table"] == table]
+    lines = own_text(shipped("cfd_data") / "thauv" / "published.csv").splitlines()
+    return [row for row in csv.DictReader(lines) if row["table"] == table]
 
 
 def _dive(glider: Glider, stage: str) -> GliderPhase:

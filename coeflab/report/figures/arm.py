@@ -21,6 +21,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh import solids as silhouette
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
 from coeflab.core.errors import InputError
+from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array, brief, locked
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.multibody import kane
@@ -518,7 +519,7 @@ def animation(motion: ArmMotion, title: str, said: str) -> bytes:
         "middle": np.round(middle, 3).tolist(), "size": round(float(np.linalg.norm(np.ptp(corners, axis=0))), 3),
     }  # fmt: skip
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
-    page = TEMPLATE.read_text(encoding="utf-8")
+    page = own_text(TEMPLATE)
     for name, value in (("TITLE", escape(title)), ("SAID", escape(said)), ("DATA", text)):
         page = page.replace(f"@@{name}@@", value)
     return page.encode()

@@ -24,6 +24,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from coeflab.core.table import ABSENT, coefficient, plus_minus, with_u95
+from coeflab.core.text.bounded import own_text
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
 from coeflab.report.figures.first_page import share_text
@@ -162,11 +163,11 @@ def render(document: Document) -> Mapping[str, bytes]:
         "shortened": shortened,
         "filename": filename,
     }
-    template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
-    style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
-    scripts = ["\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)]
+    template = environment.from_string(own_text(folder / "report.html.j2"))
+    style = "\n".join(own_text(folder / name) for name in STYLES)
+    scripts = ["\n" + "\n".join(own_text(folder / name) for name in SCRIPTS)]
     if has_scene(document):
-        scripts.insert(0, (folder / THREE).read_text(encoding="utf-8"))
+        scripts.insert(0, own_text(folder / THREE))
     digests = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
     with keeping(document.verbatim):
         page = template.render(document=document, style=style, scripts=scripts, digests=digests)

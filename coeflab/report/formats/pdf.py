@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
 from coeflab.core.table import Table, percent, plus_minus, says_one
+from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
@@ -83,7 +84,7 @@ def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: floa
     from matplotlib import get_data_path
 
     folder = files("coeflab.report.formats") / "_pdf"
-    template = b"\n".join((folder / f"{name}.typ").read_bytes() for name in TEMPLATE)
+    template = b"\n".join(own_bytes(folder / f"{name}.typ") for name in TEMPLATE)
     try:
         made, warnings = typst.compile_with_warnings(
             template,

@@ -13,6 +13,7 @@ from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 
 from coeflab.core.errors import InputError
+from coeflab.core.text.bounded import own_text
 from coeflab.report.bench import BenchData
 from coeflab.report.document import Document
 from coeflab.report.printable import visible
@@ -62,7 +63,7 @@ def render(document: Document) -> Mapping[str, bytes]:
 
 def source(name: str) -> str:
     """A file of the page."""
-    return (files("coeflab.report.formats") / "_workbench" / name).read_text(encoding="utf-8")
+    return own_text(files("coeflab.report.formats") / "_workbench" / name)
 
 
 def numbers() -> str:

@@ -5,7 +5,6 @@ Files below a folder by the key that stands in an address: nothing outside, noth
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -16,8 +15,10 @@ from pathlib import Path
 from threading import Lock
 from urllib.parse import quote, unquote_to_bytes
 
-from coeflab.core.errors import CoeflabError
+from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.table import percent, plus_minus
+from coeflab.core.text.bounded import stream_of
+from coeflab.core.text.json import parse_json
 from coeflab.core.types import brief
 from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
@@ -302,7 +303,7 @@ class Shelf:
         path = place_of(self.folder, key)
         if path is None or path.suffix.lower() != ".html":
             return ""
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             text = stream.read(HEAD).decode("utf-8", "replace")
         found = DRAWN.search(text)
         if found is None:
@@ -362,7 +363,7 @@ def _joined(entries: list[ReportEntry]) -> tuple[ReportEntry, ...]:
 
 def _report(path: Path, name: str) -> ReportEntry | None:
     """A report of coeflab; None for a page that is something else."""
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         head = stream.read(HEAD)
     if path.suffix.lower() == ".pdf":
         if not head.startswith(b"%PDF-"):
@@ -385,12 +386,12 @@ def _rows(page: str) -> tuple[Valued, ...]:
     """The rows of the answer that a page carries for its own download; none where they are not what a report writes."""
     found = ROWS.search(page)
     try:
-        rows = json.loads(found[1])["rows"] if found else []
+        rows = parse_json(found[1])["rows"] if found else []
         return tuple(
             Valued(_word(r["symbol"]), _size(r["value"]), _size(r["U95"]), _word(r["status"]), _word(r["from"]))
             for r in rows[:MOST_ROWS]
         )
-    except (ValueError, TypeError, KeyError, RecursionError):
+    except (InputError, ValueError, TypeError, KeyError):
         return ()
 
 
@@ -405,7 +406,7 @@ def _size(value: object) -> float | None:
 def _parameters(path: Path, name: str) -> ParameterEntry | None:
     """A parameter file; None for JSON that does not claim to be one."""
     if not path.name.endswith(PARAMETERS):
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             if b'"schema_version"' not in stream.read(SNIFFED):
                 return None
     try:

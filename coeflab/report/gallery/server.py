@@ -28,6 +28,7 @@ from urllib.parse import parse_qs, urlsplit
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
 from coeflab.core.files import typed
 from coeflab.core.table import Table
+from coeflab.core.text.bounded import own_text, stream_of
 from coeflab.report.gallery.listing import SERVED, Listing, ParameterEntry, Shelf, fault, place_of
 from coeflab.report.notation import cell_html, html, keeping, users_texts
 from coeflab.report.printable import shortened, visible
@@ -189,7 +190,7 @@ def _style() -> str:
     """The report's style and what the gallery adds."""
     report = files("coeflab.report.formats") / "_html"
     sheets = (report / "style.css", report / "symbols.css", files("coeflab.report") / "gallery" / "gallery.css")
-    return "\n" + "".join(sheet.read_text(encoding="utf-8") for sheet in sheets)
+    return "\n" + "".join(own_text(sheet) for sheet in sheets)
 
 
 @cache
@@ -198,8 +199,7 @@ def _templates() -> Any:
 
     folder = files("coeflab.report") / "gallery"
     texts: Mapping[str, str] = {
-        name: (folder / f"{name}.html.j2").read_text(encoding="utf-8")
-        for name in ("frame", "index", "comparison", "refusal")
+        name: own_text(folder / f"{name}.html.j2") for name in ("frame", "index", "comparison", "refusal")
     }
     made = Environment(
         loader=DictLoader(texts), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -406,7 +406,7 @@ class _Request(BaseHTTPRequestHandler):
             self._refuse(HTTPStatus.NOT_FOUND, "There is no such file here.")
             return
         try:
-            with path.open("rb") as stream:
+            with stream_of(path) as stream:
                 size = os.fstat(stream.fileno()).st_size
                 kind = path.suffix.lower()
                 self._head(HTTPStatus.OK, SERVED[kind], size, POLICIES[kind])

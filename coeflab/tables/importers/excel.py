@@ -21,8 +21,10 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_COLUMNS
 from coeflab.core.options import bounded, parse_options, text
+from coeflab.core.text.bounded import part_of, stream_of, whole_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
 from coeflab.tables.words.above import words_above
@@ -78,10 +80,10 @@ def _kind(path: Path) -> str:
     try:
         if not path.is_file():
             return ""
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             start = stream.read(1 << 16)
         if start.startswith(OLE):
-            with path.open("rb") as stream:
+            with stream_of(path) as stream:
                 whole = stream.read(SHEET_BYTES)
             return (
                 "locked" if _LOCKED in whole else "xls" if _BOOK in whole or "Book".encode("utf-16-le") in whole else ""
@@ -112,7 +114,7 @@ def _column(letters: bytes) -> int:
 def _pieces(packed: zipfile.ZipFile, name: str) -> Iterator[bytes]:
     """A part of a workbook, piece by piece, each with the end of the one before, cut at the last tag."""
     rest = b""
-    with packed.open(name) as stream:
+    with part_of(packed, name) as stream:
         while piece := stream.read(_CHUNK):
             whole = rest + piece
             end = whole.rfind(b"<") if len(whole) < 4 * _CHUNK else -1
@@ -160,7 +162,7 @@ def _checked(path: Path, kind: str) -> list[str]:
     found, cells, blank = "", 0, list[str]()
     try:
         if kind == "xls":
-            cells = _cells_of_xls(path.read_bytes())
+            cells = _cells_of_xls(whole_bytes(path, SHEET_BYTES))
         else:
             with zipfile.ZipFile(path) as packed:
                 found = _too_much(packed, packed.infolist())
@@ -281,7 +283,7 @@ def _require_whole_xml(packed: zipfile.ZipFile) -> None:
     """Refuse parts that are no whole XML: in an ods that is cut the reader looks for the end for ever."""
     for name in packed.namelist():
         if name.endswith((".xml", ".rels")):
-            with packed.open(name) as stream:
+            with part_of(packed, name) as stream:
                 expat.ParserCreate().ParseFile(stream)
 
 
@@ -291,7 +293,7 @@ def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
     if (said := sum(part.file_size for part in parts)) > left:
         return f"{said:,} bytes when unpacked"
     for part in parts:
-        with packed.open(part) as stream:
+        with part_of(packed, part) as stream:
             while piece := stream.read(_CHUNK):
                 left -= len(piece)
                 if left < 0:
@@ -437,9 +439,12 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
     return begin, read_head(above, width, PLAIN, numbers, options.header, options.units)
 
 
-def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path) -> tuple[list[int], list[str]]:
-    """Indices of the rows of data, and what is said of the others."""
+def _kept(
+    rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path
+) -> tuple[list[int], list[str], list[Title]]:
+    """Indices of the rows of data, what is said of the others, and the words among them."""
     kept: list[int] = []
+    titles: list[Title] = []
     remarks: list[str] = []
     numbers = numbered([[_text(v) for v in row] for row in rows[begin:] if _filled(row)], PLAIN)
     for i in range(begin, len(rows)):
@@ -456,7 +461,8 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
             )
             break
         elif 2 * sum(rows[i][k] != "" for k in numbers) < len(numbers):
-            said = shown(" ".join(t for t in map(_text, row) if t))
+            said = shown(words := " ".join(t for t in map(_text, row) if t))
+            titles.append(Title(len(kept), i + 1, words))
             remarks.append(f"row {i + 1}: a remark among the rows ({said}); left out")
         elif options.header > 0:
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
@@ -466,7 +472,7 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
                 f"words among the rows ({shown(' '.join(t for t in map(_text, row) if t))})", "rows of numbers under one header",
                 file=path, line=i + 1, advice="Say the row of the table's header by the option header.",
             )  # fmt: skip
-    return kept, remarks
+    return kept, remarks, titles
 
 
 def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Path) -> tuple[Array, list[str]]:
@@ -520,7 +526,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     name = _chosen(sheets, given, path)
     rows = sheets[name]
     begin, head = _body(rows, given, path)
-    kept, left = _kept(rows, begin, head, given, path)
+    kept, left, titles = _kept(rows, begin, head, given, path)
     lines = [i + 1 for i in kept]
     met = [Cells() for _ in rows[0]]
     values, texts = [], {}
@@ -540,7 +546,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         "header": f"row {head.line}" if head.line else "none",
         "units": head.units_stand.replace("line", "row"),
     }
-    return RawTable(
+    table = RawTable(
         path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *read[name][1], *remarks),
         stated=words_above(above, PLAIN),
     )  # fmt: skip
+    over = [Title(0, n, " ".join(filter(None, cells))) for n, cells in above]
+    return with_blocks(table, [*over, *titles], PLAIN)

@@ -19,12 +19,14 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.text.bounded import stream_of
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import FORCE_TABLE, decoded, files_of, head, kind_of, lines_of, one_run
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
+computed = True
 reads = "report files (.out) or a force report of Fluent"
 citations = ("Ansys Inc. (2024): Ansys Fluent User's Guide, Release 2024 R2: Report Files; Forces on Boundaries.",)
 
@@ -189,7 +191,7 @@ def _numbers(text: str, path: Path, line: int) -> tuple[float, ...]:
 def _tables(path: Path) -> tuple[list[_Table], str]:
     """Every table of a force report or of a transcript that holds some, and what shows that it was cut."""
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             raw = stream.read(JSON_BYTES + 1)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None

@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import factor
@@ -67,7 +68,7 @@ def recognises(path: Path) -> bool:
     """Whether the file is a list of runs: CSV with the columns file and motion, as far as its first 4 KiB say."""
     if not path.is_file():
         return False
-    with path.open("rb") as stream:
+    with stream_of(path) as stream:
         lines = stream.read(HEAD).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
     return {"file", "motion"} <= {c.strip() for c in head.lstrip("\ufeff").split(",")}

@@ -29,12 +29,14 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.text.bounded import stream_of
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of, one_run, su2_names
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
+computed = True
 reads = "history.csv or history.dat of SU2 with its .cfg"
 citations = (
     "Economon T. D. et al. (2016): SU2: an open-source suite for multiphysics simulation and design. AIAA Journal 54(3).",
@@ -275,7 +277,7 @@ def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], l
 
 def _read_config(path: Path) -> _Config:
     try:
-        with path.open("rb") as stream:
+        with stream_of(path) as stream:
             raw = stream.read(TOML_BYTES + 1)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None

@@ -10,6 +10,7 @@ import os
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from coeflab.core.text.bounded import own_text
 from coeflab.tank.jobs import Step
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def _environment() -> Environment:
 
     folder = files(__name__) / "templates"
     made = Environment(
-        loader=FunctionLoader(lambda name: (folder / name).read_text()),
+        loader=FunctionLoader(lambda name: own_text(folder / name)),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -23,6 +23,8 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all, write_atomically
+from coeflab.core.limits import FOAM_BYTES
+from coeflab.core.text.bounded import stream_of, whole_bytes
 from coeflab.core.types import Array
 from coeflab.tables.campaign import CUTS, PORT_STARBOARD, UP_DOWN
 from coeflab.tank.openfoam import rendered
@@ -305,7 +307,7 @@ def set_stop(folder: Path, at: str) -> None:
         system/controlDict is not the one that was written.
     """
     file = folder / "system/controlDict"
-    text = file.read_text()
+    text = whole_bytes(file, FOAM_BYTES).decode()
     changed, many = STOP_AT.subn(rf"\g<1>{at};", text)
     if many != 1:
         raise InputError(f"{many} entries stopAt", "one", file=file, advice="Remove the case; it is written anew.")
@@ -326,7 +328,7 @@ def written_times(folder: Path) -> list[float]:
 
 def _is_whole(field: Path) -> bool:
     """Whether a field was written to its end: the solver may have been killed within it."""
-    with suppress(FileNotFoundError), field.open("rb") as stream:
+    with suppress(FileNotFoundError), stream_of(field) as stream:
         stream.seek(max(0, field.stat().st_size - 200))
         return FOOT in stream.read()
     return False

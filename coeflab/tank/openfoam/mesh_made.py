@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.files import write_all
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.limits import FOAM_BYTES, MESH_BYTES
+from coeflab.core.text.bounded import leading_bytes, log_text
 from coeflab.core.text.records import read_record
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
@@ -119,10 +121,10 @@ def expected_cells(folder: Path) -> float:
 
 
 def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
-    checked = (folder / "log.checkMesh").read_text(errors="replace")
+    checked = log_text(folder / "log.checkMesh")
     surface, volume = _body_in_mesh(folder / "constant" / "polyMesh", list(planned["surface"]))
     asked = {patch: count for patch, count in planned["layers"].items() if planned["surface"][patch] > 0.0}
-    snapped = (folder / "log.snappyHexMesh").read_text(errors="replace")
+    snapped = log_text(folder / "log.snappyHexMesh")
     layers = dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked}
     for image, patch in planned.get("images", {}).items():  # made by mirroring, of which snappyHexMesh knows nothing
         layers |= {image: layers[patch]} if image in layers and patch in layers else {}
@@ -202,7 +204,7 @@ def _unusable(line: str) -> bool:
 
 def _body_in_mesh(folder: Path, patches: list[str]) -> tuple[dict[str, float], float]:
     """Surface of each patch, m^2, and the volume that all of them enclose with a cut through the origin, m^3."""
-    ranges = _ranges((folder / "boundary").read_text())
+    ranges = _ranges(leading_bytes(folder / "boundary", FOAM_BYTES).decode())
     points, (starts, corners) = _binary(folder / "points", 3)[0], _binary(folder / "faces", 0)
     surface, volume = {}, 0.0
     for patch in patches:
@@ -241,7 +243,7 @@ def _binary(path: Path, width: int) -> list[NDArray[Any]]:
     ValueError
         The file is not binary, or ends early.
     """
-    content = path.read_bytes()
+    content = leading_bytes(path, MESH_BYTES)
     arch = re.search(rb'arch\s+"LSB;label=(32|64);scalar=(32|64)"', content[:4096])
     if not arch or not re.search(rb"format\s+binary", content[:4096]):
         raise ValueError(f"{path.name} is not binary, least significant byte first")

@@ -15,6 +15,7 @@ from coeflab.core.declarations import Declaration, Pure, Within
 from coeflab.core.errors import CoeflabError, InputError, OutputError
 from coeflab.core.machine import cores as all_cores
 from coeflab.core.machine import physical_memory
+from coeflab.core.text.bounded import log_text
 from coeflab.tank.job import ONE_THREAD, REFUSED, disk_is_full
 from coeflab.tank.jobs import Job, JobState, progress
 
@@ -140,7 +141,7 @@ def _begun(job: Job, nice: int) -> subprocess.Popen[bytes]:
 
 def _said(job: Job) -> str:
     """The last that the process of a job said."""
-    lines = (job.folder / LOG).read_text(errors="replace").splitlines()
+    lines = log_text(job.folder / LOG).splitlines()
     return f"{job.name}: {lines[-1].removeprefix('error: ') if lines else 'it printed nothing'}"
 
 

@@ -16,6 +16,8 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.files import write_atomically
+from coeflab.core.limits import JSON_BYTES
+from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
@@ -229,7 +231,7 @@ def _lines(tank: Tank, path: Path) -> bytes:
         filled = position is None or any(text for row in cells.rows for i, text in enumerate(row) if i != position)
         if filled:
             there = set() if position is None else set(cells.texts(CONDITION))
-            content = path.read_bytes()
+            content = whole_bytes(path, JSON_BYTES)
             new = [name for name in names if name not in there] if position is not None else []
             blank = [[name if i == position else "" for i in range(len(cells.headers))] for name in new]
             ended = content if content.endswith(b"\n") or not new else content + b"\n"

@@ -17,6 +17,7 @@ import numpy as np
 from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Takes, one_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
+from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.foam import FoamCase
 from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
@@ -298,7 +299,7 @@ def _has_rows(folder: Path) -> bool:
 
 
 def _has_a_row(file: Path) -> bool:
-    with file.open("rb") as stream:
+    with stream_of(file) as stream:
         return any(line.endswith(b"\n") and not line.startswith(b"#") for line in stream)
 
 
