@@ -9,24 +9,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.mirror_planes import NAMES, Planes, forbidden, planes_of, planes_through
+from coeflab.bodies.mirror_planes import NAMES, forbidden, planes_of, planes_through
 from coeflab.bodies.orientation import require_orientation
-from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.types import brief
-from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.rigid_body import ideal_force
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.transforms import force_transfer, velocity_transfer
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.mirror_planes import Planes
+    from coeflab.bodies.outline import Outline
+    from coeflab.law.added_mass import AddedMass
 
 Forces = Callable[[NDArray[np.float64], dict[str, NDArray[np.float64]]], NDArray[np.float64]]
 

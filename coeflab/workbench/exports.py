@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
@@ -15,11 +16,14 @@ from coeflab.formats import (
     SimulatorExporter,
     SteeredExporter,
 )
-from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
+from coeflab.formats.export import Export, Kind, Lost, Refused, loss_of, lost_by_all
 from coeflab.formats.unspoken import found_in, lacking_tables, without_law
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.formats.export import PlannedExport
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 LONGEST = 255
 

@@ -35,6 +35,7 @@ RESOLVED, RAISED = 0.05, 2.0  # of the surface may be left thinner than panels t
 COMPILE_FROM = 5_000
 MOST_SHEETS, RATIO, INSIDE = 4_096, 4, 2.0 * np.pi
 SAME, NOISE = 1e-6, 2e-3
+FEW_CORNERS = 200
 NAMES = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot")
 
 
@@ -457,17 +458,26 @@ def _alike(shape: Shape, panelled: _Panelled, centre: Array, wall: Wall | None, 
     size = float(np.ptp(away, axis=0).max())
     tree = cKDTree(away)
     moments = mirrors(shape) if given is not None else (False, False, False)
+    few = away[:: max(1, len(away) // FEW_CORNERS)]
+
+    def pairs(g: Array) -> bool:
+        """Whether every corner's image is a corner; a few tell most that it is not."""
+        return all(
+            float(tree.query(some @ g.T, distance_upper_bound=2.0 * SAME * size)[0].max()) <= SAME * size
+            for some in (few, away)
+        )
+
     out = []
     for k in range(3):
         g = np.eye(3)
         g[k, k] = -1.0
         six, root = _six(g), np.sqrt(np.abs(np.diag(matrix)))
         small = np.abs(matrix - six.T @ matrix @ six) <= 2.0 * NOISE * np.outer(root, root)
-        if float(tree.query(away @ g.T)[0].max()) <= SAME * size or (moments[k] and np.all(small)):
+        if pairs(g) or (moments[k] and np.all(small)):
             out.append(g)
     for k in range(3):
         g = np.eye(3)[[k, (k + 2) % 3, (k + 1) % 3]][np.argsort([k, (k + 1) % 3, (k + 2) % 3])]
-        if float(tree.query(away @ g.T)[0].max()) <= SAME * size:
+        if pairs(g):
             out.append(g)
     if wall is not None:
         out = [g for g in out if np.allclose(g @ wall.normal, wall.normal)]
