@@ -37,9 +37,13 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for written, content in c.render(file).items():
             (Path(folder) / written).write_bytes(content)
-        (Path(folder) / "speed.c").write_text(MAIN.replace("NAME", name).replace("CALLS", f"{CALLS}L"), encoding="utf-8")
+        (Path(folder) / "speed.c").write_text(
+            MAIN.replace("NAME", name).replace("CALLS", f"{CALLS}L"), encoding="utf-8"
+        )
         subprocess.run(["gcc", "-std=c99", "-O2", f"{name}.c", "speed.c", "-o", "speed", "-lm"], cwd=folder, check=True)
-        print(f"{file.name}: {subprocess.run(['./speed'], cwd=folder, capture_output=True, text=True, check=True).stdout.strip()}")
+        print(
+            f"{file.name}: {subprocess.run(['./speed'], cwd=folder, capture_output=True, text=True, check=True).stdout.strip()}"
+        )
 
 
 if __name__ == "__main__":

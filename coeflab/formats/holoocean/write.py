@@ -203,7 +203,9 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
         if size > 0.0:  # damping of roll and pitch is a share of the critical one, which needs a righting moment
             rate = -rest.get(symbol, 0.0) - of.get(symbol, 0.0) * p.conditions.speed
             found[key] = max(0.0, float(rate / size))
-    unit = replace(unit, **{k: found[k] for k in ("zeta_roll", "zeta_pitch") if k in found})
+    unit = replace(
+        unit, zeta_roll=found.get("zeta_roll", unit.zeta_roll), zeta_pitch=found.get("zeta_pitch", unit.zeta_pitch)
+    )
     yaw = -rest.get("Nr", 0.0) - of.get("Nr", 0.0) * p.conditions.speed
     rates = (-rest.get("Xu", 0.0), -rest.get("Yv", 0.0), yaw)
     times = [float(m / rate) if rate > 0.0 else NEVER for m, rate in zip(unit.inert[[0, 1, 5]], rates, strict=True)]
