@@ -208,6 +208,8 @@ class Draft:
         missing = open_lines(lines)
         many = f"{len(missing)} open: replace each ? by its value. " if missing else ""
         show.sentence(f"{many}--accept takes the proposals shown. Nothing is written yet.")
+        if any(not offer.text for found in founds for _, offer in found.open):
+            show.sentence(FOLLOWS)
         if inertia := [one.key for one in missing if one.key.endswith("table.contains_inertia")]:
             inside = {**self.settings, **dict.fromkeys(inertia, Setting(True, ""))}
             asked = [q for f in understood_together(self.parts, self.said.columns, inside) for q in f.questions]
@@ -271,6 +273,10 @@ def described(part: Part, found: Understood, *, whole: bool = True) -> None:
 
 
 MOST, FEW = 12, 3
+FOLLOWS = (
+    "# columns named so need, in the same command: alpha or beta --set axes.alpha=+ (or -); p, q, r --set table.arm_point=... "
+    "--set table.contains_inertia=...; a coefficient --set coefficients.area=..., of a moment .length"
+)
 
 
 def print_list(title: str, texts: Sequence[str]) -> None:

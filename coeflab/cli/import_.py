@@ -27,6 +27,7 @@ OTHER_OUT = "Name another --out, or replace it with --force."
 
 
 def command(
+    ctx: typer.Context,
     path: str = typer.Argument(
         ...,
         metavar="PATH",
@@ -65,6 +66,9 @@ def command(
     state: Path = typer.Option(
         None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
     ),
+    words: Path = typer.Option(
+        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
+    ),
     accept: bool = typer.Option(
         False, "--accept", "--yes", help="Accept the proposals of the form, axes and signs too."
     ),
@@ -81,7 +85,9 @@ def command(
     from coeflab.tables.form import of_campaign
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.settings import assumed
+    from coeflab.tables.vocabulary import words_of
 
+    ctx.with_resource(words_of(words))
     file = typed(path)
     out = typed(out) if out is not None else _named_after(file)
     readable(file)
@@ -93,7 +99,9 @@ def command(
     if sys.stdin.isatty():
         draft.asked()
     else:
-        draft.unasked(_typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force), accept)
+        draft.unasked(
+            _typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept
+        )
     filled = draft.filled()
     made = contents(filled, of_campaign(draft.settings), file)
     tables = checked(made, filled)
@@ -125,18 +133,18 @@ def _named_after(file: Path) -> Path:
 
 def _typed_so_far(
     path: str, out: Path, map_: Sequence[str], set_: Sequence[str], mapping: Path | None, option: Sequence[str], as_: str,
-    name: Sequence[str], runs: Path | None, state: Path | None, force: bool,
+    name: Sequence[str], runs: Path | None, state: Path | None, force: bool, words: Path | None,
 ) -> list[str]:  # fmt: skip
     """The words of the command as they were typed, without what was left open."""
     from coeflab.tables.form import quoted
 
-    words = [quoted(path)]
-    for flag, said in (("--as", as_), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
-        words += [f"{flag} {quoted(str(said))}"] if said else []
-    words += [f"--name {quoted(text)}" for text in name]
+    typed = [quoted(path)]
+    for flag, said in (("--as", as_), ("--words", words), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
+        typed += [f"{flag} {quoted(str(said))}"] if said else []
+    typed += [f"--name {quoted(text)}" for text in name]
     for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
-        words += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]
-    return [*words, *["--force"] * force, f"--out {quoted(str(out))}"]
+        typed += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]
+    return [*typed, *["--force"] * force, f"--out {quoted(str(out))}"]
 
 
 def _written(out: Path, filled: Sequence[Filled], tables: Sequence[ForceTable]) -> None:

@@ -20,6 +20,7 @@ EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 
 def command(
+    ctx: typer.Context,
     table: str = typer.Argument(
         ...,
         metavar="PATH",
@@ -54,6 +55,9 @@ def command(
     option: list[str] = typer.Option(
         [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
     ),
+    words: Path = typer.Option(
+        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
+    ),
     rows: int = typer.Option(
         60, "--rows", metavar="COUNT", min=0, help="Most rows of a table that are shown; 0 shows all."
     ),
@@ -69,7 +73,9 @@ def command(
     """
     from coeflab.bodies.simplify.source import mesh_body, names_body
     from coeflab.cli.draft import of_runs
+    from coeflab.tables.vocabulary import words_of
 
+    ctx.with_resource(words_of(words))
     if not 0.0 < density < float("inf"):
         raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
     if names_body(table):
@@ -90,6 +96,7 @@ def command(
             *(("--name", n) for n in name),
             ("--runs", str(runs or "")),
             *(("--option", o) for o in option),
+            ("--words", str(words or "")),
         ]
         _raw(table, as_, every, json, [(flag, said) for flag, said in given if said])
         return

@@ -109,7 +109,11 @@ def _indices(a: ParameterFile, b: ParameterFile) -> list[Behaviour]:
         halves = [None if d is None or d.result is None else d.result.monte_carlo for d in (one, other)]
         combined = float(np.hypot(*halves)) if all(h is not None for h in halves) else None  # type: ignore[arg-type]
         why = "" if one and other else "mass or a slope is missing in one file"
-        out.append(_pair(name, "1", (one and one.value, other and other.value), why, combined))
+        out.append(
+            _pair(
+                name, "1", (None if one is None else one.value, None if other is None else other.value), why, combined
+            )
+        )
     return out
 
 

@@ -429,6 +429,8 @@ def _table(
     for c in components:
         errors = _numbers([r.errors.get(c) for r in rows])
         bare = [r.name for r, e in zip(rows, errors, strict=True) if c in r.means and not e > 0.0]
+        if bare and all(r.status is Convergence.FINAL for r in rows if c in r.means):
+            continue  # said of the runs
         if bare:
             more.append(f"No se_{c}: {named(bare)} without a history, or of zeros only, has no standard error.")
         else:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -11,19 +10,11 @@ from coeflab.core.declarations import Takes
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
+from coeflab.tables.vocabulary import folded, vocabulary
 
 WORDS = ("label", "point", "cells", "uncertain", "ignore")
 WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
 FORCES = (*COMPONENTS, *WIND)
-WIND_NAMES = {
-    word: name
-    for name, words in {
-        "drag": "drag cd fd widerstand trainee dragforce cdrag fdrag",
-        "lift": "lift cl fl auftrieb portance liftforce clift flift",
-        "side": "crossforce crossflowforce cc",
-    }.items()
-    for word in words.split()
-}
 ANGLES = ("alpha", "beta")
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
@@ -139,15 +130,9 @@ def share(unit: str) -> float | None:
     return 0.01 if m["percent"] else 10.0 ** int(m["power"])
 
 
-def folded(name: str) -> str:
-    """Letters and digits of a name, small, without accents."""
-    plain = unicodedata.normalize("NFKD", name.casefold())
-    return "".join(c for c in plain if c.isalnum())
-
-
 def unturned(name: str, said: ColumnMap) -> str:
     """A warning where a column whose name is that of lift or drag is called a force along a body axis; else empty."""
-    wind = WIND_NAMES.get(folded(name), "")
+    wind = vocabulary().flow.get(folded(name), "")
     if not wind or said.error or said.name not in ("X", "Y", "Z"):
         return ""
     exact = str(replace(said, name=wind, negative=False))

@@ -6,7 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
+LONGEST_LEGEND = 4000  # letters
 BLANKS = "\u00a0\u2007\u2009\u202f"  # no-break, figure, thin and narrow no-break space: marks between thousands
 _MINUS = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"), "-")
 _SWAPPED = str.maketrans(",.", ".,")
@@ -120,7 +121,7 @@ _NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1
 # Units of several words behind a name, as r_rad_s, U_m_per_s, rho_kg_m3 and Mz_N_m: no name ends so by chance.
 _WORDS_BEHIND = re.compile(
     r"(?P<name>.*[^_\s])_(?:(?P<over>rad(?:ians?)?|deg(?:rees?)?|rev|m|cm|mm|ft|in|km|kg|g|lbf?|slug|t)_(?:per_)?"
-    r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in))"
+    r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in)|(?P<one>deg(?:rees?)?|rad|[kM]?Nm|mps))"
 )
 _SEPARATORS = " _-:/"
 
@@ -149,6 +150,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
 def unit_in_words(text: str) -> tuple[str, str]:
     """Split ``r_rad_s`` and ``U_m_per_s`` into name and unit, ``rad/s``; the unit is empty where no such one stands."""
     m = _WORDS_BEHIND.fullmatch(text)
+    if m is not None and m["one"]:
+        return m["name"], "m/s" if m["one"] == "mps" else m["one"]
     if m is None or _NO_UNIT_BEHIND.fullmatch(f"{m['name']}_N"):
         return text, ""
     if m["force"]:
@@ -157,7 +160,7 @@ def unit_in_words(text: str) -> tuple[str, str]:
     return m["name"], f"{m['over']}/{under}"
 
 
-def _underscored(texts: Sequence[str]) -> list[tuple[str, str]]:
+def names_and_units(texts: Sequence[str]) -> list[tuple[str, str]]:
     """Split ``Fy_N`` where at least half of the names, and two of them, end so and one of these ends is no single letter.
 
     A unit of several words, as in ``r_rad_s``, is one wherever it stands.
@@ -304,6 +307,31 @@ def read_head(
     return _head(names, units, group, remarks)
 
 
+_EXPLAINS = re.compile(r"(?:^|[,;#%!]\s*)(?P<short>\w{1,8})\s+(?:-|=)\s+(?P<text>[^,;=]*[^\W\d][^,;=]*)")
+
+
+def explained(head: Head, lines: Sequence[str]) -> Head:
+    """The head with what a legend above it says of short names: ``P3: drift`` in degrees where a line has ``P3 - drift [degree]``.
+
+    Parameters
+    ----------
+    head : Head
+    lines : sequence of str
+        Over the rows of numbers.
+    """
+    if not head.line or any(head.units):
+        return head
+    said: dict[str, tuple[str, str]] = {}
+    for n, line in enumerate(lines, start=1):
+        if n != head.line and len(line) < LONGEST_LEGEND:
+            said |= {m["short"]: name_and_unit(m["text"].strip()) for m in _EXPLAINS.finditer(line)}
+    if not any(name in said for name in head.names):
+        return head
+    names = tuple(f"{name}: {said[name][0]}" if name in said else name for name in head.names)
+    units = tuple(said[name][1] if name in said else "" for name in head.names)
+    return replace(head, names=names, units=units, units_stand="in a legend above the names")
+
+
 def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:
     """Whether a row over the data is one of them without any number: nothing in all columns of numbers, and no units."""
     return bool(numbers) and all(cells[k] in _DASHES for k in numbers) and not is_unit_row(cells, numbers)
@@ -321,7 +349,7 @@ def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str
             split = [(n, u) if u else unit_in_words(n) for n, u in split]
             stand = "in the header"
         else:
-            split = _underscored(texts)
+            split = names_and_units(texts)
             stand = "after an underscore" if any(u for _, u in split) else stand
     found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
     remarks = [*before, *remarks]

@@ -17,8 +17,10 @@ import numpy as np
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
+from coeflab.law.symbols import COMPONENTS
+from coeflab.tables.collect import DOUBTFUL as UNCERTAIN
 from coeflab.tables.column_map import ROLES, read_column_map
-from coeflab.tables.conditions import BETWEEN, SPELT, UNIT_ASKED, NoConditionError, name_pattern
+from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import texts_of
@@ -127,7 +129,9 @@ def read_parts(
         return found
     given = dict(options)
     if BETWEEN in str(given.get("names", "")):
-        tables = read_groups(path, name, given, progress)
+        tables = joined_components(read_groups(path, name, given, progress))
+        if len(tables) == 1:
+            return (Part("", tables[0], name, given),), ()
         named = _called([_word_of(t.dialect["names"]) for t in tables])
         own = [{**given, "names": t.dialect["names"]} for t in tables]
         return tuple(Part(n, t, name, o) for n, t, o in zip(named, tables, own, strict=True)), ()
@@ -152,6 +156,68 @@ def read_parts(
         if not 0 < str(given.get("sheet", "")).count(",") < MOST:
             raise
         return _of_sheets(path, name, given, [s.strip() for s in str(given["sheet"]).split(",")], said=True)
+
+
+def joined_components(tables: Sequence[RawTable]) -> tuple[RawTable, ...]:
+    """Runs of the same conditions that hold different components, forces in one and moments in the other, as one table.
+
+    Parameters
+    ----------
+    tables : sequence of RawTable
+        Of collected runs.
+    """
+    out: list[RawTable] = []
+    for table in tables:
+        home = next((i for i, other in enumerate(out) if _complements(other, table)), None)
+        if home is None:
+            out.append(table)
+        else:
+            out[home] = _side_by_side(out[home], table)
+    return tuple(out)
+
+
+def _conditions(table: RawTable) -> tuple[list[str], list[tuple[float, ...]]]:
+    """The settings of a table of runs, and those of each row to six digits."""
+    own = [c for c in table.columns if c.means in SETTINGS]
+    rows = zip(*(c.values for c in own), strict=True) if own else ()
+    return [f"{c.means} [{c.unit}]" for c in own], [tuple(float(f"{x:.6g}") + 0.0 for x in row) for row in rows]
+
+
+def _measured(table: RawTable) -> dict[str, RawColumn]:
+    """Columns of numbers that differ between runs by what they hold: no setting, no count of iterations."""
+    beside = ("", *COMPONENTS, *(f"se_{c}" for c in COMPONENTS))
+    return {c.means or c.name: c for c in table.columns if not c.is_text and c.means in beside}
+
+
+def _complements(one: RawTable, other: RawTable) -> bool:
+    (names, rows), (theirs, others) = _conditions(one), _conditions(other)
+    return (
+        bool(names) and names == theirs and len(set(rows)) == len(rows) and sorted(rows) == sorted(others)
+        and _measured(one).keys().isdisjoint(_measured(other))
+    )  # fmt: skip
+
+
+def _side_by_side(one: RawTable, other: RawTable) -> RawTable:
+    """The columns of both, row by row of one condition; what either marks as uncertain is so."""
+    rows, others = _conditions(one)[1], _conditions(other)[1]
+    order = [others.index(row) for row in rows]
+
+    def marked(c: RawColumn) -> RawColumn:
+        if not (c.is_text and c.means == UNCERTAIN):
+            return c
+        theirs = other.column(c.name).texts
+        return replace(
+            c, texts=tuple("; ".join(filter(None, (t, theirs[i]))) for t, i in zip(c.texts, order, strict=True))
+        )
+
+    columns = [marked(c) for c in one.columns]
+    columns += [replace(c, values=c.values[order]) for c in _measured(other).values()]
+    labels = tuple(f"{a}, {other.row_labels[i]}" for a, i in zip(one.row_labels, order, strict=True))
+    return replace(
+        one, columns=tuple(columns), row_labels=labels, files=tuple(dict.fromkeys((*one.files, *other.files))),
+        dialect={**one.dialect, "names": BETWEEN.join(t.dialect["names"] for t in (one, other))}, stated={**other.stated, **one.stated},
+        remarks=(*one.remarks, *(r for r in other.remarks if r not in one.remarks)),
+    )  # fmt: skip
 
 
 def _of_sheets(

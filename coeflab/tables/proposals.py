@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,20 +18,21 @@ from coeflab.tables.column_map import (
     FORCES,
     ROLES,
     WIND,
-    WIND_NAMES,
     WORDS,
     ColumnMap,
-    folded,
     read_column_map,
     share,
 )
 from coeflab.tables.evidence import TURN
 from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
 
 OPEN = "?"
 UNKNOWN = "no known name"
+PURE = ("", "-", "1")
+MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
     {"°c", "c", "degc", "k", "hz", "khz", "pa", "kpa", "mpa", "bar", "mbar", "v", "mv", "a", "ma", "w", "kw"}
@@ -44,61 +45,13 @@ ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
 }  # fmt: skip
-_SAID = {
-    "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft kraftlangs kraftlaengs kraftx xkraft widerstandskraft forcelongitudinale effortlongitudinal fxtotal",
-    "Y": "fy forcey yforce swayforce sideforce lateralforce transverseforce querkraft seitenkraft kraftquer "
-    "krafty ykraft forcelaterale forcetransversale efforttransversal effortlateral fytotal",
-    "Z": "fz forcez zforce heaveforce verticalforce normalforce vertikalkraft hubkraft kraftvertikal krafthoch kraftz zkraft "
-    "forceverticale effortvertical fztotal",
-    "K": "mx momentx xmoment rollmoment rollingmoment krangungsmoment kraengungsmoment momentumlangsachse momentumlaengsachse "
-    "momentderoulis momentroulis",
-    "M": "my momenty ymoment pitchmoment pitchingmoment trimmoment nickmoment stampfmoment momentumquerachse "
-    "momentdetangage momenttangage",
-    "N": "mz momentz zmoment yawmoment yawmom yawingmoment giermoment momentumhochachse "
-    "momentumvertikalachse momentdelacet momentlacet",
-    "alpha": "alpha α aoa angleofattack attack attackangle pitchangle incidence anstellwinkel trimmwinkel nickwinkel "
-    "angledattaque angledincidence",
-    "beta": "beta β drift driftangle sideslip sideslipangle yawangle driftwinkel schiebewinkel gierwinkel schraglage abdrift "
-    "derive angledederive angledelacet",
-    "U": "speed velocity towingspeed carriagespeed towspeed freestreamvelocity uinf vinf umag vmag vitesse "
-    "geschwindigkeit geschw schleppgeschwindigkeit vmodell modellgeschwindigkeit vitessechariot vitessederemorquage",
-    "u": "surgevelocity surgespeed longitudinalvelocity",
-    "v": "swayvelocity swayspeed lateralvelocity transversevelocity",
-    "w": "heavevelocity heavespeed verticalvelocity",
-    "p": "rollrate omegax rollgeschwindigkeit",
-    "q": "pitchrate omegay nickgeschwindigkeit",
-    "r": "yawrate omegaz turnrate turningrate giergeschwindigkeit gierrate drehrate drehgeschwindigkeit "
-    "vitessedelacet tauxdelacet",
-    "R": "radius turningradius armradius radiusofturn armlength drehkreisradius bahnradius rayon rayondegiration",
-    "density": "rho density waterdensity dichte wasserdichte densite massevolumique",
-    "dr": "rudder rudderangle deltar ruder ruderwinkel seitenruder ruderlage barre angledebarre",
-    "ds": "sternplane sternplaneangle elevator elevatorangle deltas hoehenruder hohenruder tiefenruder",
-    "db": "bowplane bowplaneangle deltab",
-    "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
-    "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
-    "versuch versuchsnr versnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
-    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire remarque remarques date datum time zeit heure uhrzeit "
-    "iteration iterations residual residuals",
-}
-NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
-SYMBOLS = {"alpha": ("α",), "beta": ("β",), "U": ("V", "Vm", "VM", "v0", "V0"), "density": ("ρ",), "dr": ("δ", "δr")}
-COEFFICIENTS = {
-    **{f"c{c.casefold()}": c for c in COMPONENTS},
-    **dict(zip(("cmx", "cmy", "cmz"), MOMENTS, strict=True)),
-    **dict(zip(("cfx", "cfy", "cfz"), COMPONENTS, strict=False)),
-    **dict(zip(("cmroll", "cmpitch", "cmyaw"), MOMENTS, strict=True)),
-    **dict.fromkeys(("cd", "cdrag"), "drag"), **dict.fromkeys(("cl", "clift"), "lift"), "cc": "side",
-    "croll": "K", "cpitch": "M", "cyaw": "N", "cside": "Y", "cs": "Y",
-}  # fmt: skip
 TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
-UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
-         "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
 _PRIME = r"([XYZKMN])['\u2032\u2019]?"
 _THOUSAND = re.compile(
     rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
 )
 _BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may be a unit behind a name
-_MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
+_MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?|-op$")
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
@@ -219,7 +172,7 @@ def _idle(column: RawColumn) -> str:
 def allowed(unit: str, error: bool = False) -> str:
     """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
     words = " ".join(unit.split())
-    plain = UNITS.get(words.casefold(), words)
+    plain = vocabulary().units.get(words.casefold(), words)
     names = next((said for dimension, said in ALLOWED.items() if _fits(plain, dimension)), "")
     if error and names[:1] in COMPONENTS:
         names = ", ".join(f"se_{name}" for name in names.split(", "))
@@ -261,23 +214,28 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     own = column.name.strip()
     short = own.replace("′", "'").replace("’", "'")
     plain = short.removeprefix("se_").removesuffix("'")
-    if plain in OWN:
+    bare = folded(own)
+    if meanings := vocabulary().several.get(bare):
+        return _by_unit(meanings.split(), column.unit)
+    if plain in OWN and bare not in vocabulary().own:
         try:
             return str(read_column_map(short)), "its name", True
         except InputError:
             pass
-    bare = folded(own)
-    error = None if bare in NAMES else _ERROR.search(bare)  # Achse, Bremse
+    bare = _OF_ALL.sub("", bare) if not _knows(bare) else bare
+    error = None if bare in vocabulary().columns else _ERROR.search(bare)  # Achse, Bremse
     bare = _ERROR.sub("", bare) if error else bare
     prefix, prime = "se_" if error else "", ""
     if bare.endswith("prime") or short.endswith("'"):
         bare, prime = bare.removesuffix("prime"), "'"
-    if wind := WIND_NAMES.get(bare):
+    if wind := vocabulary().flow.get(bare):
         also = "; Cl of aircraft is also the rolling moment, K" if bare == "cl" else ""
         return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
-    name = NAMES.get(bare) or _with_symbol(own) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
+    words = vocabulary()
+    pure = "" if prime else words.coefficients.get(bare, "")
+    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure
     if not name:
         return "", UNKNOWN, False
     if error and name not in COMPONENTS:
@@ -285,11 +243,35 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     return f"{prefix}{name}{prime}", "its name", False
 
 
+_OF_ALL = re.compile(
+    r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$"
+)
+
+
+def _knows(bare: str) -> bool:
+    """Whether a folded name stands in the vocabulary as it is."""
+    words = vocabulary()
+    return any(bare in section for section in (words.columns, words.flow, words.coefficients))
+
+
+def _is_pure(name: str) -> bool:
+    """Whether a name is that of a coefficient."""
+    bare = folded(name)
+    return not {bare, _OF_ALL.sub("", bare)}.isdisjoint(vocabulary().coefficients)
+
+
+def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
+    """Of several meanings the first that the unit fits; nothing where it fits none or there is none."""
+    spelt = vocabulary().units.get(unit.casefold(), unit)
+    fits = [m for m in meanings if m not in WORDS and _fits(spelt, read_column_map(m).dimension)]
+    return (fits[0], "its name", False) if fits else ("", f"{' or '.join(meanings)} by its name", False)
+
+
 def _with_symbol(own: str) -> str:
     """Of a name with its symbol behind it, ``Driftwinkel β``, where both say the same."""
     word, _, symbol = own.rpartition(" ")
-    name = NAMES.get(folded(word), "")
-    same = {*SYMBOLS.get(name, ()), name} - {""}
+    name = vocabulary().columns.get(folded(word), "")
+    same = {*vocabulary().symbols.get(name, "").split(), name} - {""}
     return name if symbol.strip("()[], ") in same else ""
 
 
@@ -300,11 +282,13 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     counted = share(unit) is not None
     if said.primed:
         return Proposal(f"{name} [{unit if counted else '-'}]", why, certain)
-    unit = UNITS.get(unit.casefold(), unit)
+    unit = vocabulary().units.get(unit.casefold(), unit)
     moment = said.name in MOMENTS
     is_coefficient = said.name in FORCES and (
-        unit in ("-", "1") or counted or (not unit and folded(column.name) in COEFFICIENTS and not certain)
+        unit in ("-", "1") or counted or (not unit and _is_pure(column.name) and not certain)
     )
+    if is_coefficient and column.values.size and not np.any(np.nan_to_num(column.values)):
+        return Proposal("ignore", f"{why}; zeros throughout")
     if is_coefficient and by[0] == "prime":
         return Proposal(f"{name}' [{unit if counted else '-'}]", f"{why}; a prime, as said")
     if is_coefficient:
@@ -323,6 +307,10 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
         return Proposal(str(whole), by_both, certain)
     if not unit and said.dimension != "angle" and (m := _BEHIND.search(column.name)):
         return _unread(name, said, m[1].strip(), why)
+    if not np.any(np.nan_to_num(column.values)) and said.name not in ("U", "density", "R") and column.values.size:
+        return Proposal(
+            f"{name} [{'deg' if said.dimension == 'angle' else SI[said.dimension]}]", f"{why}; zeros throughout"
+        )
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     if said.dimension == "angle" and _whole_degrees(column.values):
@@ -345,7 +333,7 @@ def taken_as(one: Assigned) -> str:
         unit in ("", "-", "1")
         or one.said.pure
         or one.said.name in WORDS
-        or _fits(UNITS.get(unit.casefold(), unit), one.said.dimension)
+        or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
     ):
         return ""
     return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
@@ -370,8 +358,9 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}
+    pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
     for column in raw.columns:
-        one = by_said_area(proposed(column, stated), known or {})
+        one = by_said_area(_of_company(proposed(column, stated), column, pure), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
@@ -399,6 +388,35 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
     return tuple(out)
+
+
+def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
+    """A column that the coefficients beside it make another thing than its name: M a Mach number, N a count, CN a normal force.
+
+    Parameters
+    ----------
+    one : Proposal
+    column : RawColumn
+    pure : set of str
+        Folded names of the coefficients of the table.
+    """
+    known = column.values[np.isfinite(column.values)]
+    if "cd" in pure and one.text in (f"M [{OPEN}]", f"N [{OPEN}]") and known.size:
+        is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
+        if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
+            what = "a Mach number" if is_mach else "a count"
+            note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
+            return Proposal("ignore", note, note=note)
+    if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
+        body = "X" if folded(column.name) == "ca" else "Z"
+        sign = "-" if known.size and float(np.median(known)) > 0.0 and body == "X" else ""
+        unit = f"{sign}{body} [coefficient A={OPEN}]"
+        return replace(
+            proposed(replace(column, name=f"c{body}")),
+            text=unit,
+            why=f"its name beside {'CN' if body == 'X' else 'CA'}",
+        )
+    return one
 
 
 def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:

@@ -16,6 +16,7 @@ from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
 from coeflab.tables.column_map import ROLES, read_column_map
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
+from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
@@ -29,14 +30,6 @@ UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
-COMPUTED = (
-    "openfoam",
-    "starccm",
-    "fluent",
-    "cfx",
-    "su2",
-    "simscale",
-)  # importers of solvers, whose forces hold no inertia
 SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {
     1: ("FRD", "FLU"),
@@ -209,6 +202,10 @@ def _of_axes(
     for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
+        if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
+            why = "zeros throughout: any sign is right"
+            yield Question(f"axes.{name}", why, "", next(iter(ANGLE_SIGNS[name])), why, why, harmless=True)
+            continue
         text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []
         shown, short = "", ""
@@ -369,7 +366,7 @@ def _of_rotation(
     inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
         by_words = raw.stated.get("table.contains_inertia")
-        computed = raw.dialect.get("importer") in COMPUTED or _kind(raw, settings, words) == "cfd"
+        computed = _is_computed(raw) or _kind(raw, settings, words) == "cfd"
         yield Question(
             "table.contains_inertia", "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, "
             "false for a solver or where it was subtracted", "false (subtracted); true: with inertia.mass, .centre_of_gravity", "false" if computed else "",
@@ -423,14 +420,20 @@ def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
     """What the numbers are, as said or as words say it."""
     if "source.kind" in settings:
         return str(settings["source.kind"].value)
-    if raw.dialect.get("importer") in COMPUTED:
+    if _is_computed(raw):
         return "cfd"
     said = raw.stated.get("source.kind") or words.get("source.kind")
     return str(said.value) if said else ""
 
 
+def _is_computed(raw: RawTable) -> bool:
+    """Whether an importer of a solver read the table."""
+    name = raw.dialect.get("importer", "")
+    return bool(name) and IMPORTERS.load(name).computed
+
+
 def _of_source(raw: RawTable) -> Iterator[Question]:
-    kind = "cfd" if raw.dialect.get("importer") in COMPUTED else "unstated"
+    kind = "cfd" if _is_computed(raw) else "unstated"
     why = "files of a solver" if kind == "cfd" else "not stated"
     yield Question("source.kind", f"What the numbers are: {', '.join(TABLE_KINDS)}", "", kind, why, why, harmless=True)
     yield Question("source.citation", "Their report, test or person", "", raw.path.resolve().name, "the file's name", "the file's name",

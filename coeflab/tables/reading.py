@@ -23,6 +23,7 @@ from coeflab.tables.force_table import STUDIES
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
 from coeflab.tables.mapping import assigned, declared_mapping, mapped_table
 from coeflab.tables.runs import find_runs
+from coeflab.tables.transposed import upright
 
 if TYPE_CHECKING:
     from coeflab.core.text.delimited import Cells
@@ -152,7 +153,7 @@ def read_raw(
     given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
-            return importer.raw(path, given)
+            return upright(importer.raw(path, given))
         from coeflab.tables.collect import collect
 
         names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)

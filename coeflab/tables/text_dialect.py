@@ -24,6 +24,7 @@ from coeflab.tables.dialect import (
     Head,
     Marks,
     Row,
+    explained,
     is_unit_row,
     numbered,
     numeric,
@@ -105,6 +106,7 @@ class TextDialect:
     said: Mapping[str, str]
     remarks: tuple[str, ...] = ()
     stated: Mapping[str, Stated] = field(default_factory=dict)
+    above: tuple[str, ...] = ()  # lines over the head
 
 
 def _said_delimiter(delimiter: str) -> str:
@@ -377,7 +379,7 @@ def _head(
                 column=what,
                 file=path,
             )
-    head = read_head(above, width, marks, numbers, options.header, options.units)
+    head = explained(read_head(above, width, marks, numbers, options.header, options.units), lines[: start - 1])
     if head.line and is_comment(lines[head.line - 1].lstrip(), comments):
         remarks.append(f"line {head.line}: the last comment over the data is taken for the names of the columns")
     return head, remarks
@@ -445,9 +447,11 @@ def sniff(path: Path, options: Options) -> TextDialect:
         ),
         "line ends": ends,
     }
+    over = list(_above(lines[: rows[begin][0] - 1], head, delimiter, comments))
     return TextDialect(
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
-        said, tuple(remarks), words_above(_above(lines[: rows[begin][0] - 1], head, delimiter, comments), marks),
+        said, tuple(remarks), words_above(over, marks),
+        tuple(" ".join(filter(None, cells)) for _, cells in over),
     )  # fmt: skip
 
 

@@ -10,18 +10,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from coeflab.core.axes import Axes
-from coeflab.core.errors import InputError
-from coeflab.core.units import quantity
+from coeflab.core.errors import InputError, shown
+from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import FORCES, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
 from coeflab.tables.low_aspect import above_low_aspect
 from coeflab.tables.mapping import (
     NO_FORCE,
+    SETTINGS,
     Assigned,
     another_density,
     another_viscosity,
@@ -139,15 +140,11 @@ def understood(
             still.append((column, offer))
         else:
             mapping[column.name] = one
-    tentative = {c.name: read_column_map(o.text) if o.whole else ColumnMap("ignore") for c, o in still}
+    tentative = {c.name: _likely_map(o) for c, o in still}
     said_of = mapping | tentative
-    complaints: tuple[InputError, ...] = ()
-    try:
-        columns = assigned(raw, said_of, whole=False)
-    except InputError as why:
-        columns = tuple(_possible(raw, said_of))
-        unfinished = why.found == NO_FORCE and any(not offer.whole for _, offer in still)
-        complaints = () if unfinished else (why, *why.others)
+    columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
+    if not said and (bare := _no_table(raw, offers)):
+        complaints = (bare,)
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
@@ -170,10 +167,7 @@ def understood(
     )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)}
-    primes = any(
-        c.said.role == "force" and c.said.pure and not c.said.area and c.column.name in by_name for c in columns
-    )
+    primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -192,6 +186,51 @@ def understood(
     return Understood(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
+
+
+def _columns(
+    raw: RawTable, said_of: Mapping[str, ColumnMap], unfinished: bool
+) -> tuple[tuple[Assigned, ...], tuple[InputError, ...]]:
+    """The columns, or those that are possible with what is wrong; that no force is said yet is not, while some are open."""
+    try:
+        return assigned(raw, said_of, whole=False), ()
+    except InputError as why:
+        return tuple(_possible(raw, said_of)), () if why.found == NO_FORCE and unfinished else (why, *why.others)
+
+
+def _primes_by_name(
+    raw: RawTable, columns: Sequence[Assigned], said: Mapping[str, ColumnMap], unsized: Collection[str]
+) -> bool:
+    """Whether a force is a prime by its name alone, not one of a size that is still open."""
+    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)} - set(unsized)
+    forces = (c for c in columns if c.said.role == "force" and c.column.name in by_name)
+    return any(c.said.pure and not c.said.area for c in forces)
+
+
+def _likely_map(offer: Proposal) -> ColumnMap:
+    """What a column is as far as questions hang on it: a force in a unit, or by an area, that nobody has said shows signs all the same."""
+    if offer.whole:
+        return read_column_map(offer.text)
+    name, _, unit = offer.text.partition(" [")
+    if name.lstrip("-") not in FORCES or offer.unread:
+        return ColumnMap("ignore")
+    pure = unit.startswith("coefficient")  # a sign shows in any unit
+    return read_column_map(f"{name}' [-]" if pure else f"{name} [{SI[read_column_map(name).dimension]}]")
+
+
+def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
+    """The complaint about what cannot be a table of forces: no number in it, or nothing known of forces and settings."""
+    if not any(np.any(np.isfinite(c.values)) for c in raw.columns):
+        return InputError("no number", "forces over settings", file=raw.path)
+    roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
+    units = any("or ignore" in o.why for o in offers if not o.text)
+    if units or roles & {"force", "error", *SETTINGS} or any(o.why.startswith("uncertain") for o in offers):
+        return None
+    names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
+    return InputError(
+        f"no name or unit of a force, an angle, a speed or a rate: {names}", "forces over settings", file=raw.path,
+        advice='If it is one, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+    )  # fmt: skip
 
 
 def accepted_without_source(found: Understood, settings: Settings) -> tuple[str, ...]:

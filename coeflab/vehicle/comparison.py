@@ -390,9 +390,9 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     for symbol in stated:
         row = _row(symbol, ours, theirs, moved, same_datum)
         if row.difference is not None:
-            first = ours[symbol]
-            pairs = [shared_tables(first, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
-            shared = tuple(sorted({t for p in pairs for t in p})) if first.origin == "fit" else ()
+            mine = ours[symbol]
+            pairs = [shared_tables(mine, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
+            shared = tuple(sorted({t for p in pairs for t in p})) if mine.origin == "fit" else ()
             row = replace(
                 row, shared=shared, reason=row.reason or (f"both rest on {', '.join(shared)}" if shared else "")
             )

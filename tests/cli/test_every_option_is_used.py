@@ -6,8 +6,10 @@ import re
 from pathlib import Path
 from typing import Any
 
+import typer
+
 import coeflab
-from coeflab.cli import application
+from coeflab.cli import app
 
 ROOT = Path(str(coeflab.__file__)).parents[1]
 GENERATED = "commands.md"
@@ -16,7 +18,9 @@ GENERATED = "commands.md"
 def options(command: Any, names: tuple[str, ...] = ()) -> list[tuple[str, str]]:
     """Command and long option, of all commands."""
     found = [
-        (" ".join(names), max(p.opts, key=len)) for p in command.params if p.param_type_name == "option" and not p.hidden
+        (" ".join(names), max(p.opts, key=len))
+        for p in command.params
+        if p.param_type_name == "option" and not p.hidden
     ]
     for name, inner in getattr(command, "commands", {}).items():
         found += options(inner, (*names, name))
@@ -28,6 +32,6 @@ def test_every_option_is_on_a_page_or_in_a_test() -> None:
     texts += [p.read_text("utf-8") for folder in ("tests", "coeflab/cli/template") for p in (ROOT / folder).rglob("*.*")
               if p.suffix in (".py", ".txt", ".md") and p != Path(__file__)]  # fmt: skip
     used = set(re.findall(r"--[a-z][a-z0-9-]*", " ".join(texts)))
-    known = options(application())
+    known = options(typer.main.get_command(app))
     assert len(known) > 100
     assert [f"{command} {option}" for command, option in known if option not in used | {"--help"}] == []

@@ -22,6 +22,8 @@ class Importer(Plugin, Protocol):
     ----------
     reads : str
         What it reads, as lists of formats name it.
+    computed : bool
+        Of a solver: its forces hold no inertia of the body.
     fit : str
         The fit that its tables are for.
     raw : callable or None
@@ -34,6 +36,7 @@ class Importer(Plugin, Protocol):
     """
 
     reads: str = ""
+    computed: bool = False
     fit: str = "slope_at_origin"
     raw: Callable[[Path, Mapping[str, Any]], RawTable] | None = None
     run: Callable[[Path, Mapping[str, Any]], Run] | None = None

@@ -20,6 +20,7 @@ from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, re
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
 
 summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
+computed = True
 reads = "monitor CSV of CFX (cfx5mondata)"
 citations = ("Ansys Inc. (2024): Ansys CFX-Solver Manager User's Guide, Release 2024 R2: cfx5mondata.",)
 

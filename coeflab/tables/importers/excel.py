@@ -24,6 +24,7 @@ from coeflab.core.options import bounded, parse_options, text
 from coeflab.core.text.bounded import part_of, stream_of, whole_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
 from coeflab.tables.words.above import words_above
@@ -438,9 +439,12 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
     return begin, read_head(above, width, PLAIN, numbers, options.header, options.units)
 
 
-def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path) -> tuple[list[int], list[str]]:
-    """Indices of the rows of data, and what is said of the others."""
+def _kept(
+    rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path
+) -> tuple[list[int], list[str], list[Title]]:
+    """Indices of the rows of data, what is said of the others, and the words among them."""
     kept: list[int] = []
+    titles: list[Title] = []
     remarks: list[str] = []
     numbers = numbered([[_text(v) for v in row] for row in rows[begin:] if _filled(row)], PLAIN)
     for i in range(begin, len(rows)):
@@ -457,7 +461,8 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
             )
             break
         elif 2 * sum(rows[i][k] != "" for k in numbers) < len(numbers):
-            said = shown(" ".join(t for t in map(_text, row) if t))
+            said = shown(words := " ".join(t for t in map(_text, row) if t))
+            titles.append(Title(len(kept), i + 1, words))
             remarks.append(f"row {i + 1}: a remark among the rows ({said}); left out")
         elif options.header > 0:
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
@@ -467,7 +472,7 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
                 f"words among the rows ({shown(' '.join(t for t in map(_text, row) if t))})", "rows of numbers under one header",
                 file=path, line=i + 1, advice="Say the row of the table's header by the option header.",
             )  # fmt: skip
-    return kept, remarks
+    return kept, remarks, titles
 
 
 def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Path) -> tuple[Array, list[str]]:
@@ -521,7 +526,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     name = _chosen(sheets, given, path)
     rows = sheets[name]
     begin, head = _body(rows, given, path)
-    kept, left = _kept(rows, begin, head, given, path)
+    kept, left, titles = _kept(rows, begin, head, given, path)
     lines = [i + 1 for i in kept]
     met = [Cells() for _ in rows[0]]
     values, texts = [], {}
@@ -541,7 +546,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         "header": f"row {head.line}" if head.line else "none",
         "units": head.units_stand.replace("line", "row"),
     }
-    return RawTable(
+    table = RawTable(
         path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *read[name][1], *remarks),
         stated=words_above(above, PLAIN),
     )  # fmt: skip
+    over = [Title(0, n, " ".join(filter(None, cells))) for n, cells in above]
+    return with_blocks(table, [*over, *titles], PLAIN)

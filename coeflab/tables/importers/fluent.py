@@ -26,6 +26,7 @@ from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_o
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
+computed = True
 reads = "report files (.out) or a force report of Fluent"
 citations = ("Ansys Inc. (2024): Ansys Fluent User's Guide, Release 2024 R2: Report Files; Forces on Boundaries.",)
 

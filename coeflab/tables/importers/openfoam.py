@@ -30,6 +30,7 @@ from coeflab.tables.openfoam_symmetry import mirror_patches
 from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
+computed = True
 citations = (
     "Weller, Tabor, Jasak and Fureby (1998): A tensorial approach to computational continuum mechanics using "
     "object-oriented techniques. Computers in Physics 12, 620-631",

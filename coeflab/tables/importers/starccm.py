@@ -22,6 +22,7 @@ from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_o
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"
+computed = True
 reads = "monitor CSV of STAR-CCM+, one file or a folder of one run"
 citations = ("Siemens Digital Industries Software (2023): Simcenter STAR-CCM+ User Guide: Force; Force Coefficient.",)
 

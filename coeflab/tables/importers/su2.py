@@ -36,6 +36,7 @@ from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, piec
 from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
+computed = True
 reads = "history.csv or history.dat of SU2 with its .cfg"
 citations = (
     "Economon T. D. et al. (2016): SU2: an open-source suite for multiphysics simulation and design. AIAA Journal 54(3).",

@@ -20,6 +20,7 @@ from coeflab.core.text.series import matrix_of
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables import text_dialect
+from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
 from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.raw_table import RawTable
@@ -65,6 +66,7 @@ class _Body:
     cut: list[tuple[int, str]] = field(default_factory=list)
     again: list[int] = field(default_factory=list)
     known: dict[str, str] = field(default_factory=dict)
+    titles: list[tuple[int, str]] = field(default_factory=list)
 
     def add(self, line: int, lines: list[str], ended: bool) -> None:
         """Take some lines: at once where all are rows of plain numbers, else one by one."""
@@ -153,6 +155,9 @@ class _Body:
         if tuple(cells) in d.head.written:
             self.again.append(n)
             return None
+        if ended and self.is_title(cells):
+            self.titles.append((n, " ".join(filter(None, cells))))
+            return None
         if len(cells) != d.width:
             self._leave_out(n, f"{len(cells)} of {d.width} cells", ended)
             return None
@@ -165,6 +170,12 @@ class _Body:
                 advice="Make a file of each table, or begin the line with #.",
             )  # fmt: skip
         return cells
+
+    def is_title(self, cells: list[str]) -> bool:
+        """Whether a line between rows is the title of those below: one cell of words, in a table of several columns."""
+        filled = [c for c in cells if c]
+        worded = len(filled) == 1 and sum(map(str.isalpha, filled[0])) > 2
+        return self.dialect.width > 1 and worded and self.dialect.marks.number(filled[0]) is None
 
     def _any_number(self, cells: list[str]) -> bool:
         """Whether a cell of the columns with numbers is none of letters only."""
@@ -209,6 +220,7 @@ def _read(path: Path, dialect: text_dialect.TextDialect, keep: frozenset[int]) -
 
 def _remarks(body: _Body) -> list[str]:
     out = [f"line {n}: left out, {why}" for n, why in body.cut[:10]]
+    out += [f"line {n}: words among the rows ({shown(text)})" for n, text in body.titles[:10]]
     if len(body.cut) > 10:
         out.append(f"{len(body.cut) - 10} more lines left out for the same reason")
     if body.again:
@@ -267,7 +279,11 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         raise text_dialect.unread(path, why) from None
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
-    return RawTable(
-        path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said, stated=dialect.stated,
+    lines = np.concatenate(body.lines)
+    titles = [Title(0, 0, text) for text in dialect.above]
+    titles += [Title(int(np.searchsorted(lines, n)), n, text) for n, text in body.titles]
+    table = RawTable(
+        path, columns, dialect.head.line, lines, files=(path,), dialect=dialect.said, stated=dialect.stated,
         remarks=(*dialect.remarks, *_remarks(body), *remarks),
     )  # fmt: skip
+    return with_blocks(table, titles, dialect.marks)

@@ -9,10 +9,10 @@ from itertools import pairwise
 
 from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
-from coeflab.tables.column_map import folded
 from coeflab.tables.dialect import Marks, Row, one_reading
 from coeflab.tables.half_bodies import half_in_words
 from coeflab.tables.raw_table import HALF_MODEL, Stated
+from coeflab.tables.vocabulary import folded
 from coeflab.tables.words.axes import BODY_AXES, along_body, frame_in_words, side_of_turns, signs
 from coeflab.tables.words.points import (
     ARM_FROM,

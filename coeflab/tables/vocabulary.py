@@ -1,0 +1,132 @@
+"""What columns and units may be called: words/vocabulary.toml, and a file of a person's own beside it."""
+
+from __future__ import annotations
+
+import tomllib
+import unicodedata
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.text.bounded import own_text
+from coeflab.core.text.toml import read_toml
+
+SECTIONS = ("columns", "flow", "coefficients", "several", "symbols", "units")
+Words = Mapping[str, str]
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name, small, without accents."""
+    plain = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(c for c in plain if c.isalnum())
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """Meanings by folded names.
+
+    Attributes
+    ----------
+    columns, flow, coefficients : mapping of str to str
+        The one meaning of a name: of any column, of a force along or across the flow, of a pure number.
+    several : mapping of str to str
+        Meanings with blanks between, of which the unit or a person chooses.
+    symbols : mapping of str to str
+        Symbols, with blanks between, by what they mean.
+    units : mapping of str to str
+        Spelling of the units library by a unit as written, in small letters.
+    own : frozenset of str
+        Names that a person's own file gives a meaning.
+    """
+
+    columns: Words
+    flow: Words
+    coefficients: Words
+    several: Words
+    symbols: Words
+    units: Words
+    own: frozenset[str] = frozenset()
+
+
+def _inverted(section: Mapping[str, Any]) -> dict[str, str]:
+    return {
+        folded(w): name for name, words in section.items() for w in (words.split() if isinstance(words, str) else words)
+    }
+
+
+def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
+    out = {section: _inverted(content.get(section, {})) for section in SECTIONS[:3]}
+    out["several"] = {folded(word): meanings for word, meanings in content.get("several", {}).items()}
+    out["symbols"] = dict(content.get("symbols", {}))
+    out["units"] = {" ".join(unit.split()).casefold(): spelt for unit, spelt in content.get("units", {}).items()}
+    return out
+
+
+@cache
+def _shipped() -> Vocabulary:
+    sections: dict[str, Any] = _read(tomllib.loads(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
+    return Vocabulary(**sections)
+
+
+_OWN: ContextVar[Vocabulary | None] = ContextVar("vocabulary", default=None)
+
+
+def vocabulary() -> Vocabulary:
+    """The words that count now: those shipped, or within `words_of` a person's own before them."""
+    return _OWN.get() or _shipped()
+
+
+@contextmanager
+def words_of(path: Path | None) -> Iterator[None]:
+    """Words of a person's own file count within, before those shipped; without a file nothing changes.
+
+    Raises
+    ------
+    InputError
+        A table, meaning or text that is none, each with its line.
+    """
+    token = _OWN.set(_joined(path) if path is not None else _OWN.get())
+    try:
+        yield
+    finally:
+        _OWN.reset(token)
+
+
+def _joined(path: Path) -> Vocabulary:
+    file = read_toml(path)
+    known = {
+        name for words in (_shipped().columns, _shipped().flow, _shipped().coefficients) for name in words.values()
+    }
+    known |= {"label", "uncertain"}
+    complaints: list[InputError] = []
+    for section, entries in file.content.items():
+        if section not in SECTIONS or not isinstance(entries, dict):
+            complaints.append(file.fail(section, shown(section), f"a table of {', '.join(SECTIONS)}"))
+            continue
+        for key, value in entries.items():
+            place = f"{section}.{key}"
+            texts = value if isinstance(value, list) else [value]
+            if not texts or not all(isinstance(text, str) and text.strip() for text in texts):
+                complaints.append(file.fail(place, shown(value), 'words, such as "kraft_x fx_tot" or ["Kraft in x"]'))
+            elif section in SECTIONS[:3] and key not in known:
+                complaints.append(file.fail(place, shown(key), f"one of {', '.join(sorted(known))}"))
+            elif section in SECTIONS[3:] and isinstance(value, list):
+                complaints.append(file.fail(place, "a list", "one text"))
+            elif section == "several" and (strange := [m for m in value.split() if m not in known]):
+                complaints.append(file.fail(place, shown(strange[0]), f"some of {', '.join(sorted(known))}"))
+    if complaints:
+        raise together(complaints)
+    own, base = _read(file.content), _shipped()
+    every = frozenset(w for section in SECTIONS[:4] for w in own[section])
+    # A word of one's own has no other meaning left.
+    kept = {s: {w: m for w, m in getattr(base, s).items() if w not in every} for s in SECTIONS[:4]}
+    return Vocabulary(
+        **{s: {**kept[s], **own[s]} for s in SECTIONS[:4]},
+        symbols={**base.symbols, **own["symbols"]}, units={**base.units, **own["units"]}, own=every,
+    )  # fmt: skip

@@ -1,0 +1,200 @@
+"""What a file of other people becomes: proposals, few questions, runs of final values, turned tables, blocks, records over time."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.parts import read_parts
+from coeflab.tables.parts_together import complaints_of, questions_together, understood_together
+from coeflab.tables.proposals import proposals, proposed
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.vocabulary import vocabulary, words_of
+
+SAMPLES = Path(__file__).parent / "samples"
+ANGLES = np.array([-8.0, -4.0, 0.0, 4.0, 8.0])
+
+
+def column(name: str, unit: str = "", values: np.ndarray = ANGLES) -> RawColumn:
+    return RawColumn(name, unit, values)
+
+
+def table(*columns: RawColumn) -> RawTable:
+    return RawTable(Path("x.csv"), columns)
+
+
+def open_keys(path: Path) -> list[str]:
+    parts, _ = read_parts(path, "", {})
+    founds = understood_together(parts, {}, {})
+    assert not complaints_of(founds)
+    columns = [
+        c.name
+        for f in founds
+        for c, o in f.open
+        if not o.whole and "coefficient" not in o.text and not o.text.endswith("?]")
+    ]
+    return [*columns, *(key for key, q in questions_together(parts, founds) if q.open)]
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "text"),
+    [
+        ("Seitenruderwinkel", "deg", "dr [deg]"), ("Höhenruderwinkel", "deg", "ds [deg]"), ("Tiefenruderwinkel", "°", "ds [deg]"),
+        ("delta", "deg", "dr [deg]"), ("δ", "°", "dr [deg]"), ("CXtot", "", "X [coefficient A=?]"), ("CMl", "", "K [coefficient A=? L=?]"),
+        ("CSF", "-", "Y [coefficient A=?]"), ("Fn", "N", "Z [N]"), ("Fn", "", ""), ("CS", "", ""), ("yaw", "deg", "beta [deg]"),
+        ("yaw", "N m", "N [N m]"), ("Fx_total", "N", "X [N]"), ("P5: side-op", "N", "Y [N]"), ("cw", "", "drag [coefficient A=?]"),
+    ],
+)  # fmt: skip
+def test_a_name_and_its_unit_say_what_a_column_is(name: str, unit: str, text: str) -> None:
+    assert proposed(column(name, unit)).text == text
+
+
+def test_every_meaning_of_the_vocabulary_is_one() -> None:
+    words = vocabulary()
+    for word, meaning in {**words.columns, **words.flow, **words.coefficients}.items():
+        assert proposed(column(word, "")) is not None
+        assert re.fullmatch(r"\w+", meaning)
+
+
+def test_words_of_ones_own_come_first_and_end_with_the_command(tmp_path: Path) -> None:
+    file = tmp_path / "my.toml"
+    file.write_text('[columns]\nY = ["Kraft quer zum Wagen", "cs"]\n[units]\nkraft = "N"\n')
+    with words_of(file):
+        assert proposed(column("Kraft quer zum Wagen", "Kraft")).text == "Y [N]"
+        assert proposed(column("CS", "N")).text == "Y [N]"
+    assert proposed(column("Kraft quer zum Wagen", "N")).text == ""
+    assert proposed(column("CS", "N")).text == "side [N]"
+
+
+@pytest.mark.parametrize(
+    "text", ['[columns]\nfoo = "a"\n', "[bar]\n", '[several]\ncs = "side foo"\n', "[columns]\nY = 3\n", "columns = 1\n"]
+)
+def test_wrong_words_are_refused_with_their_line(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "my.toml"
+    file.write_text(text)
+    with pytest.raises(InputError) as why, words_of(file):
+        pass
+    assert why.value.line
+
+
+def test_m_beside_coefficients_is_a_mach_number_and_n_a_count() -> None:
+    mach, count = column("M", "", np.linspace(0.1, 0.11, 5)), column("N", "", np.full(5, 61.0))
+    beside = (column("alpha"), column("CL"), column("CD"), column("Cm"))
+    texts = [p.text for p in proposals(table(mach, *beside, count))]
+    assert texts[0] == texts[-1] == "ignore"
+    assert texts[4].startswith("M [coefficient")
+    assert next(p.text for p in proposals(table(column("M", "N m"), *beside[:3]))) == "M [N m]"
+
+
+def test_cn_beside_ca_is_a_normal_force() -> None:
+    texts = [
+        p.text for p in proposals(table(column("alpha"), column("CA", "", np.full(5, 0.3)), column("CN"), column("Cm")))
+    ]
+    assert texts[1:3] == ["-X [coefficient A=?]", "Z [coefficient A=?]"]
+
+
+def test_zeros_ask_no_unit_and_no_sign(tmp_path: Path) -> None:
+    file = tmp_path / "zeros.csv"
+    file.write_text("beta,alpha (deg),X (N),Y,Z (N)\n" + "".join(f"0,{a},-3,0,{-a}\n" for a in (-4, 0, 4)))
+    assert "columns.units" not in open_keys(file)
+    assert "axes.beta" not in open_keys(file)
+
+
+def test_what_knows_no_force_is_refused_before_any_question(tmp_path: Path) -> None:
+    file = tmp_path / "other.csv"
+    file.write_text("time,temp,height\n1,2,3\n2,4,5\n3,4,7\n")
+    parts, _ = read_parts(file, "", {})
+    assert complaints_of(understood_together(parts, {}, {}))
+
+
+def test_legends_above_name_columns() -> None:
+    raw = IMPORTERS.load("table").raw(SAMPLES / "table/design_points.csv", {})
+    assert [(c.name, c.unit) for c in raw.columns[1:]] == [
+        ("P3: drift", "degree"), ("P5: side-op", "N"), ("P6: axial-op", "N"), ("P9: yaw-op", "N m"),
+    ]  # fmt: skip
+    assert [p.text for p in proposals(raw)[1:]] == ["beta [deg]", "Y [N]", "X [N]", "N [N m]"]
+
+
+@pytest.mark.parametrize(
+    "path", sorted(p for kind in ("json", "table") for p in (SAMPLES / kind).glob("*") if p.name in (
+        "points.json", "columns.json", "named.json", "conditions_in_columns.txt", "blocks.csv", "design_points.csv")),
+    ids=lambda p: p.name,
+)  # fmt: skip
+def test_at_most_six_questions(path: Path) -> None:
+    assert len(open_keys(path)) <= 6
+
+
+def test_points_in_json_are_rows(tmp_path: Path) -> None:
+    raw = IMPORTERS.load("json").raw(SAMPLES / "json/points.json", {})
+    assert [c.name for c in raw.columns] == ["beta", "X", "Y", "N"]
+    assert raw.column("beta").unit == "deg"
+    assert raw.column("Y").values.tolist() == [8.1, 0.0, -8.1]
+    assert raw.stated["conditions.speed"].value == 1.5
+    raw = IMPORTERS.load("json").raw(SAMPLES / "json/named.json", {})
+    assert raw.column("moment z").values.tolist() == [2.0, 0.0, -2.0]
+    assert raw.column("name").texts == (
+        "b-4",
+        "b0",
+        "b4",
+    )
+    raw = IMPORTERS.load("json").raw(SAMPLES / "json/columns.json", {})
+    assert raw.column("Fz").unit == "N"
+    assert len(raw) == 5
+    bad = tmp_path / "bad.json"
+    bad.write_text(json.dumps({"a": 1}))
+    assert not IMPORTERS.load("json").recognises(bad)
+
+
+def test_a_breakdown_of_su2_is_one_run() -> None:
+    run = IMPORTERS.load("reports").run(SAMPLES / "reports/forces_breakdown.dat", {})
+    assert run.is_final
+    assert run.history.meaning("Z").values[0] == 0.0530166
+    assert run.history.meaning("M").values[0] == -0.0084
+    assert run.conditions["w"].value == pytest.approx(-0.139513)
+    assert run.history.stated["coefficients.area"].value == 0.9
+
+
+def test_walls_of_cfx_are_pressure_and_viscous_together() -> None:
+    run = IMPORTERS.load("reports").run(SAMPLES / "reports/walls.out", {})
+    assert run.history.meaning("X").values[0] == pytest.approx(10.3)
+    assert run.history.meaning("M").values[0] == pytest.approx(-5.2)
+
+
+def test_a_value_that_is_no_number_is_refused_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("Report Name,Value,Unit\nDrag,high,N\n")
+    with pytest.raises(InputError) as why:
+        IMPORTERS.load("reports").run(file, {})
+    assert why.value.line == 2
+
+
+def test_forces_and_moments_of_one_condition_are_one_row(tmp_path: Path) -> None:
+    for a in (-6, -3, 0, 3, 6):
+        (tmp_path / f"force_a{a}.csv").write_text(f"Report Name,Value,Unit\nDrag,{10 + a * a / 9},N\nLift,{4 * a},N\n")
+        (tmp_path / f"moment_a{a}.csv").write_text(f"Report Name,Value,Unit\nPitch Moment,{-2 * a},N-m\n")
+    parts, _ = read_parts(tmp_path, "", {})
+    assert len(parts) == 1
+    assert len(parts[0].raw) == 5
+    at = dict(zip(parts[0].raw.meaning("alpha").values, parts[0].raw.column("Pitch Moment").values, strict=True))
+    assert at == {a: -2.0 * a for a in (-6, -3, 0, 3, 6)}
+    (tmp_path / "moment_a6.csv").unlink()
+    assert len(read_parts(tmp_path, "", {})[0]) == 2
+
+
+def test_conditions_in_columns_become_rows() -> None:
+    parts, _ = read_parts(SAMPLES / "table/conditions_in_columns.txt", "", {})
+    raw = parts[0].raw
+    assert [p.text for p in proposals(raw)] == ["point", "U [m/s]", "beta [deg]", "X [N]", "Y [N]", "N [Nm]"]
+    assert raw.columns[4].values.tolist() == [8.1, 0.0, -8.1, -17.0]
+
+
+def test_titles_of_blocks_are_columns() -> None:
+    raw = IMPORTERS.load("table").raw(SAMPLES / "table/blocks.csv", {})
+    assert raw.column("U").values.tolist() == [1.0] * 3 + [2.0] * 3
+    assert raw.column("block").texts[3] == "speed 2 m/s"
