@@ -24,7 +24,7 @@ from tests.formats.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floatin
 from tests.rigid_motion import rotation
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
-DRIVES = {"c", "fmi"}  # thrusters and limits of fins are in it
+DRIVES = {"gazebo", "gazebo_plugin", "c", "fmi"}  # thrusters and limits of fins are in it
 HOLD = {"c", "fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}
 each_target = pytest.mark.parametrize("target", TARGETS)
 
