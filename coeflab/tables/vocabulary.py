@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -15,7 +14,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.text.bounded import own_text
-from coeflab.core.text.toml import read_toml
+from coeflab.core.text.toml import own_toml, read_toml
 
 SECTIONS = ("columns", "flow", "coefficients", "several", "symbols", "units")
 Words = Mapping[str, str]
@@ -70,7 +69,7 @@ def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 @cache
 def _shipped() -> Vocabulary:
-    sections: dict[str, Any] = _read(tomllib.loads(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
+    sections: dict[str, Any] = _read(own_toml(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
     return Vocabulary(**sections)
 
 

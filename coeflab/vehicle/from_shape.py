@@ -24,6 +24,7 @@ from coeflab.vehicle.parameter_parts import (
     ParameterHydrostatics,
     ParameterSurface,
     ParameterThruster,
+    curve_of,
 )
 
 if TYPE_CHECKING:
@@ -301,7 +302,7 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     """
     point = np.array(parameters.reference_point.point)
     update: dict[str, object] = {
-        "thrusters": tuple(_thruster(t, point, parameters.conditions) for t in body.thrusters),
+        "thrusters": tuple(parameter_thruster(t, point, parameters.conditions) for t in body.thrusters),
         "surfaces": _surfaces(body.controls),
     }
     if configuration.volume and configuration.centre_of_buoyancy is not None:
@@ -310,16 +311,22 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     return parameters.model_copy(update=update)
 
 
-def _thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
-    points = t.thrusts(at.speed, at.density)
-    pairs = list(pairwise(points))
+def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
+    """A thruster of a body about a point of its datum; straight lines between its points, or squares of the command."""
     segments = []
-    for (low, start), (high, end) in pairs:
+    for (low, start), (high, end) in () if t.squares else pairwise(t.thrusts(at.speed, at.density)):
         slope = (end - start) / (high - low)
         segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
-    curve = ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
+    curve = curve_of(t.squares, t.command, t.unit) or ParameterCurve(
+        command=t.command, unit=t.unit, segments=tuple(segments)
+    )
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
-    return ParameterThruster(name=t.name, position=place, direction=axis, curve=curve)
+    tilting = None if t.tilt_axis is None else tuple(float(v) for v in t.tilt_axis)
+    low, high = t.tilt if tilting is not None else (0.0, 0.0)
+    return ParameterThruster(
+        name=t.name, position=place, direction=axis, curve=curve, torque_curve=curve_of(t.torque, t.command, t.unit),
+        handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high,
+    )  # fmt: skip
 
 
 def by_series(body: Body, speed: float) -> tuple[str, ...]:
@@ -334,7 +341,7 @@ def by_series(body: Body, speed: float) -> tuple[str, ...]:
     return tuple(
         f"thrust of {t.name}: estimate, Wageningen B-series at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
         for t in body.thrusters
-        if t.curve is None
+        if t.curve is None and not t.squares
     )
 
 

@@ -18,6 +18,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.matching import by_plain_names, spelled_as
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
@@ -109,7 +110,8 @@ def merged(
             f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
             "give the body.toml of the shape the datum of the tables, and the vehicle again."
         )
-    theirs = theirs.to_length(ours.scaling).about(ours.reference_point)
+    theirs, first = by_plain_names(theirs.to_length(ours.scaling))
+    theirs = spelled_as(theirs.about(ours.reference_point), first, ours.symbols)
     taken = {
         c.symbol: i
         for i, c in enumerate(theirs.coefficients)

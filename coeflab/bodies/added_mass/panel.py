@@ -117,7 +117,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     """
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
-    if rings := _rings_alone(shape):
+    if isinstance(shape, TriangleMesh) and (rings := _rings_alone(shape)):
         return _of_sheets(body, shape, ring_sheets(rings), density, options or {})
     panelled = _resolved(shape, chosen)
     _fits(panelled.count)
@@ -134,9 +134,9 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         panelled = finer
 
 
-def _rings_alone(shape: Shape) -> tuple[RingWing, ...]:
+def _rings_alone(shape: TriangleMesh) -> tuple[RingWing, ...]:
     """The rings of a mesh that is nothing else, with a wall thinner than the smallest panels; none of another."""
-    if not isinstance(shape, TriangleMesh) or not len(shape.faces) or len(shape.sheets):
+    if not len(shape.faces) or len(shape.sheets):
         return ()
     area = shape.integrals.area
     if 2.0 * shape.volume / area > influence.side_of(area, MOST_PANELS):

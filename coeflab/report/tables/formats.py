@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -277,6 +277,12 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
     )
     headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
     return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}), ("how", "origin"))
+
+
+def left_out(names: Mapping[str, Sequence[str]], whose: str) -> Table:
+    """What a model states and its parameter file does not hold."""
+    rows = tuple((kind, ", ".join(held)) for kind, held in names.items())
+    return Table(f"Left out of {whose}", ("kind", "names"), rows or (("nothing", ""),), (), frozenset({0, 1}))
 
 
 def by_added_mass(parameters: ParameterFile) -> Table:
