@@ -302,6 +302,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     try:
         whole = read_column_map(f"{name} [{unit}]") if unit else None
     except InputError:
+        if column.name.strip().upper() in ("X", "Y", "Z") and _fits(unit, "length"):
+            return Proposal("ignore", f"[{unit}] is a length: a position, no force")
         return _unread(name, said, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)
@@ -321,8 +323,6 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
 
 def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
     """A column whose unit stands in the file and cannot be read: a person says it, and nothing else does."""
-    if said.dimension == "force" and _fits(unit, "length"):
-        return Proposal("ignore", f"[{unit}] is a length: a position, no force")
     example = EXAMPLES[said.dimension].replace("*", " ")
     wanted = f"its unit [{unit}] is none known of {said.dimension}: say such as {name} [{example}]"
     wanted += f" or {name} [k{example}]" * (example[0] == "N")
