@@ -24,9 +24,9 @@ import numpy as np
 from coeflab.bodies.added_mass import panel, strip
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 AXES = np.array([6.0, 1.0, 1.0])
 PEER = Path(__file__).with_name("capytaine_added_mass.py")

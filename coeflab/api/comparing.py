@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
+from coeflab.api.questions import si
+from coeflab.motion.behaviour import Behaviour
+from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
 from coeflab.vehicle.comparison import ROUNDING, Verdict
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-__all__ = ["ROUNDING", "Comparison", "Verdict", "compare"]
+__all__ = ["ROUNDING", "Behaviour", "Comparison", "Verdict", "behaviour", "compare"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -107,3 +110,33 @@ def compare(
     )
     found = plain.compare(a, b, names)
     return Comparison(**{f.name: getattr(found, f.name) for f in fields(plain.Comparison)})
+
+
+def behaviour(
+    first: HasParameters | ParameterFile | str | Path,
+    second: HasParameters | ParameterFile | str | Path,
+    speed: float | str,
+) -> tuple[Behaviour, ...]:
+    """What two vehicles do at a speed: G_h, G_v, eigenvalues, turn, zigzag and forces, each with its difference.
+
+    Parameters
+    ----------
+    first, second : Vehicle, str or Path
+    speed : float or str
+        m/s, or with a unit.
+
+    Returns
+    -------
+    tuple of Behaviour
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> import coeflab.api.comparing as comparing
+    >>> comparing.behaviour("remus100", "remus100", 1.5)[0].difference
+    0.0
+    """
+    return of_both(parameters_of(first), parameters_of(second), si(speed, "speed", "speed"))

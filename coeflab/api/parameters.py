@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from coeflab.core.errors import InputError
+from coeflab.formats.model_files import read_vehicle_file
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_file import read_parameter_file as read
 
 
 class HasParameters(Protocol):
@@ -25,7 +25,7 @@ def read_parameters(source: str | Path) -> ParameterFile:
     Parameters
     ----------
     source : str or Path
-        A file, or the name of a shipped one.
+        A file, the name of a shipped one, or a simulator's model: SDF, URDF, xacro, xdyn YAML, MSS .m, Stonefish .scn.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def read_parameters(source: str | Path) -> ParameterFile:
     """
     if not isinstance(source, str | Path):
         raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped vehicle", column="source")
-    return read(Path(source))
+    return read_vehicle_file(Path(source))
 
 
 def parameters_of(source: Any) -> ParameterFile:

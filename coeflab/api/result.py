@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.table import Check, percent, with_u95
 from coeflab.core.table import Table as Shown
-from coeflab.core.types import Array, in_angles
-from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.core.table import percent, with_u95
+from coeflab.core.types import in_angles
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
-from coeflab.tables.force_table import ForceTable
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from coeflab.core.table import Check
+    from coeflab.core.types import Array
+    from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.tables.force_table import ForceTable
 
 
 class Points(NamedTuple):

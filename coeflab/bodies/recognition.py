@@ -34,6 +34,7 @@ from coeflab.bodies.cuts import (
     tracks_of,
     width,
 )  # fmt: skip
+from coeflab.bodies.joined_foils import joined
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import polygons
 from coeflab.bodies.mirror_planes import PAIRED, mirror_planes, silhouettes, unpaired
@@ -53,6 +54,7 @@ ENDS = 0.05  # of the largest section: thinner ends do not count as length
 BLUNT, SHORT = 0.5, 3.0  # both end faces over the largest section, with a length under so many diameters: a box
 SMALL, THICK = 0.1, 0.5  # span over the hull's radius; thickness over chord: more is bluff
 LEVELS, FEWEST = 12, 3
+SKID = 0.5  # of the hull: a plate as long as this along it is a skid
 MOST_HULLS, MOST_CLUSTERS = 4, 40  # more is a frame
 BENT = 0.25  # half the surface over the planform, less one: it is not flat
 LOOSE = 0.35  # area of the straight trapezoid over the planform, less one
@@ -321,6 +323,8 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     names = [HULL] if len(slender) == 1 else [f"{HULL}_{i + 1}" for i in range(len(slender))]
     hulls = tuple(_hull(n, t, cuts, gone) for n, t in zip(names, slender, strict=True))
     foils, bluff, volume, left, surfaces, unseen_parts = _appendages(mesh, cuts, rough, slender, hulls)
+    if (long := _length_over_width(hulls, foils, bluff)) < SLENDER:
+        return _all_bluff(mesh, f"with what stands beside its hull it is {long:.2g} times as long as wide")
     volume += ring_volume + sum(float(-np.trapezoid(h.area, h.x)) for h in hulls)
     if volume < SHARE * mesh.volume:
         return _all_bluff(mesh, f"hulls and foils hold {volume / mesh.volume:.0%} of its volume only")
@@ -365,6 +369,27 @@ def _spaced(fore: float, aft: float, count: int) -> Array:
     """Falling stations just within both ends, dense at these."""
     middle, half = (fore + aft) / 2.0, (fore - aft) / 2.0 * (1.0 - INSIDE)
     return np.asarray(middle + half * np.cos(np.pi * np.arange(count + 1) / count))
+
+
+def _length_over_width(hulls: Sequence[Sections], foils: Sequence[Foil], bluff: Sequence[Bluff]) -> float:
+    """Of a single hull with its bluff parts and the plates along it; fins do not count, and several hulls stand apart.
+
+    A plate longer than `SKID` of the hull is no fin in the stream of a hull's stern, but a skid or a frame's side.
+    """
+    (hull,) = hulls if len(hulls) == 1 else (None,)
+    if hull is None:
+        return np.inf
+    half = np.array([hull.breadth.max(), hull.depth.max()]) / 2.0
+    middle = np.average(hull.centre, axis=0, weights=hull.area)
+    low, high = [middle - half], [middle + half]
+    for part in bluff:
+        low.append(part.centre[1:] - part.half_extents[1:])
+        high.append(part.centre[1:] + part.half_extents[1:])
+    for foil in foils:
+        if foil.root_chord > SKID * hull.length:
+            low.append(np.minimum(foil.root, foil.tip)[1:])
+            high.append(np.maximum(foil.root, foil.tip)[1:])
+    return hull.length / float((np.max(high, axis=0) - np.min(low, axis=0)).max())
 
 
 def _is_slender(track: list[Bit]) -> bool:
@@ -439,9 +464,10 @@ def _appendages(
                     bit.core = False
         kept = [[bit for bit in here if bit.core] for here in fine.cores]
         cores = [bit for here in kept for bit in here]
-        for cluster in map(merged, clusters_of(fine.rest)):
-            if len(cluster) < FEWEST or not _counts(cluster, tracks, kept):
-                continue
+        found_here = [merged(c) for c in clusters_of(fine.rest)]
+        for cluster in _put_together(
+            [c for c in found_here if len(c) >= FEWEST and _counts(c, tracks, kept)], tracks, hulls
+        ):
             if _joins(cluster, tracks):
                 y, z = (round(float(c), 9) + 0.0 for c in centre_of(cluster[len(cluster) // 2].polygon))
                 ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
@@ -470,6 +496,21 @@ def _appendages(
                 else:
                     bluff.append(found.bluff)
     return _numbered(foils), tuple(_numbered(bluff)), volume, left, (across, joining), unseen
+
+
+def _put_together(clusters: list[list[Bit]], tracks: list[list[Bit]], hulls: tuple[Sections, ...]) -> list[list[Bit]]:
+    """Clusters with the pieces of one foil as one: a stub and its blade, a fin and its flap."""
+
+    def stand(bits: list[Bit]) -> tuple[Array, Array]:
+        hull = hulls[tracks.index(_own_track(bits, tracks))]
+        at = float(np.clip((bits[0].x + bits[-1].x) / 2.0, hull.x[-1], hull.x[0]))
+        return _way(bits, np.array([np.interp(at, hull.x[::-1], hull.centre[::-1, i]) for i in (0, 1)]))
+
+    def one_foil(bits: list[Bit]) -> bool:
+        foil = _appendage(bits, hulls[tracks.index(_own_track(bits, tracks))], []).foil
+        return foil is not None and foil.thickness <= THICK
+
+    return joined(clusters, stand, one_foil)
 
 
 def _across(foil: Foil, bent: float) -> Unseen:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -39,6 +39,53 @@ class Screw:
 
 
 @brief
+@dataclass(frozen=True, slots=True)
+class Squares:
+    """A force with the square of a command between two commands of one sign.
+
+    Attributes
+    ----------
+    low, high : float
+    per_square : float
+        N or N m by the square of the command, below zero for commands astern.
+    """
+
+    low: float
+    high: float
+    per_square: float
+
+    def at(self, command: float) -> float:
+        """The value; zero outside."""
+        return self.per_square * command**2 if self.low <= command <= self.high else 0.0
+
+
+def bollard_squares(
+    ahead: float, rate: float, dead_zone: float = 0.0, astern: float | None = None
+) -> tuple[Squares, ...]:
+    """Thrust n|n| through a bollard pull at a rate; nothing in the dead zone, as between propellers that rest.
+
+    Parameters
+    ----------
+    ahead : float
+        N at ``rate``.
+    rate : float
+        The highest command, either way.
+    dead_zone : float
+        Commands below it give nothing.
+    astern : float, optional
+        N at ``-rate``, above zero; zero: no reverse; None: as ahead.
+
+    Examples
+    --------
+    >>> [s.at(360.0) for s in bollard_squares(60.0, 720.0)]
+    [0.0, 15.0]
+    """
+    back = ahead if astern is None else astern
+    made = [Squares(-rate, -dead_zone, -back / rate**2)] if back > 0.0 else []
+    return (*made, Squares(dead_zone, rate, ahead / rate**2))
+
+
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Thruster:
     """A thruster as its body.toml states it.
@@ -55,6 +102,15 @@ class Thruster:
     command, unit : str
         What is commanded, and its unit.
     screw : Screw, optional
+    squares : tuple of Squares
+        Thrust with the square of the command, in the place of a curve.
+    torque : tuple of Squares
+        Of the water on the rotor, N m; empty where it is not known.
+    handedness : {-1, 1}
+    tilt_axis : (3,) array or None
+        What the axis turns about, of length one, FRD.
+    tilt : (float, float)
+        Lowest and highest, rad.
     """
 
     name: str
@@ -64,9 +120,14 @@ class Thruster:
     command: str
     unit: str
     screw: Screw | None = None
+    squares: tuple[Squares, ...] = ()
+    torque: tuple[Squares, ...] = ()
+    handedness: Literal[-1, 1] = 1
+    tilt_axis: Array | None = None
+    tilt: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        for name in ("place", "axis", "curve"):
+        for name in ("place", "axis", "curve", "tilt_axis"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, locked(getattr(self, name)))
 
@@ -85,6 +146,9 @@ class Thruster:
         """
         if self.curve is not None:
             return self.curve
+        if self.squares:
+            points = np.unique(np.concatenate([np.linspace(s.low, s.high, POINTS) for s in self.squares]))
+            return np.column_stack([points, [sum(s.at(float(n)) for s in self.squares) for n in points]])
         s = self.screw
         if s is None or s.highest_rpm is None:
             raise InputError(f"{self.name} without a curve", "a curve, or a propeller with highest_rpm", column="curve")
@@ -96,7 +160,7 @@ class Thruster:
 
 
 CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")
-FEWEST = 2
+FEWEST, POINTS = 2, 17
 
 
 def _blades(value: Any, _file: Path) -> int:
@@ -176,6 +240,22 @@ class ThrusterKeys(takes.Declaration):
         What is commanded, and its unit; ``speed`` in ``rpm`` unless given.
     propeller : table
         An open one along x has an estimate of its force across, and may give the curve.
+    bollard : float
+        Thrust at rest at the command ``rate``, N or "60 N", in the place of a curve: it goes with the square of the command.
+    rate : float
+        The highest command, in ``unit``.
+    bollard_astern : float
+        Pull at ``-rate``; 0: no reverse. As ahead unless given.
+    dead_zone : float
+        Commands below it give nothing.
+    torque : float
+        Of the water on the rotor at ``rate``, N m.
+    handedness : int
+        1 or -1: sign of the reaction about the axis.
+    tilt_axis : (3,) tuple
+        [x, y, z], FRD, that the axis turns about, right-handed.
+    tilt_limit : float
+        Largest tilt either way, "30 deg".
     """
 
     name: takes.Text
@@ -191,11 +271,22 @@ class ThrusterKeys(takes.Declaration):
     command: takes.Text = "speed"
     unit: takes.Text = "rpm"
     propeller: PropellerKeys | None = None
+    bollard: takes.Force | None = None
+    rate: takes.Pure | None = None
+    bollard_astern: takes.Force | None = None
+    dead_zone: takes.Pure | None = None
+    torque: takes.Moment | None = None
+    handedness: takes.Pure | None = None
+    tilt_axis: Direction | None = None
+    tilt_limit: takes.Angle | None = None
 
     def check(self) -> None:
         """It pushes somewhere, and one thing gives its thrust."""
         if not np.linalg.norm(self.axis) > 0.0:
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
+        self._pulls()
+        if self.bollard is not None:
+            return
         by_series = self.propeller is not None and self.propeller.highest_rpm is not None
         if self.curve is None and not by_series:
             advice = "Without one: propeller with diameter, blades, pitch_ratio, area_ratio and highest_rpm."
@@ -209,9 +300,57 @@ class ThrusterKeys(takes.Declaration):
         if not self.axis[0] > 0.0:
             raise InputError("no thrust ahead", "an axis that points ahead, with highest_rpm", column="axis")
 
+    def _pulls(self) -> None:
+        """A bollard pull has its rate, a tilt its axis."""
+        needs = {
+            "rate": self.rate,
+            "bollard_astern": self.bollard_astern,
+            "dead_zone": self.dead_zone,
+            "torque": self.torque,
+        }
+        if self.bollard is None:
+            if stray := [k for k, v in needs.items() if v is not None]:
+                raise InputError(f"{stray[0]} without bollard", 'bollard = "60 N"', column=stray[0])
+        else:
+            if self.curve is not None or (self.propeller is not None and self.propeller.highest_rpm is not None):
+                raise InputError("bollard beside another curve", "one of them", column="bollard")
+            if not self.bollard > 0.0:
+                raise InputError(f"{self.bollard:g} N", "a pull above zero", column="bollard")
+            if self.rate is None or not self.rate > 0.0:
+                raise InputError(
+                    "no rate" if self.rate is None else f"{self.rate:g}",
+                    f"the command at that pull, in {self.unit}",
+                    column="rate",
+                )
+            if not 0.0 <= (self.dead_zone or 0.0) < self.rate:
+                raise InputError(f"{self.dead_zone:g}", f"0 to {self.rate:g}", column="dead_zone")
+            for name in ("bollard_astern", "torque"):
+                if (value := getattr(self, name)) is not None and value < 0.0:
+                    raise InputError(f"{value:g}", "zero or more", column=name)
+        if self.handedness not in (None, 1.0, -1.0):
+            raise InputError(f"{self.handedness:g}", "1 or -1", column="handedness")
+        if (self.tilt_axis is None) != (self.tilt_limit is None):
+            raise InputError(
+                "one of them",
+                "tilt_axis and tilt_limit",
+                column="tilt_axis" if self.tilt_axis is None else "tilt_limit",
+            )
+        if self.tilt_axis is not None and not np.linalg.norm(self.tilt_axis) > 0.0:
+            raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="tilt_axis")
+
     @property
     def made(self) -> Thruster:
-        """With an axis of length one."""
+        """With axes of length one."""
         axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
         screw = None if self.propeller is None else self.propeller.made
-        return Thruster(self.name, self.place, axis, self.curve, self.command, self.unit, screw)
+        squares: tuple[Squares, ...] = ()
+        torque: tuple[Squares, ...] = ()
+        if self.bollard is not None and self.rate is not None:
+            squares = bollard_squares(self.bollard, self.rate, self.dead_zone or 0.0, self.bollard_astern)
+            torque = () if not self.torque else bollard_squares(self.torque, self.rate, self.dead_zone or 0.0)
+        tilting = None if self.tilt_axis is None else np.asarray(self.tilt_axis) / np.linalg.norm(self.tilt_axis)
+        limit = self.tilt_limit or 0.0
+        return Thruster(
+            self.name, self.place, axis, self.curve, self.command, self.unit, screw, squares, torque,
+            -1 if self.handedness == -1.0 else 1, tilting, (-limit, limit),
+        )  # fmt: skip

@@ -67,6 +67,7 @@ def command(
     from coeflab.core.provenance import work
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
+    from coeflab.workbench.finer_panels import finer_panels
     from coeflab.workbench.hulls import added_masses
 
     share = _share(error) if error else ""
@@ -90,6 +91,8 @@ def command(
     show.table(tables.derivatives(found))
     show.table(tables.symmetry(found))
     show.table(tables.primes(found))
+    cost = [f for r in found.results if (f := finer_panels(r, further(ctx.args))) is not None]
+    show.found(cost)
     for citation in found.citations:
         show.text(f"  {work(citation)}")
 

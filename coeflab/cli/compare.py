@@ -13,7 +13,7 @@ from coeflab.cli import complete, show
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from coeflab.api.comparing import Comparison
+    from coeflab.api.comparing import Behaviour, Comparison
     from coeflab.core.table import Table
 
 
@@ -30,23 +30,44 @@ def command(
     second: Path = typer.Argument(
         ..., metavar="OTHER", autocompletion=complete.parameters, help="The parameter file that is compared with it."
     ),
+    speed: str = typer.Option(
+        "",
+        metavar="SPEED",
+        help='Also what both do at that speed, "1.5 m/s": stability, eigenvalues, turn, zigzag, forces.',
+        show_default=False,
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Compare two parameter files by their combined U95.
 
-    Lengths and reference points are converted. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"
+    Lengths and reference points are converted; Yv' and Yuv', single added masses and entries of a matrix are matched. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"
     means that at 95 % of its points the difference is inside the combined 95 % half-width. Where one of two values has no U95,
     another sign and a ratio above 1.5 are marked. Exit code 1 where two files of one body are apart or of other signs.
     """
     import coeflab as cf
+    from coeflab.api.comparing import behaviour
+    from coeflab.core.units import positive_typed
 
     found = cf.compare(first, second)
+    done = behaviour(first, second, positive_typed(speed, "speed", "--speed")) if speed else ()
     if json:
-        show.json_object(as_json(found))
+        show.json_object(as_json(found) | ({"behaviour": [behaviour_json(r) for r in done]} if speed else {}))
     else:
         _print(found)
+        if done:
+            from coeflab.report.tables import models as comparison_tables
+
+            show.table(comparison_tables.behaviour(done, found.a, found.b))
     if found.disagrees:
         raise typer.Exit(1)
+
+
+def behaviour_json(row: Behaviour) -> dict[str, Any]:
+    """One figure of both."""
+    return {
+        "name": row.name, "unit": row.unit, "first": row.a, "second": row.b, "difference": row.difference,
+        "combined_u95": row.combined, "ratio": row.ratio, "reason": row.reason,
+    }  # fmt: skip
 
 
 def as_json(found: Comparison) -> dict[str, Any]:

@@ -63,14 +63,15 @@ def command(
     They are compared with those of a parameter file. The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
     which terms the series cannot tell. Exit code 1 when nothing was identified.
 
-    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command.
+    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command; with
+    --out a copy of the parameter file has the new curves.
     """
     if thruster:
         _bench(series, params, thruster, window, out, json)
         return
+    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.motion.identify.identify import identify_from
     from coeflab.report.tables import motion as identified_tables
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     options: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
@@ -81,7 +82,7 @@ def command(
         options["window"] = window
     with show.progress(json) as say:
         say(f"reading {len(series)} time series")
-        found = identify_from(series, read_parameter_file(params), options)
+        found = identify_from(series, read_vehicle_file(params), options)
     written = [] if out is None else _write(found, out)
     if json:
         show.json_object({**as_json(found), "files": [str(p) for p in written]})
@@ -101,17 +102,21 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
-    from coeflab.motion.identify.thruster import WINDOW, bench_test
+    from coeflab.core.wording import file_stem
+    from coeflab.formats.model_files import read_vehicle_file
+    from coeflab.motion.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     within = quantity(window, "time", key="--window") if window else WINDOW
-    found = bench_test(series, read_parameter_file(params), thruster, within)
+    found = bench_test(series, read_vehicle_file(params), thruster, within)
     content = {
         f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
         f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
     }
+    if out is not None:
+        made = with_curves(read_vehicle_file(params), found)
+        content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)

@@ -68,6 +68,8 @@ def command(
 
     Of a table: its declarations, excluded cells and readings that do not belong.
 
+    Of a mesh file without --unit and --axes: what both may be by its size and outline, and the command that takes them.
+
     Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
@@ -79,6 +81,9 @@ def command(
     if not 0.0 < density < float("inf"):
         raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
     if names_body(table):
+        if _unstated(table, unit, axes):
+            _proposal(table, unit, axes, json)
+            return
         with show.narrated():
             body = mesh_body(table, unit, axes, repair, fill, sheets)
         _body(body, density, json)
@@ -101,6 +106,40 @@ def command(
         _raw(table, as_, every, json, [(flag, said) for flag, said in given if said])
         return
     _tables(table, json, strict, rows)
+
+
+def _unstated(table: str, unit: str, axes: str) -> bool:
+    """Whether a mesh file is meant whose unit or axes nobody states."""
+    from coeflab.bodies.mesh.file import SELF_DESCRIBED
+    from coeflab.core.files import located
+
+    path = located(table, "geometry")
+    if path.is_dir() or path.suffix.lower() == ".toml":
+        return False
+    own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
+    return not ((unit or own_unit) and (axes or own_axes))
+
+
+def _proposal(table: str, unit: str, axes: str, json: bool) -> None:
+    """Unit and axes that size and outline propose, and the command that takes them."""
+    import shlex
+
+    from coeflab.bodies.proposed_mesh import proposed
+    from coeflab.cli.as_json import finding_as_data
+    from coeflab.core.files import located
+
+    with show.narrated():
+        found = proposed(located(table, "geometry"), unit, axes)
+    following = " ".join(["coeflab vehicle", shlex.quote(table), *found.options]) if found.closed else ""
+    if json:
+        told = {"unit": found.unit, "axes": found.axes, "repair": found.repair, "sizes": list(found.sizes)}
+        show.json_object(
+            {"proposed": told, "findings": [finding_as_data(f) for f in found.findings], "next": following}
+        )
+        return
+    show.found(found.findings)
+    if following:
+        show.command_line("Next", following)
 
 
 def _is_raw(table: str) -> bool:

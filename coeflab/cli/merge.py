@@ -44,8 +44,8 @@ def command(
     uncertainty of the turn; writes the merged parameter file and a report.
     """
     from coeflab.core.errors import InputError
+    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.vehicle.own_numbers import own_numbers
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     if bool(other) == bool(numbers):
         raise InputError(
@@ -55,7 +55,7 @@ def command(
     chosen = own_numbers(numbers)
     with show.progress(json) as say:
         say("reading both" if other else "reading the file")
-        first = read_parameter_file(base)
+        first = read_vehicle_file(base)
         done = carried_out(first, other or chosen, name, out if out is not None else base.parent, say)
     if json:
         show.json_object(done.as_json())

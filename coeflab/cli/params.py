@@ -8,7 +8,7 @@ import typer
 
 from coeflab.cli import Command, complete, show
 
-app = typer.Typer(help="Check a parameter file, write one of your own numbers; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
+app = typer.Typer(help="Check a parameter file, write one of your own numbers or of a simulator's model; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
 
 @app.callback()
@@ -22,7 +22,7 @@ def check(
         ...,
         metavar="PARAMS",
         autocompletion=complete.parameters,
-        help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m.",
+        help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m, Stonefish .scn.",
     ),
     density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -52,6 +52,61 @@ def check(
         show.table(model_file_tables.contents(p, found.format))
         if found.format != "coeflab" or show.whole():
             show.table(model_file_tables.by_added_mass(p))
+        show.findings(found.findings, notes=True)
+    if not found.passed:
+        raise typer.Exit(1)
+
+
+@app.command(cls=Command, epilog="Example: coeflab params convert model.sdf --density 1025 --out vehicles")
+def convert(
+    file: Path = typer.Argument(
+        ..., metavar="MODEL", help="SDF, URDF or xacro, xdyn YAML, MSS .m, Stonefish .scn: read as text, never run."
+    ),
+    name: str = typer.Option(
+        "", metavar="NAME", help="Of the parameter file; default the model's.", show_default=False
+    ),
+    density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
+    out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Write somebody's model as a parameter file, and say what of it is left out.
+
+    Added mass, derivatives, mass and inertia, volume and centre of buoyancy, thrusters and fins, as far as the format has them. The exit
+    code is 1 where a check fails; the file is written. A file that exists is not written over.
+    """
+    import shlex
+
+    from coeflab.core.errors import InputError, OutputError
+    from coeflab.core.files import typed, write_all
+    from coeflab.core.wording import file_stem
+    from coeflab.formats.model_files import OWN, read_model_file
+    from coeflab.report.tables import formats as model_file_tables
+
+    if density is not None and not 0.0 < density < float("inf"):
+        raise InputError(f"{density:g}", "a density above zero", column="--density")
+    if name and file_stem(name) != name:
+        raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="--name")
+    found = read_model_file(file, density)
+    if found.format == OWN:
+        raise InputError("a parameter file", "a simulator's model", file=file, advice="It needs no conversion.")
+    p = found.parameters if not name else found.parameters.model_copy(update={"name": name})
+    path = typed(out) / f"{file_stem(p.name)}.parameters.json"
+    if path.exists():
+        raise OutputError(f"{path} exists. Give --name or --out.")
+    write_all(path.parent, {path.name: p.to_json()})
+    if json:
+        from coeflab.cli.as_json import findings as findings_json
+
+        show.json_object({
+            "format": found.format, "name": p.name, "coefficients": [c.symbol for c in p.coefficients],
+            "thrusters": [t.name for t in p.thrusters], "surfaces": [s.control for s in p.surfaces], "left_out": found.left_out,
+            "passed": found.passed, "findings": findings_json(found.findings), "remarks": list(p.remarks), "files": [str(path)],
+        })  # fmt: skip
+    else:
+        show.table(model_file_tables.contents(p, found.format))
+        show.table(model_file_tables.left_out(found.left_out, p.name))
+        show.path(path)
+        show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
         show.findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)
@@ -98,6 +153,13 @@ def new(
     ),
     volume: str = typer.Option("", metavar="VOLUME", help="Displaced, m^3; with --cb.", show_default=False),
     cb: str = typer.Option("", metavar="X,Y,Z", help="Centre of buoyancy from that point, m, FRD.", show_default=False),
+    thruster: list[str] = typer.Option(
+        [],
+        "--thruster",
+        metavar="TEXT",
+        help='"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0", thrust with n^2; the keys of [[thruster]] of a body.toml; again for each.',
+        show_default=False,
+    ),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -119,7 +181,7 @@ def new(
 
     made = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
-        inertia=inertia, volume=volume, cb=cb, body=body,
+        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")

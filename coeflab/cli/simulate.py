@@ -72,8 +72,8 @@ def command(
     too where not one figure was reached, and where a finding of `coeflab params check` on the file fails, such as a wrong sign.
     """
     from coeflab.cli.fit import further
+    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.motion.simulation import simulate
-    from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.plausibility import plausibility
 
     body = arm_at(file)
@@ -98,7 +98,7 @@ def command(
         of_arm = current_of(current) | ({"record": record} if "record" in typed else {}) | dict(further(ctx.args))
         _arm(body, manoeuvre if "manoeuvre" in typed else "phases", of_arm, to, out, json)
         return
-    parameters = read_parameter_file(file)
+    parameters = read_vehicle_file(file)
     if not json:
         show.not_used(parameters, tables)
     given = {"integrator": integrator, "step": step, "record": record}

@@ -45,14 +45,14 @@ def command(
     convex hull of the data; cells that the file's rule refuses stay blank.
     """
     from coeflab.core.files import write_atomically
+    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.law.symbols import FLOW_ANGLES
-    from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.vehicle.parameter_model import chosen
 
     if str(params).startswith("--"):
         raise InputError(shown(params), "the parameter file first, then --NAME=VALUES")
     given = wanted(ctx.args)
-    models = chosen(read_parameter_file(params).models, response, tuple(given))
+    models = chosen(read_vehicle_file(params).models, response, tuple(given))
     tally = Tally()
     lines = _lines(models, given, tally)
     if out is not None:

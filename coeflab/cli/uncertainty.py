@@ -68,8 +68,8 @@ def command(
     determines no quantity of the manoeuvre.
     """
     from coeflab.cli.simulate import current_of, listed, of_manoeuvre
+    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
-    from coeflab.vehicle.parameter_file import read_parameter_file
 
     if help_options:
         from coeflab.cli.formats import explain
@@ -83,7 +83,7 @@ def command(
         (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
     )  # fmt: skip
     folder = state if state is not None else out / "batches" if out is not None else None
-    parameters = read_parameter_file(file)
+    parameters = read_vehicle_file(file)
     if not json:
         show.not_used(parameters, tables)
     with show.narrated():

@@ -322,6 +322,7 @@ Mass = Annotated[float, number_in("mass")]
 MassRate = Annotated[float, number_in("mass rate")]
 Inertia = Annotated[float, number_in("inertia")]
 Moment = Annotated[float, number_in("moment")]
+Force = Annotated[float, number_in("force")]
 
 
 @functools.cache

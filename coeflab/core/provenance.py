@@ -251,8 +251,6 @@ WORKS: dict[str, str] = {
     "chapter Fluid forces, and engine_passive.c, commit 01a932e, github.com/google-deepmind/mujoco.",
     "fmi2": "Modelica Association, Functional Mock-up Interface for Model Exchange and Co-Simulation, version 2.0.4, 2022, "
     "fmi-standard.org.",
-    "pythonfmu": "L. I. Hatledal, H. Zhang, F. Collonval, Enabling Python Driven Co-Simulation Models with PythonFMU, ECMS 2020; "
-    "PythonFMU 0.7, github.com/NTNU-IHB/PythonFMU.",
     "holoocean": "E. Potokar, S. Ashford, M. Kaess, J. G. Mangelson, HoloOcean: An Underwater Robotics Simulator, ICRA 2022; "
     "version 2.3, client/src/holoocean/fossen_dynamics/torpedo.py and helper_functions.py.",
     "stonefish": "P. Cieslak, Stonefish: An Advanced Open-Source Simulation Tool Designed for Marine Robotics, OCEANS 2019; "

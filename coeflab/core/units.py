@@ -41,6 +41,45 @@ _WRITTEN = {
     "rpm": "revolution/minute",
     **{f"{size}N{arm}": f"{size}N*{arm}" for size in ("", "m", "k", "M") for arm in ("m", "cm", "mm")},
 }
+# As the units library has them, to the last digit: what most files need without it.
+_COMMON = {
+    "length": {"m": 1.0, "mm": 0.001, "cm": 0.01, "km": 1000.0, "ft": 0.30479999999999996, "in": 0.0254},
+    "speed": {
+        "m/s": 1.0,
+        "kn": 0.5144444444444445,
+        "knot": 0.5144444444444445,
+        "km/h": 0.2777777777777778,
+        "ft/s": 0.30479999999999996,
+        "cm/s": 0.01,
+    },
+    "rate": {"rad/s": 1.0, "deg/s": 0.017453292519943295, "rpm": 0.10471975511965977},
+    "angle": {"rad": 1.0, "deg": 0.017453292519943295},
+    "force": {"N": 1.0, "kN": 1000.0, "lbf": 4.4482216152605005},
+    "moment": {
+        "N*m": 1.0,
+        "N m": 1.0,
+        "Nm": 1.0,
+        "kN*m": 1000.0,
+        "lbf*ft": 1.3558179483314006,
+        "ft*lbf": 1.3558179483314006,
+    },
+    "density": {"kg/m^3": 1.0, "kg/m3": 1.0, "g/cm^3": 999.9999999999999, "lb/ft^3": 16.01846337396015},
+    "viscosity": {"m^2/s": 1.0, "m2/s": 1.0},
+    "mass": {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.4535923700000001},
+    "time": {"s": 1.0, "min": 60.0, "h": 3600.0},
+    "frequency": {"1/s": 1.0, "Hz": 1.0},
+    "acceleration": {"m/s^2": 1.0, "m/s2": 1.0},
+    "angular acceleration": {"rad/s^2": 1.0},
+    "inertia": {"kg*m^2": 1.0, "kg m^2": 1.0},
+    "volume": {
+        "m^3": 1.0,
+        "m3": 1.0,
+        "cm^3": 1.0000000000000002e-06,
+        "ft^3": 0.028316846591999994,
+        "l": 0.0010000000000000002,
+    },
+    "area": {"m^2": 1.0, "m2": 1.0, "cm^2": 0.0001, "ft^2": 0.09290303999999999},
+}
 # Degrees in German, gon elsewhere, and by prefix a thousand million radians.
 _TWO_MEANINGS = ("Grad", "grad", "GRAD", "Grd", "grd")
 _LONGEST = 40
@@ -155,6 +194,8 @@ def factor(unit: str, dimension: str) -> float:
     UnitsError
         The unit is unknown, or of another dimension (a pure number is not an angle).
     """
+    if unit in _COMMON.get(dimension, {}):
+        return _COMMON[dimension][unit]
     expected = f"a unit of {dimension}, such as {SI[dimension]}" + (" or deg" if dimension == "angle" else "")
     expected = expected if dimension != "none" else "[-], a pure number"
     if unit == "-" or not unit:

@@ -1,8 +1,8 @@
 """Fins, sails and control surfaces: lift of low aspect on a hull, its loss behind other foils, cross-flow and induced drag.
 
 Free-stream lift of foil and mirror image by Whicker & Fehlner; carried over to and from the hull by slender-body theory
-(Pitts, Nielsen & Kaattari), in the free stream as they have it and in the hull's boundary layer; behind the tip vortices of
-the foils ahead. A foil that turns with the body has the incidence of its three-quarter chord (Glauert 1926).
+(Pitts, Nielsen & Kaattari), with the dynamic pressure of the hull's boundary layer where they stand; behind the tip vortices
+of the foils ahead. A foil that turns with the body has the incidence of its three-quarter chord (Glauert 1926).
 """
 
 from __future__ import annotations
@@ -217,28 +217,27 @@ def _of_foil(foil: Foil, group: FinGroup, flow: HullFlow | None, water: Water) -
     own = group.own
     induced = group.slope / (OSWALD * np.pi * group.aspect)
     place = "equation 1; NACA 1307, slender-body carry-over"
-    streams = {"free stream": 1.0} if flow is None else {"free stream": 1.0, "boundary layer": _pressure(flow, group)}
+    pressure = 1.0 if flow is None else _pressure(flow, group)
+    stream = "free stream" if flow is None else "boundary layer"
     lever = 0.0 if flow is None else PLACE * flow.hull.length
     works = "whicker1958, pitts1957" + (", glauert1926" if foil.control and foil.flap < 1.0 else "")
     out = []
-    for stream, pressure in streams.items():
-        whole = group.slope * foil.area * pressure * group.carried
-        effect = foil.sign * flap_effect(foil.flap) * whole / group.carried * group.turned if foil.control else 0.0
-        lift = FoilForce(
-            centre, axis, half, normal, whole * own, whole * (1.0 - own), 0.0, 0.0, whole, induced, 0.0, "", water.density
-        )  # fmt: skip
-        turned = FoilForce(
-            centre, axis, half, normal, 0.0, 0.0, effect * own, effect * (1.0 - own), whole, induced, 0.0, foil.control,
-            water.density,
-        )  # fmt: skip
-        kinds = [("fin lift", lift, LIFT_SHARE)] + ([("control", turned, CONTROL_SHARE)] if foil.control else [])
-        out += [
-            Contribution(
-                foil.name, kind, f"fins, {stream}", force, share, works, place, outside, EACH, lever, _named(group)
-            )
-            for kind, force, share in kinds
-        ]
-    pressure = list(streams.values())[-1]
+    whole = group.slope * foil.area * pressure * group.carried
+    effect = foil.sign * flap_effect(foil.flap) * whole / group.carried * group.turned if foil.control else 0.0
+    lift = FoilForce(
+        centre, axis, half, normal, whole * own, whole * (1.0 - own), 0.0, 0.0, whole, induced, 0.0, "", water.density
+    )  # fmt: skip
+    turned = FoilForce(
+        centre, axis, half, normal, 0.0, 0.0, effect * own, effect * (1.0 - own), whole, induced, 0.0, foil.control,
+        water.density,
+    )  # fmt: skip
+    kinds = [("fin lift", lift, LIFT_SHARE)] + ([("control", turned, CONTROL_SHARE)] if foil.control else [])
+    out += [
+        Contribution(
+            foil.name, kind, f"fins, {stream}", force, share, works, place, outside, EACH, lever, _named(group)
+        )
+        for kind, force, share in kinds
+    ]
     for tips in TIPS:
         cross = cross_flow_drag(foil.tip_chord / foil.root_chord, tips) / group.aspect * foil.area * pressure
         force = FoilForce(centre, axis, half, normal, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, cross, "", water.density)
@@ -264,7 +263,7 @@ def _washes(
     if flow is None:
         return []
     out = []
-    streams = {"free stream": (1.0, 1.0), "boundary layer": (_pressure(flow, ahead), _pressure(flow, behind))}
+    first, second = _pressure(flow, ahead), _pressure(flow, behind)
     for foil in ahead.foils:
         across = (foil.tip - foil.root) * np.array([0.0, 1.0, 1.0])
         direction = across / np.linalg.norm(across)
@@ -275,23 +274,22 @@ def _washes(
         source = np.array([centre[0] - half, *foil.stand])
         place = np.array([behind.quarter, *behind.foils[0].stand])
         effect = foil.sign * flap_effect(foil.flap) * ahead.turned / ahead.carried if foil.control else 0.0
-        for stream, (first, second) in streams.items():
-            lift = ahead.slope * foil.area * ahead.carried * first
-            strength = lift / (height - ahead.radius**2 / height)
-            force, roll = _strips(behind, direction, height, strength * behind.slope * second)
-            if abs(float(ahead.normal @ behind.normal)) > ALONG:
-                side = float(np.sign(direction @ behind.direction))
-                passed = strength * (height - behind.radius**2 / height) * behind.seen(side * height)
-                force = passed * behind.finite * second * normal
-            area = float(np.linalg.norm(force))
-            towards = force / area if area > 0.0 else normal
-            wash = Wash(source, place, normal, towards, area, roll, foil.control, effect, water.density)
-            out.append(
-                Contribution(
-                    f"{_named(behind)} behind {foil.name}", "sidewash", f"fins, {stream}", wash, WASH_SHARE, "pitts1957",
-                    "trailing vortex at pi/4 of the exposed span, carried aft along x",
-                )
-            )  # fmt: skip
+        lift = ahead.slope * foil.area * ahead.carried * first
+        strength = lift / (height - ahead.radius**2 / height)
+        force, roll = _strips(behind, direction, height, strength * behind.slope * second)
+        if abs(float(ahead.normal @ behind.normal)) > ALONG:
+            side = float(np.sign(direction @ behind.direction))
+            passed = strength * (height - behind.radius**2 / height) * behind.seen(side * height)
+            force = passed * behind.finite * second * normal
+        area = float(np.linalg.norm(force))
+        towards = force / area if area > 0.0 else normal
+        wash = Wash(source, place, normal, towards, area, roll, foil.control, effect, water.density)
+        out.append(
+            Contribution(
+                f"{_named(behind)} behind {foil.name}", "sidewash", "fins, boundary layer", wash, WASH_SHARE, "pitts1957",
+                "trailing vortex at pi/4 of the exposed span, carried aft along x",
+            )
+        )  # fmt: skip
     return out
 
 

@@ -19,25 +19,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
-from coeflab.core.types import Array, brief
+from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import Domain, FittedModel, residuals_in_words
+from coeflab.fits.results.fitted_model import Domain, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import wind_errors, wind_forces
-from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.law.scaling import Scaling
+    from coeflab.tables.force_table import ForceTable
 
 
 def read_printed(items: Sequence[str], place: str) -> dict[str, float]:

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,16 +25,20 @@ from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep
 from coeflab.fits.rows.straight_runs import resistance
-from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, one_size, sweep_rows
+from coeflab.fits.rows.sweeps import INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows, images
-from coeflab.fits.statistics.origin_slope import OriginSlope
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.force_table import AT_REST
+
+if TYPE_CHECKING:
+    from coeflab.fits.rows.sweeps import SweepRows
+    from coeflab.fits.statistics.origin_slope import OriginSlope
+    from coeflab.law.scaling import Scaling
+    from coeflab.tables.force_table import ForceTable
 
 summary = "slopes at the origin without a choice of form or window, with a calibrated uncertainty"
 citations = ("wahba1990", "kimeldorf1970", "grunwald2017", "mackinnon1985", "bell2002", "hurvich1989")

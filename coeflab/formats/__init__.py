@@ -119,6 +119,21 @@ class SteeredExporter(SimulatorExporter, Protocol):
 
 
 @runtime_checkable
+class BuiltExporter(Exporter, Protocol):
+    """An exporter whose files hold what a compiler of this machine makes of them, where there is one."""
+
+    def built(self, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
+        """The files with it.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        """
+        ...
+
+
+@runtime_checkable
 class PartialExporter(SimulatorExporter, Protocol):
     """A simulator's exporter that leaves out of the law what its target would do the wrong way round.
 

@@ -67,7 +67,7 @@ def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterIn
     """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
     that are not in the added mass it is given, and an added mass of another body.
     """
-    tables = tuple(_table(s.model) for s in sources_of(parameters).tables)
+    tables = () if "tables" in holds else tuple(_table(s.model) for s in sources_of(parameters).tables)
     unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
     out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, water))]

@@ -9,7 +9,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.wording import one_line
 
 MOST, LONGEST = 40, 80  # names in a finding, letters in a name
-FORCES = ("strips", "terms", "equations", "forces")  # on the hull
+FORCES = ("strips", "terms", "equations", "forces", "surfaces")  # on the hull
 
 
 def left_out(subject: str, kind: str, names: Iterable[str]) -> tuple[Finding, ...]:
@@ -35,7 +35,7 @@ def left_out(subject: str, kind: str, names: Iterable[str]) -> tuple[Finding, ..
 # What moves nothing: letters of file or class names.
 SILENT = (
     "publisher", "broadcaster", "sensor", "usercommands", "user-commands", "physics", "imu", "contact", "odometry", "camera", "dvl",
-    "navsat", "gps", "altimeter", "pressure", "magnetometer", "label", "logrecord", "sceneb", "ros_interface", "salinity",
+    "navsat", "particle", "jointposition", "joint-position", "gps", "altimeter", "pressure", "magnetometer", "label", "logrecord", "sceneb", "ros_interface", "salinity",
 )  # fmt: skip
 
 

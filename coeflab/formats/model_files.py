@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
 from coeflab.core.errors import InputError
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
@@ -18,6 +19,7 @@ from coeflab.vehicle.plausibility import plausibility
 
 OWN = "coeflab"
 DENSITY = "density"
+LEFT_OUT = "model.left_out"
 STAND_IN = 1000.0  # kg/m^3, fresh water; the finding says so
 
 
@@ -42,6 +44,15 @@ class ModelFile:
     def passed(self) -> bool:
         """Whether nothing failed."""
         return not any(c.severity is Severity.FAIL for c in self.findings)
+
+    @property
+    def left_out(self) -> dict[str, list[str]]:
+        """What the file states and the parameter file does not hold: names by kind."""
+        out: dict[str, list[str]] = {}
+        for f in self.parameters.findings:
+            if f.code == LEFT_OUT:
+                out.setdefault(str(f["kind"]), []).extend(map(str, f["names"]))
+        return out
 
 
 def recognised(path: Path) -> str:
@@ -102,9 +113,63 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
         parameters = importer.read(path, density)
     except NoDensityError:
         parameters = importer.read(path, STAND_IN)
-        findings.append(Check(kind, DENSITY, Severity.NOTE, f"{STAND_IN:g} kg/m^3 is assumed", "a density in the file",
-                              "Only primes depend on it; give --density."))  # fmt: skip
+        said = Finding.of("model.density", parameters.name, Severity.NOTE, statistic=STAND_IN, advice="--density 1025")
+        parameters = parameters.model_copy(update={"findings": (*parameters.findings, said)})
     findings += importer.examine(path)
     known = any(c.subject.startswith(DENSITY) for c in findings)
-    found = [c for c in plausibility(parameters, importer.signs) if not (known and c.subject == DENSITY)]
+    asked = {_question(c) for c in findings if c.severity in (Severity.WARN, Severity.FAIL)}
+    found = [
+        c for c in plausibility(parameters, importer.signs)
+        if not (known and c.subject == DENSITY) and _question(c) not in asked
+    ]  # fmt: skip
     return ModelFile(kind, parameters, (*findings, *found))
+
+
+def _question(check: Check) -> tuple[str, str]:
+    """What a check asks, whatever the key is called."""
+    return check.rule, check.statistic
+
+
+def read_vehicle_file(path: Path, density: float | None = None) -> ParameterFile:
+    """The parameter file of whatever a person names: its own JSON, or a model of any format that is known.
+
+    Parameters
+    ----------
+    path : path
+        Or the name of a shipped file.
+    density : float, optional
+        kg/m^3, for models that state none.
+
+    Raises
+    ------
+    InputError
+    PluginError
+        The format has no importer here.
+
+    Notes
+    -----
+    What checks of a foreign model found travels with it: a finding counts those that fail or warn.
+    """
+    typed = file_typed(path)
+    refuse_shape(typed)
+    if recognised_or_own(typed) == OWN:
+        return read_parameter_file(path)
+    found = read_model_file(typed, density)
+    failed, warned = (sum(c.severity is s for c in found.findings) for s in (Severity.FAIL, Severity.WARN))
+    if not failed + warned:
+        return found.parameters
+    said = Finding.of(
+        "model.checks", found.parameters.name, Severity.WARN, statistic=float(failed + warned), threshold=0.0,
+        advice=f"coeflab params check {shlex.quote(typed.name)}", format=found.format, failed=failed, warned=warned,
+    )  # fmt: skip
+    return found.parameters.model_copy(update={"findings": (*found.parameters.findings, said)})
+
+
+def recognised_or_own(path: Path) -> str:
+    """The format of a file; that of a parameter file where it looks like none, whose reader then says what it is."""
+    text = read_text(path, max(XML_BYTES, JSON_BYTES))
+    if "\0" in text or text.lstrip().startswith("{"):
+        return OWN
+    importers = {name: PARAMETER_IMPORTERS.load(name) for name in PARAMETER_IMPORTERS.usable()}
+    known = [name for name, importer in importers.items() if importer.recognises(path)]
+    return known[0] if len(known) == 1 else OWN

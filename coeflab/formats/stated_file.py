@@ -8,7 +8,7 @@ A link with hydrodynamics as a parameter file: what SDF and URDF models share on
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
-from coeflab.core.finding import Finding
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief, locked
@@ -30,7 +30,12 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import skew
 from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint, Provenance
-from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.parameter_parts import (
+    ParameterCovariance,
+    ParameterHydrostatics,
+    ParameterSurface,
+    ParameterThruster,
+)
 from coeflab.vehicle.second_order import ACROSS, ROUNDING, SURGE, SecondOrder, products_once
 
 Law = Literal["motion", "rest"]
@@ -55,6 +60,9 @@ class Stated:
         Added mass about the point, where the file is to hold it as such: symmetric and positive.
     matrix_body, matrix_method : str
     mass : MassProperties or None
+    hydrostatics : ParameterHydrostatics or None
+    thrusters : tuple of ParameterThruster
+    surfaces : tuple of ParameterSurface
     notes : tuple of str
     findings : tuple of Finding
         What the file holds and this does not.
@@ -71,6 +79,9 @@ class Stated:
     matrix_body: str = ""
     matrix_method: str = "stated"
     mass: MassProperties | None = None
+    hydrostatics: ParameterHydrostatics | None = None
+    thrusters: tuple[ParameterThruster, ...] = ()
+    surfaces: tuple[ParameterSurface, ...] = ()
     notes: tuple[str, ...] = field(default=())
     findings: tuple[Finding, ...] = ()
 
@@ -108,6 +119,9 @@ def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, .
         covariance=ParameterCovariance(symbols=(), matrix=()),
         covered=(),
         added_mass=hull,
+        hydrostatics=s.hydrostatics,
+        thrusters=s.thrusters,
+        surfaces=s.surfaces,
         findings=s.findings,
         provenance=Provenance(
             coeflab_version=VERSION,
@@ -136,8 +150,20 @@ def _coefficient(symbol: str, value: float, law: Law, s: Stated, hull: AddedMass
     )
 
 
+ROUNDED = 1e-3  # of the diagonal: numbers of four digits that mean one
+
+
+def but_for_rounding(matrix: Array) -> Array:
+    """The mean of a matrix and its mirror image where both are equal to the digits that people write; else as it is."""
+    root = np.sqrt(np.abs(np.diag(matrix)))
+    scale = np.maximum(np.outer(root, root), np.maximum(np.abs(matrix), np.abs(matrix.T)))
+    alike = np.abs(matrix - matrix.T) <= ROUNDED * scale
+    return np.asarray((matrix + matrix.T) / 2.0 if np.all(alike) else matrix)
+
+
 def matrix_doubts(matrix: Array) -> tuple[str, ...]:
     """What is wrong with an added mass (6, 6) about one point, in words; empty where it can be a kinetic energy."""
+    matrix = but_for_rounding(matrix)
     found = definiteness(matrix)
     if found.holds:
         return ()
@@ -220,7 +246,7 @@ Coefficients = dict[str, tuple[float, Law]]
 
 def kept_matrix(matrix: Array) -> Array | None:
     """The matrix where it can be an added mass; None where it is zero or no kinetic energy."""
-    return matrix if np.any(matrix) and not matrix_doubts(matrix) else None
+    return but_for_rounding(matrix) if np.any(matrix) and not matrix_doubts(matrix) else None
 
 
 def stated_coefficients(
@@ -287,7 +313,9 @@ def _take(row: Array, part: float) -> None:
     row[0] = 0.0 if abs(left) <= ROUNDING * abs(part) else left
 
 
-def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes: list[str]) -> MassProperties | None:
+def stated_mass(
+    mass: float | None, centre: Array, inertia: Array | None, findings: list[Finding], subject: str
+) -> MassProperties | None:
     """Mass properties about the link's origin, FRD.
 
     Parameters
@@ -296,9 +324,11 @@ def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes:
     centre : (3,) array
         From the link's origin.
     inertia : (3, 3) array or None
-        About the centre of gravity; left out, with a note, where no body has it.
-    notes : list of str
+        About the centre of gravity; left out, with a finding, where no body has it.
+    findings : list of Finding
         Is added to.
+    subject : str
+        Whom it is about.
     """
     if mass is None or mass <= 0.0:
         return None
@@ -308,7 +338,7 @@ def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes:
         about = inertia - mass * arm @ arm
         doubt = inertia_doubt(mass, centre, about)
         if doubt:
-            notes.append(f"moments of inertia left out: {doubt}")
+            findings.append(Finding.of("model.no_inertia", subject, Severity.FAIL, why=doubt))
             about = None
     equal = about is not None and abs(about[1, 1] - about[2, 2]) <= 1e-9 * abs(about[1, 1])
     transverse = float(about[1, 1]) if about is not None and equal else None
@@ -344,6 +374,10 @@ class LinkModel:
     notes : tuple of str
     findings : tuple of Finding
         What the file holds and this does not.
+    hydrostatics, thrusters, surfaces
+        As of `Stated`.
+    controls : mapping of symbol to float
+        Such as Ydr, of U^2, SI.
     """
 
     model: str
@@ -359,6 +393,10 @@ class LinkModel:
     length_name: str = ""
     notes: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    hydrostatics: ParameterHydrostatics | None = None
+    thrusters: tuple[ParameterThruster, ...] = ()
+    surfaces: tuple[ParameterSurface, ...] = ()
+    controls: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in ("added", "matrix", "centre"):
@@ -401,16 +439,26 @@ def link_file(
     if doubts and np.any(link.added):
         notes.append("so the C_A(nu) nu of the simulator is written product by product, not as an added mass")
     name = one_line(link.model or path.stem)[:200]
+    findings = list(link.findings)
     stated = Stated(
         name=name,
         body=name,
         scaling=scaling,
         conditions=at,
-        coefficients=stated_coefficients(link.form, link.added, link.matrix, scaling, at),
+        coefficients=stated_coefficients(link.form, link.added, link.matrix, scaling, at)
+        | {
+            symbol: (value / scaling.unit(symbol, at.density), "motion")
+            for symbol, value in link.controls.items()
+            if value
+        },
         datum=Datum(f"origin of the link {one_line(link.link)}"[:200]),
         matrix=kept_matrix(link.matrix),
-        mass=stated_mass(link.mass, link.centre, link.inertia, notes),
+        mass=stated_mass(link.mass, link.centre, link.inertia, findings, name),
+        hydrostatics=link.hydrostatics,
+        thrusters=link.thrusters,
+        surfaces=link.surfaces,
         notes=tuple(notes),
-        findings=link.findings,
+        findings=(),
     )
+    stated = replace(stated, findings=tuple(findings))
     return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)

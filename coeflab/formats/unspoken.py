@@ -31,11 +31,18 @@ def without_law(parameters: ParameterFile) -> tuple[str, ...]:
     return (f"no law for {', '.join(silent)}: only {listed(moving)} may move{speed}; hold {listed(still)}",)
 
 
-def in_header(parameters: ParameterFile) -> tuple[str, ...]:
+def in_header(parameters: ParameterFile, *, tables: bool = False) -> tuple[str, ...]:
     """What the head of every exported file says: components without a law, tables of the law that are not in the file, and what
     was found of the numbers, each in one line.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    tables : bool
+        Whether the file holds the tables.
     """
-    return (*without_law(parameters), *lacking_tables(parameters), *found_in(parameters))
+    lacking = () if tables else lacking_tables(parameters)
+    return (*without_law(parameters), *lacking, *found_in(parameters))
 
 
 def lacking_tables(parameters: ParameterFile) -> tuple[str, ...]:

@@ -14,7 +14,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 from scipy.spatial import ConvexHull, QhullError
 
 from coeflab.core.types import Array, brief, locked
@@ -170,6 +169,8 @@ def _active(point: Array, normals: Array, bounds: Array) -> NDArray[np.intp]:
     goal = np.zeros(len(rows))
     goal[-1] = 1.0
     try:
+        from scipy.optimize import nnls
+
         dual, _ = nnls(rows, goal)
     except RuntimeError:
         return np.array([int(np.argmax(beyond))])

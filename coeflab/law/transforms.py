@@ -178,3 +178,9 @@ def turned(matrix: Array, rotation: Array) -> Array:
     """The (6, 6) matrix in outer axes; ``rotation`` (3, 3) takes components along the part's axes to the outer ones."""
     both = np.kron(np.eye(2), rotation)
     return np.asarray(both @ matrix @ both.T)
+
+
+def turned_about(axis: Array, angle: float) -> Array:
+    """(3, 3) rotation about a unit axis (3,), rad, right-handed (Rodrigues)."""
+    s = skew(axis)
+    return np.asarray(np.eye(3) + np.sin(angle) * s + (1.0 - np.cos(angle)) * s @ s)

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 from coeflab.core.types import Array, brief
 from coeflab.law.force_law import SLOWEST, ForceLaw
 from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
-from coeflab.law.transforms import along_body, skew
+from coeflab.law.transforms import along_body
 
 FIRST, SECOND = np.triu_indices(6)
 FLAT = 1e-12
@@ -148,12 +148,6 @@ def from_euler(roll: float, pitch: float, yaw: float) -> Array:
             cr * cp * sy - sr * sp * cy,
         ]
     )
-
-
-def turned_about(axis: Array, angle: float) -> Array:
-    """(3, 3) rotation about a unit axis (3,), rad, right-handed (Rodrigues)."""
-    s = skew(axis)
-    return np.asarray(np.eye(3) + np.sin(angle) * s + (1.0 - np.cos(angle)) * s @ s)
 
 
 def restoring(attitude: Array, weight: float, buoyancy: float, centre: Array, centre_of_buoyancy: Array) -> Array:

@@ -15,7 +15,8 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
-from coeflab.motion.dynamics import restoring, turned_about
+from coeflab.law.transforms import turned_about
+from coeflab.motion.dynamics import restoring
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
+from coeflab.fits.uncertainty.budget import as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import MOTIONS
 from coeflab.tables.assumptions import carried
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.force_table import AT_REST
 from coeflab.tables.planar_motion import PlanarMotionTable
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.law.scaling import Scaling
+    from coeflab.tables.force_table import ForceTable
 
 FEWEST = 3
 COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once

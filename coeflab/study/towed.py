@@ -10,24 +10,31 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget
-from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.scaling import Scaling
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.lines import line
 from coeflab.study.secants import secant
-from coeflab.study.study import PlannedTow, Study
-from coeflab.study.validation import Validation, against_printed, reynolds_of, validation, without_grid
+from coeflab.study.validation import against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
-from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.vehicle.reference import Reference, Relation
+from coeflab.tables.force_table import AT_REST
+from coeflab.vehicle.reference import Relation
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.law.scaling import Scaling
+    from coeflab.study.study import PlannedTow, Study
+    from coeflab.study.validation import Validation
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.vehicle.reference import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}

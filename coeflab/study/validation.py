@@ -11,19 +11,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.bodies.hull_flow import FRICTION_APART, friction_line
 from coeflab.core.types import brief
-from coeflab.fits.uncertainty.budget import BOUND_ONLY, Budget
-from coeflab.law.coefficient import CoefficientSet
+from coeflab.fits.uncertainty.budget import BOUND_ONLY
 from coeflab.law.symbols import derivative
-from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
-from coeflab.tables.force_table import STUDIES, ForceTable
-from coeflab.vehicle.reference import Reference
+from coeflab.tables.force_table import STUDIES
 from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
+
+if TYPE_CHECKING:
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.law.coefficient import CoefficientSet
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.vehicle.reference import Reference
 
 
 @brief

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,19 +13,24 @@ from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import readable
 from coeflab.core.text.bounded import stream_of
-from coeflab.core.text.delimited import Cells, read_cells
+from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
-from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
-from coeflab.tables.collect import collect, collect_groups
+from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import evidence
-from coeflab.tables.force_table import STUDIES, ForceTable
+from coeflab.tables.force_table import STUDIES
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
-from coeflab.tables.mapping import Assigned, assigned, declared_mapping, mapped_table
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.mapping import assigned, declared_mapping, mapped_table
 from coeflab.tables.runs import find_runs
 from coeflab.tables.transposed import upright
+
+if TYPE_CHECKING:
+    from coeflab.core.text.delimited import Cells
+    from coeflab.tables.campaign import Campaign, InputUncertainty, TableDeclaration
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.mapping import Assigned
+    from coeflab.tables.raw_table import RawTable
 
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
@@ -149,6 +154,8 @@ def read_raw(
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
             return upright(importer.raw(path, given))
+        from coeflab.tables.collect import collect
+
         names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
         return collect(
             path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
@@ -175,6 +182,8 @@ def read_groups(
     with IMPORTERS.guarded(name):
         names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
         patterns = [text.strip() for text in names.split(BETWEEN)]
+        from coeflab.tables.collect import collect_groups
+
         groups = collect_groups(
             path, name, options=given, patterns=patterns, run_list=Path(runs) if runs else None, progress=progress,
             state=Path(state) if state else None,

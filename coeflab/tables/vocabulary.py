@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown, together
-from coeflab.core.text.toml import read_toml
+from coeflab.core.text.bounded import own_text
+from coeflab.core.text.toml import own_toml, read_toml
 
 SECTIONS = ("columns", "flow", "coefficients", "several", "symbols", "units")
 Words = Mapping[str, str]
@@ -69,8 +69,8 @@ def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 @cache
 def _shipped() -> Vocabulary:
-    text = files("coeflab.tables.words").joinpath("vocabulary.toml").read_text(encoding="utf-8")
-    return Vocabulary(**_read(tomllib.loads(text)))
+    sections: dict[str, Any] = _read(own_toml(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
+    return Vocabulary(**sections)
 
 
 _OWN: ContextVar[Vocabulary | None] = ContextVar("vocabulary", default=None)

@@ -10,38 +10,40 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.particulars import likeness
-from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.provenance import InputFile
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.law.added_mass import AddedMass, potential_part
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.added_mass import potential_part
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, about_another
-from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
-from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.drag_reynolds import drag_elsewhere
 from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
-from coeflab.vehicle.from_shape import equipped
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_model import ModelArea, ModelDomain, ModelTerm, ModelVariable, ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance, added_mass_record
-from coeflab.vehicle.reference import Reference
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.core.provenance import InputFile
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.law.added_mass import AddedMass
+    from coeflab.law.coefficient import CoefficientSet
+    from coeflab.law.scaling import Conditions, Scaling
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.vehicle.reference import Reference
 
 
 def _literature(
@@ -389,6 +391,8 @@ def assemble(
         notes += note
     hull = None
     if found is not None:
+        from coeflab.bodies.mesh.particulars import likeness
+
         alike = likeness(
             found.body, group.body, configuration, own_file=body is not None and body.files == found.body.files
         )
@@ -453,6 +457,8 @@ def assemble(
         and configuration.mass is not None
         and configuration.mass.centre is not None
     ):
+        from coeflab.vehicle.from_shape import equipped
+
         made = equipped(made, body, configuration)
     munk = {f.campaign: float(f.settings["munk"]) for f in chosen if "munk" in f.settings}
     about = [

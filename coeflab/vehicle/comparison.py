@@ -7,7 +7,7 @@ Fitted tables of two parameter files side by side, on a grid inside the data of 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Protocol
@@ -19,6 +19,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.domain import clamped, inside
 from coeflab.law.symbols import ANGULAR, primed
+from coeflab.vehicle.matching import by_plain_names, with_matrix
 from coeflab.vehicle.parameter_file import ParameterFile, Provenance
 from coeflab.vehicle.parameter_model import ParameterModel
 
@@ -364,8 +365,10 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         What the comparison calls them; their own names by default.
     """
     name_a, name_b = names or (a.name, b.name)
-    ours, theirs = coefficient_set(a), coefficient_set(b)
-    said = []
+    (ours, own), (theirs, first) = (by_plain_names(coefficient_set(f)) for f in (a, b))
+    stated = list(dict.fromkeys((*ours.symbols, *theirs.symbols)))
+    (ours, of_ours), (theirs, of_theirs) = with_matrix(ours, a), with_matrix(theirs, b)
+    said = _matched(ours, theirs, (own, first), (of_ours, of_theirs), stated, (name_a, name_b))
     if a.body != b.body:
         said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:
@@ -384,12 +387,12 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         moved = theirs.about(ours.reference_point)
     behind = _contributors(theirs, moved)
     rows = []
-    for symbol in dict.fromkeys((*ours.symbols, *theirs.symbols)):
+    for symbol in stated:
         row = _row(symbol, ours, theirs, moved, same_datum)
         if row.difference is not None:
-            first = ours[symbol]
-            pairs = [shared_tables(first, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
-            shared = tuple(sorted({t for p in pairs for t in p})) if first.origin == "fit" else ()
+            mine = ours[symbol]
+            pairs = [shared_tables(mine, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
+            shared = tuple(sorted({t for p in pairs for t in p})) if mine.origin == "fit" else ()
             row = replace(
                 row, shared=shared, reason=row.reason or (f"both rest on {', '.join(shared)}" if shared else "")
             )
@@ -404,6 +407,24 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         for table, names in alike.items()
     ]
     return Comparison(name_a, name_b, a.body == b.body, tuple(rows), tuple(said), models)
+
+
+def _matched(
+    ours: CoefficientSet, theirs: CoefficientSet, first: tuple[dict[str, str], dict[str, str]],
+    entries: tuple[frozenset[str], frozenset[str]], stated: Sequence[str], names: tuple[str, str],
+) -> list[str]:  # fmt: skip
+    """What was held against another name or against an entry of a matrix, in words."""
+    pairs = [
+        f"{primed(one)} as {primed(other)}"
+        for symbol in stated
+        if symbol in ours and symbol in theirs
+        and (one := first[1].get(symbol, symbol)) != (other := first[0].get(symbol, symbol))
+    ]  # fmt: skip
+    out = [f"of {names[1]}, equal on a straight course: {', '.join(pairs)}"] if pairs else []
+    for k in (0, 1):
+        if used := [primed(s) for s in stated if s in entries[k]]:
+            out.append(f"of {names[k]} from its added mass matrix: {', '.join(used)}")
+    return out
 
 
 def _contributors(before: CoefficientSet, moved: CoefficientSet) -> dict[str, list[Coefficient]]:

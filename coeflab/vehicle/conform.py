@@ -15,7 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.text.bounded import own_bytes
+from coeflab.core.text.json import parse_json
 
 FOLDER = Path(__file__).with_name("conformance")
 TOLERANCE = 1e-12  # of the largest force, or moment, of a file; of the largest rate
@@ -58,7 +61,7 @@ def vector_sets() -> tuple[VectorSet, ...]:
     """
     out = []
     for path in sorted(FOLDER.glob("*.json")):
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = parse_json(own_bytes(path).decode())
         out.append(VectorSet(path.stem, content["rules"], content["parameters"], tuple(content["vectors"])))
     return tuple(out)
 
@@ -160,8 +163,8 @@ def conform(command: Sequence[str], tolerance: float = TOLERANCE) -> tuple[Findi
                 done = subprocess.run(
                     [*command, str(path)], input=json.dumps(s.states), capture_output=True, text=True, timeout=LONGEST, check=False,
                 )  # fmt: skip
-                answers = json.loads(done.stdout) if done.returncode == 0 else None
-            except (OSError, ValueError, subprocess.TimeoutExpired) as why:
+                answers = parse_json(done.stdout) if done.returncode == 0 else None
+            except (OSError, ValueError, InputError, subprocess.TimeoutExpired) as why:
                 out.append(_fails(s, "conform.not_run", why=type(why).__name__))
                 continue
             if not isinstance(answers, list):

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.bodies.hull_flow import FRICTION_APART, friction_line
 from coeflab.core.finding import Finding, Severity
-from coeflab.law.coefficient import Coefficient
-from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import derivative, primed
-from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.law.scaling import Conditions
+    from coeflab.tables.force_table import ForceTable
 
 
 def drag_elsewhere(

@@ -9,17 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import Array
-from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import derivative, primed
-from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.plausibility import driving_terms
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.vehicle.parameter_file import ParameterFile
+    from coeflab.vehicle.parameter_model import ParameterModel
 
 
 def without_driving_terms(p: ParameterFile, again: Callable[[ParameterFile], ParameterFile]) -> ParameterFile:

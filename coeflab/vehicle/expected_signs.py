@@ -9,20 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.core.types import Array, brief, locked
-from coeflab.law.force_law import CONTROLS, ForceTerm
+from coeflab.core.types import brief, locked
+from coeflab.law.force_law import CONTROLS
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, primed
 from coeflab.vehicle.force_law import motion_law, stated_terms
 from coeflab.vehicle.inertia import water_inertia
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.law.force_law import ForceTerm
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 NAME = "plausibility"
 STEP = 1e-4  # of the speed, of the rate U/L, of a radian

@@ -5,31 +5,36 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.mass_model import at_rest, rest_words
-from coeflab.bodies.pieces import Control
 from coeflab.bodies.shape import Parts, Revolution
-from coeflab.bodies.thrusters import Thruster
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import brief, locked
 from coeflab.core.wording import listed
-from coeflab.estimates import Estimates
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
-from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import CONTROLS
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import (
     CurveSegment,
     ParameterCurve,
     ParameterHydrostatics,
     ParameterSurface,
     ParameterThruster,
+    curve_of,
 )
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body, Configuration
+    from coeflab.bodies.pieces import Control
+    from coeflab.bodies.thrusters import Thruster
+    from coeflab.core.types import Array
+    from coeflab.estimates import Estimates
+    from coeflab.law.scaling import Conditions
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 CLOSED = "A vehicle needs a closed hull; coeflab added-mass takes sheets alone."
 ESTIMATES = "estimates"  # what fit and campaign are called
@@ -297,7 +302,7 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     """
     point = np.array(parameters.reference_point.point)
     update: dict[str, object] = {
-        "thrusters": tuple(_thruster(t, point, parameters.conditions) for t in body.thrusters),
+        "thrusters": tuple(parameter_thruster(t, point, parameters.conditions) for t in body.thrusters),
         "surfaces": _surfaces(body.controls),
     }
     if configuration.volume and configuration.centre_of_buoyancy is not None:
@@ -306,16 +311,22 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     return parameters.model_copy(update=update)
 
 
-def _thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
-    points = t.thrusts(at.speed, at.density)
-    pairs = list(pairwise(points))
+def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
+    """A thruster of a body about a point of its datum; straight lines between its points, or squares of the command."""
     segments = []
-    for (low, start), (high, end) in pairs:
+    for (low, start), (high, end) in () if t.squares else pairwise(t.thrusts(at.speed, at.density)):
         slope = (end - start) / (high - low)
         segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
-    curve = ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
+    curve = curve_of(t.squares, t.command, t.unit) or ParameterCurve(
+        command=t.command, unit=t.unit, segments=tuple(segments)
+    )
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
-    return ParameterThruster(name=t.name, position=place, direction=axis, curve=curve)
+    tilting = None if t.tilt_axis is None else tuple(float(v) for v in t.tilt_axis)
+    low, high = t.tilt if tilting is not None else (0.0, 0.0)
+    return ParameterThruster(
+        name=t.name, position=place, direction=axis, curve=curve, torque_curve=curve_of(t.torque, t.command, t.unit),
+        handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high,
+    )  # fmt: skip
 
 
 def by_series(body: Body, speed: float) -> tuple[str, ...]:
@@ -330,7 +341,7 @@ def by_series(body: Body, speed: float) -> tuple[str, ...]:
     return tuple(
         f"thrust of {t.name}: estimate, Wageningen B-series at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
         for t in body.thrusters
-        if t.curve is None
+        if t.curve is None and not t.squares
     )
 
 

@@ -7,16 +7,20 @@ somebody measured. The measured ones are taken where they leave an inertia, and 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import brief, locked
 from coeflab.law.added_mass import ROUNDING, AddedMass, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import skew
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 SAME = 1e-9
 APART = 0.1  # of a stated entry: more than sources state for it

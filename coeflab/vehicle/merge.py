@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +14,17 @@ from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed
 from coeflab.law.added_mass import potential_part
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
-from coeflab.law.scaling import Scaling
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.matching import by_plain_names, spelled_as
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import CoefficientSet
+    from coeflab.law.scaling import Scaling
 
 SAME_LENGTH = 1e-3  # of the length
 
@@ -105,7 +110,8 @@ def merged(
             f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
             "give the body.toml of the shape the datum of the tables, and the vehicle again."
         )
-    theirs = theirs.to_length(ours.scaling).about(ours.reference_point)
+    theirs, first = by_plain_names(theirs.to_length(ours.scaling))
+    theirs = spelled_as(theirs.about(ours.reference_point), first, ours.symbols)
     taken = {
         c.symbol: i
         for i, c in enumerate(theirs.coefficients)

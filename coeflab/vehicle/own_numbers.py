@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.bodies.thrusters import ThrusterKeys
 from coeflab.core.axes import Datum
+from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.core.units import also_written, positive_typed, same_unit, three_typed
@@ -22,8 +24,9 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling, doubtful_size
 from coeflab.law.symbols import derivative, primed
+from coeflab.vehicle.from_shape import parameter_thruster
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
-from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics
+from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics, ParameterThruster
 
 STATED, BY_HAND = "stated", "--set"
 EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
@@ -205,7 +208,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
 
 def typed_file(
     name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
-    cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "",
+    cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (),
 ) -> ParameterFile:  # fmt: skip
     """A parameter file of what a person typed behind the options of ``coeflab params new``; empty: not stated.
 
@@ -223,6 +226,8 @@ def typed_file(
         Three numbers from it, m, FRD.
     inertia : str
         About the centre of gravity, one or three numbers, kg m^2.
+    thrusters : sequence of str
+        As `typed_thruster` reads them.
 
     Raises
     ------
@@ -268,4 +273,49 @@ def typed_file(
             volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
         )
     datum = Datum.named(about.strip())
-    return stated_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
+    made = stated_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
+    driven = tuple(typed_thruster(t, conditions) for t in thrusters)
+    if twice := repeated(t.name for t in driven):
+        raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
+    return made.model_copy(update={"thrusters": driven})
+
+
+NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit")
+VECTORS = ("place", "axis", "tilt_axis")
+WORDS = ("command", "unit")
+
+
+def typed_thruster(text: str, conditions: Conditions) -> ParameterThruster:
+    """Read ``main; bollard = 60 N; rate = 720; place = -0.8, 0, 0``: the keys of [[thruster]] of a body.toml.
+
+    Parameters
+    ----------
+    text : str
+        A name, then key = value, apart at semicolons; ``axis`` is ahead and ``place`` the reference point unless given.
+    conditions : Conditions
+
+    Raises
+    ------
+    InputError
+    """
+    name, *rest = (part.strip() for part in text.split(";"))
+    keys: dict[str, object] = {"name": name, "place": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
+    for part in filter(None, rest):
+        key, equals, value = (x.strip() for x in part.partition("="))
+        if not equals or key not in (*NUMBERS, *VECTORS, *WORDS):
+            raise InputError(
+                shown(part), f"KEY = VALUE with {', '.join((*NUMBERS, *VECTORS, *WORDS))}", column="--thruster"
+            )
+        try:
+            keys[key] = (
+                [float(x) for x in value.split(",")] if key in VECTORS else float(value) if key not in WORDS else value
+            )
+        except ValueError:
+            keys[key] = value
+    try:
+        stated = validated(ThrusterKeys, keys)
+    except InputError as why:
+        raise InputError(
+            why.found, why.expected, column=f"--thruster {why.column or ''}".strip(), advice=why.advice
+        ) from None
+    return parameter_thruster(stated.made, np.zeros(3), conditions)

@@ -6,19 +6,23 @@ The models refuse unknown keys. What makes a body a vehicle is in the file since
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.stored import Finite, Means, Name, Positive, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import AddedMass, OtherMethod, definiteness
+
+if TYPE_CHECKING:
+    from coeflab.bodies.thrusters import Squares
+    from coeflab.bodies.triangulation import Triangulation
 
 
 @brief
@@ -201,6 +205,14 @@ class ParameterCurve(Strict):
                     return command
                 last = value
         return None
+
+
+def curve_of(squares: Sequence[Squares], command: str, unit: str) -> ParameterCurve | None:
+    """A curve of forces with the square of the command; None of none."""
+    if not squares:
+        return None
+    segments = tuple(CurveSegment(low=s.low, high=s.high, coefficients=(0.0, 0.0, s.per_square)) for s in squares)
+    return ParameterCurve(command=command, unit=unit, segments=segments)
 
 
 class ParameterThruster(Strict):

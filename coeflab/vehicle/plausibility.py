@@ -8,6 +8,7 @@ Whether damping damps, its rates are in radians, and both planes are written in 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,23 +16,37 @@ from numpy.typing import NDArray
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.texts import known
-from coeflab.core.types import Array, brief
+from coeflab.core.types import brief
 from coeflab.law.added_mass import ROUNDING, definiteness
-from coeflab.law.force_law import ForceTerm
-from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.rigid_body import about_another, ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
-from coeflab.vehicle.stated_numbers import AIR, MOMENTS, Written, displaced, gravity, gyration, munk_twice, water
+from coeflab.vehicle.stated_numbers import (
+    AIR,
+    MOMENTS,
+    Written,
+    body_gyration,
+    displaced,
+    gravity,
+    gyration,
+    munk_twice,
+    water,
+)
 from coeflab.vehicle.stated_twice import twice_findings
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.law.force_law import ForceTerm
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 X_APART = "The law of X ends before these points. X does not limit exports and motions; the other components do."
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
+LIGHT = 0.15  # of the mass, across: a ball has 0.5
 SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
 PROBE = 0.05
 NAME, LAW = "plausibility", "law at points"
@@ -108,6 +123,10 @@ def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
         out.append(_added_mass_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
                           "Usual for flat bodies only."))  # fmt: skip
+    across = diagonal[1:][diagonal[1:] > 0.0]
+    if p.mass is not None and across.size and not _in_air(p) and (share := float(np.max(across)) / p.mass.mass) < LIGHT:
+        out.append(_added_mass_check("M_A Yv, Zw", Severity.WARN, f"{share:.2g} of the mass", f"at least {LIGHT:g}",
+                          "A ball has 0.5 of the water that it displaces, a slender body 0.9 across. Is one in another unit?"))  # fmt: skip
     return out
 
 
@@ -423,6 +442,9 @@ def _units(p: ParameterFile) -> list[Check]:
     if p.mass is not None:
         diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
         out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
+        if p.mass.inertia_matrix is not None and not _in_air(p):
+            own = about_another(np.array(p.mass.inertia_matrix), p.mass.mass, centre_of_gravity(p), np.zeros(3))
+            out += body_gyration(NAME, p.mass.mass, np.diag(own).tolist(), density, diagonal.tolist())
     return out
 
 

@@ -16,11 +16,13 @@ from coeflab.core.table import Check
 from coeflab.core.types import Array
 from coeflab.vehicle.second_order import products_once
 
-POUND, SLUG, FOOT = 0.45359237, 14.593902937206, 0.3048
+POUND, SLUG, FOOT, INCH, GRAM, MILLIMETRE = 0.45359237, 14.593902937206, 0.3048, 0.0254, 1e-3, 1e-3
 WATER, AIR = (950.0, 1100.0), (1.1, 1.4)  # kg/m^3; of air near the ground from -20 to 45 deg C
 SLUGS, POUNDS, TONNES = (1.9, 2.1), (60.0, 66.0), (0.95, 1.1)
 FEET_PER_SECOND = (32.0, 32.4)
+GRAVITY = (9.76, 9.84)  # m/s^2, from the equator to the poles (9.780 and 9.832), and 9.8 as people write it
 BUOYANCY = (0.8, 1.25)  # rho V / m of what swims under water, with room for flooded spaces that were left out
+CLOSE = 0.05  # of a factor of lengths, which lie closer together
 NEAR = 0.15  # of a factor between units, for rho V / m is not just one
 SLENDER = (0.05, 3.0)  # radius of gyration of the water over the cube root of the volume, from a sphere to a rod
 SIZES = "units of mass, Yvdot, Nrdot"
@@ -30,6 +32,12 @@ MIXED = {
     SLUG: "the mass in slug",
     FOOT**-3: "the volume in cubic feet",
     POUND: "the mass in pounds",
+    GRAM: "the mass in grams",
+}
+LENGTHS = {
+    unit**-power: f"{count} in {name}"
+    for unit, name in ((FOOT, "feet"), (INCH, "inches"), (MILLIMETRE, "mm"))
+    for power, count in ((1, "one length"), (2, "two lengths, such as a radius,"), (3, "all lengths"))
 }
 
 
@@ -48,8 +56,10 @@ def water(kind: str, density: float, key: str = "density") -> Check:
 
 def gravity(kind: str, value: float, key: str) -> tuple[Check, ...]:
     """A finding where gravity is in feet."""
-    if not FEET_PER_SECOND[0] < abs(value) < FEET_PER_SECOND[1]:
+    if value == 0.0 or GRAVITY[0] <= abs(value) <= GRAVITY[1]:
         return ()
+    if not FEET_PER_SECOND[0] < abs(value) < FEET_PER_SECOND[1]:
+        return (Check(kind, key, Severity.WARN, f"{value:g}", "9.8 m/s^2", "No gravity on earth in m/s^2."),)
     return (Check(kind, key, Severity.FAIL, f"{value:g}", "9.8 m/s^2",
                   "Gravity in ft/s^2. Convert the file to SI: slug and pound to kg, feet to m."),)  # fmt: skip
 
@@ -82,14 +92,52 @@ def displaced(kind: str, mass: float, volume: float, density: float, key: str) -
     if BUOYANCY[0] <= ratio <= BUOYANCY[1]:
         return (Check(kind, key, Severity.PASS, statistic, rule, ""),)
     nearest = min(MIXED, key=lambda factor: abs(ratio / factor - 1.0))
-    likely = f"It looks like {MIXED[nearest]}. Convert both to SI."
-    comment = likely if imperial(ratio) else "Mass, volume and density do not belong together."
+    likely, near = f"It looks like {MIXED[nearest]}. Convert both to SI.", imperial(ratio)
+    if not near:
+        nearest = min(LENGTHS, key=lambda factor: abs(ratio / factor - 1.0))
+        likely, near = f"It looks like {LENGTHS[nearest]}. Convert to SI.", abs(ratio / nearest - 1.0) < CLOSE
+    comment = likely if near else "Mass, volume and density do not belong together."
     return (Check(kind, key, Severity.FAIL, statistic, rule, comment),)
 
 
 def imperial(ratio: float) -> bool:
     """Whether rho V / m is that of a mass or a volume in pound, slug and foot."""
     return any(abs(ratio / factor - 1.0) < NEAR for factor in MIXED)
+
+
+BODY_OVER_WATER = (0.35, 2.9)  # radius of gyration of the body over that of the water; REMUS 100 0.91, a foot is 3.28 m
+BODY_OVER_VOLUME = (0.15, 4.5)  # over the cube root of the volume: a ball 0.39, a rod of 20 diameters 1.9
+
+
+def body_gyration(
+    kind: str, mass: float, inertia: Sequence[float], density: float, added: Sequence[float]
+) -> tuple[Check, ...]:
+    """Whether moments of inertia in kg m^2 can be those of a mass in kg.
+
+    Parameters
+    ----------
+    kind : str
+    mass : float
+    inertia : sequence of float
+        Ix, Iy, Iz about the centre of gravity.
+    density : float
+    added : sequence of float
+        Diagonal of the added mass; zeros where it is not known.
+    """
+    out = []
+    for axis, i, across in (("Iy", 1, 2), ("Iz", 2, 1)):
+        if not (inertia[i] > 0.0 and mass > 0.0 and density > 0.0):
+            continue
+        own = math.sqrt(inertia[i] / mass)
+        by, low, high = own / (mass / density) ** (1.0 / 3.0), *BODY_OVER_VOLUME
+        name = "the cube root of m / rho"
+        if low <= by <= high and added[across] > 0.0 and added[3 + i] > 0.0:
+            by, low, high = own / math.sqrt(added[3 + i] / added[across]), *BODY_OVER_WATER
+            name = "that of the added mass"
+        if not low <= by <= high:
+            out.append(Check(kind, axis, Severity.WARN, f"radius of gyration {own:.3g} m, {by:.3g} of {name}", f"{low:g} to {high:g}",
+                             "Is the inertia in another unit, such as lb ft^2, kg mm^2 or g m^2?"))  # fmt: skip
+    return tuple(out)
 
 
 def no_mass(kind: str, mass: float | None, key: str) -> tuple[Check, ...]:

@@ -5,36 +5,37 @@ What a plan names, read: tables about one reference point, bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.files import stem
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.fits.joint.rows import joint_name, one_length
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
-from coeflab.motion.simulation import manoeuvres_of
 from coeflab.study.checking import checked
 from coeflab.study.fitting import FEWEST, fitted
-from coeflab.study.plan import plan_at, read_plan
-from coeflab.study.study import Conversion, Plan, PlannedConversion, PlannedJoint, Study
-from coeflab.tables.force_table import ForceTable
+from coeflab.study.study import Conversion, Plan, Study
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
-from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
 from coeflab.vehicle.reference import compare, compare_set, read_references
-from coeflab.workbench.exports import exports_of, parameter_files_rendered, refuse_unknown
-from coeflab.workbench.hulls import hulls_of
-from coeflab.workbench.vehicle import from_shape
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.formats.export import Export, Refused
+    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.study.study import PlannedConversion, PlannedJoint
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def settled(table: ForceTable, plan: Plan) -> ForceTable:
@@ -94,7 +95,7 @@ def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
     return read
 
 
-__all__ = ["checked", "fitted", "read_body", "read_tables", "rendered", "run"]
+__all__ = ["checked", "fitted", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
 
@@ -122,7 +123,10 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     """
     if not isinstance(plan, Plan):
         return _of_file(plan, progress)
-    refuse_unknown(plan.exports)
+    if plan.exports:
+        from coeflab.workbench.exports import refuse_unknown
+
+        refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
         return checked(_of_shape(plan, progress), progress)
     tables: list[ForceTable] = []
@@ -156,13 +160,13 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         fits.append(made)
         progress(f"fitted {made.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
-    body = read_body(_body_file(plan.body)) if plan.body else None
+    body = _body(plan)
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits, plan)
     missing = tuple(c for g in groups for c in _missing(g, fits, tables, plan.wanted))
     first = plan.scaling or fits[0].coefficients.scaling
     conditions = plan.conditions or tables[0].conditions
-    hulls = hulls_of(groups, conditions.density, progress)
+    hulls = _hulls(groups, conditions.density, progress)
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
     files = {}
     for g in groups:
@@ -171,8 +175,10 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
                 g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
             )
             if g.base is not None:
+                from coeflab.vehicle.merge import merged
+
                 files[g.name] = merged(read_parameter_file(g.base), files[g.name], g.name).parameters
-    exports, refused = exports_of(plan.exports, files.values(), progress)
+    exports, refused, manoeuvres = _used(plan, files, progress)
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -188,11 +194,38 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         budgets=tuple(budgets),
         exports=exports,
         refused=refused,
-        manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
+        manoeuvres=manoeuvres,
         unfitted=unfitted,
         conversions=tuple(c for planned in plan.conversions for c in conversions(planned, plan, tables)),
     )
     return checked(study, progress)
+
+
+def _hulls(groups: Sequence[PlannedParameterFile], density: float, progress: Progress) -> dict[str, Triangulation]:
+    """Added mass by file, of those that name a hull."""
+    if all(g.hull is None for g in groups):
+        return {}
+    from coeflab.workbench.hulls import hulls_of
+
+    return hulls_of(groups, density, progress)
+
+
+def _used(
+    plan: Plan, files: Mapping[str, ParameterFile], progress: Progress
+) -> tuple[tuple[Export, ...], tuple[Refused, ...], tuple[Simulation, ...]]:
+    """What a plan does with its parameter files; what it does not ask for is not imported."""
+    exports: tuple[Export, ...] = ()
+    refused: tuple[Refused, ...] = ()
+    manoeuvres: tuple[Simulation, ...] = ()
+    if plan.exports:
+        from coeflab.workbench.exports import exports_of
+
+        exports, refused = exports_of(plan.exports, files.values(), progress)
+    if plan.manoeuvres:
+        from coeflab.motion.simulation import manoeuvres_of
+
+        manoeuvres = manoeuvres_of(plan.manoeuvres, files, progress)
+    return exports, refused, manoeuvres
 
 
 def _of_file(place: str | Path, progress: Progress) -> Study:
@@ -202,6 +235,8 @@ def _of_file(place: str | Path, progress: Progress) -> Study:
             f"run({type(place).__name__})", "a Plan, the path of a plan.toml, or the name of a shipped plan",
             advice="A publication that coeflab.validation reproduces is done already; a campaign or a body goes into a Plan.",
         )  # fmt: skip
+    from coeflab.study.plan import plan_at, read_plan
+
     file = plan_at(place)
     try:
         return run(read_plan(file), progress)
@@ -213,14 +248,21 @@ def _of_file(place: str | Path, progress: Progress) -> Study:
 
 def _of_shape(plan: Plan, progress: Progress) -> Study:
     """The study of a body alone."""
-    if plan.body is None:
+    from coeflab.workbench.vehicle import from_shape
+
+    body = _body(plan)
+    if body is None:
         raise InputError("no table and no body", "a table, or a body to estimate from", column="table")
-    return from_shape(plan, read_body(_body_file(plan.body)), progress=progress)
+    return from_shape(plan, body, progress=progress)
 
 
-def _body_file(path: Path) -> Path:
-    """A shipped name is a folder."""
-    return path / "body.toml" if path.is_dir() else path
+def _body(plan: Plan) -> Body | None:
+    """What the plan names; a shipped name is a folder."""
+    if plan.body is None:
+        return None
+    from coeflab.bodies.readers import read_body
+
+    return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
 
 
 def _has_points(table: ForceTable) -> bool:
@@ -282,6 +324,7 @@ def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, byte
     """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
     from coeflab.report.content import document
     from coeflab.report.formats import REPORTERS
+    from coeflab.workbench.exports import parameter_files_rendered
 
     files: dict[str, bytes] = {}
     report = document(study, full=False)

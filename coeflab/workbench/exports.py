@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
-from coeflab.formats import EXPORTERS, InertialExporter, PartialExporter, SimulatorExporter, SteeredExporter
-from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
+from coeflab.formats import (
+    EXPORTERS,
+    BuiltExporter,
+    InertialExporter,
+    PartialExporter,
+    SimulatorExporter,
+    SteeredExporter,
+)
+from coeflab.formats.export import Export, Kind, Lost, Refused, loss_of, lost_by_all
 from coeflab.formats.unspoken import found_in, lacking_tables, without_law
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.formats.export import PlannedExport
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 LONGEST = 255
 
@@ -63,7 +74,11 @@ def export(
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
         plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip
-    files |= _remarks(files, parameters, target, (*lacking_tables(parameters), *found_in(parameters)))
+    lacking = () if "tables" in plugin.holds else lacking_tables(parameters)
+    if isinstance(plugin, BuiltExporter):
+        with EXPORTERS.guarded(target):
+            files = dict(plugin.built(files))
+    files |= _remarks(files, parameters, target, (*lacking, *found_in(parameters)))
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)
 

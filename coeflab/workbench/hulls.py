@@ -5,22 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coeflab.bodies.added_mass import ADDED_MASS
-from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Agreement, Parts
-from coeflab.bodies.simplify.simplified import Simplification
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.law.added_mass import AddedMass, NearWall
-from coeflab.vehicle.assemble import PlannedParameterFile
+from coeflab.law.added_mass import NearWall
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.law.added_mass import AddedMass
+    from coeflab.vehicle.assemble import PlannedParameterFile
 
 DENSEST = 1e5
 SHARE = 3  # digits

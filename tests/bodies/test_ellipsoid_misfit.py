@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from coeflab.bodies.added_mass import ellipsoid
 from coeflab.bodies.added_mass.ellipsoid import EllipsoidMisfit, ellipsoid_misfit
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Shape, as_revolution
 from coeflab.core.files import shipped
 from coeflab.law.transforms import rotation
-from coeflab.workbench import read_body
 
 SIDES = st.floats(0.05, 5.0)
 

@@ -10,9 +10,9 @@ import pytest
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.profiles import suboff_meridian
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 HEAD = """
 [body]

@@ -10,11 +10,11 @@ import pytest
 from scipy.integrate import quad
 
 from coeflab.bodies.profiles import CAP_END, FOOT, suboff_meridian, suboff_radius
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.vehicle.reference import read_references
-from coeflab.workbench import read_body
 
 BODY = shipped("geometry") / "suboff_bare_hull" / "body.toml"
 JOINTS = (3.333333, 10.645833, 13.979167)

@@ -12,11 +12,11 @@ from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.profiles import FOOT, suboff_meridian
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.readers.groves import appended, mesh
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "suboff_aff8" / "body.toml"

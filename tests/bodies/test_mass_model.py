@@ -10,10 +10,10 @@ import pytest
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mass_model import MassModel, MassPart
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.vehicle.from_shape import Stated, weighed
-from coeflab.workbench import read_body
 
 R, T, RHO = 0.5, 0.02, 2700.0
 HEAD = """

@@ -13,8 +13,8 @@ import trimesh
 from coeflab.bodies.added_mass import strip
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
-from coeflab.workbench import read_body
 
 RADIUS, LENGTH = 0.1, 1.5
 HEAD = """[body]

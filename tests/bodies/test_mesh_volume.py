@@ -12,9 +12,9 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.panel_solver.refinement import STRONGEST, volume_gap
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 BALL = Parts((Part("p", Ellipsoid(1.0, 1.0, 1.0), np.zeros(3), np.eye(3)),))
 VOLUME = 4.0 * np.pi / 3.0

@@ -10,13 +10,13 @@ import pytest
 from coeflab.bodies.added_mass import ADDED_MASS, ellipsoid, primitives, strip
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_coefficient
+from coeflab.bodies.readers import read_body
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, PluginError
 from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.scaling import Scaling
 from coeflab.report.tables.added_mass import derivatives
-from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses, methods
 
 RHO = 1000.0

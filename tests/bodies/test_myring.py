@@ -14,10 +14,10 @@ from scipy.integrate import quad
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.meshing import dense_meridian, meshed
 from coeflab.bodies.profiles import Myring
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "remus100" / "body.toml"

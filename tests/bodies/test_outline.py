@@ -9,9 +9,9 @@ from coeflab.bodies.forms import Bar, Box, Cylinder, Ellipsoid, Finned, Plate, T
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.outlining import of_parts
 from coeflab.bodies.profiles import FOOT
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Part, Parts
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 LBP, REFERENCE = 13.9792, -6.6042  # ft
 

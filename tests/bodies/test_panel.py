@@ -13,11 +13,11 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panel_solver.influence import slivers
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
-from coeflab.workbench import read_body
 from tests.bodies.test_mesh_family import rod
 
 RHO = 1000.0

@@ -14,11 +14,11 @@ from coeflab.bodies.panel_solver import influence as kernel
 from coeflab.bodies.panel_solver.influence import bisected, exact_integrals, graded, gradients, panels_of, sharp_points
 from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.panel_solver.wall import Wall
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
-from coeflab.workbench import read_body
 
 ORIGIN, NOTHING = np.zeros(3), np.zeros((0, 3, 3))
 RHO = 1000.0

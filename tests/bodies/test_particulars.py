@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from coeflab.bodies.body_file import mass_from_primes
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling
-from coeflab.workbench import read_body
 
 SUBOFF = shipped("geometry") / "suboff" / "body.toml"
 FOOT, POUND = 0.3048, 0.45359237

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.readers.primitives import rotation
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Revolution, StandIn, as_revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 HEAD = """[body]
 name = "b"

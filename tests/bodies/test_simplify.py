@@ -12,6 +12,7 @@ from manifold3d import Manifold
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import surface
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Plate, shadow
 from coeflab.bodies.simplify import simplify as study
@@ -22,7 +23,6 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, Source
 from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import rotation
-from coeflab.workbench import read_body
 from tests.bodies.vehicles import HULL, LENGTH, fin, lathe, rod, tailed_hull
 
 

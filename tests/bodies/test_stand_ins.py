@@ -14,11 +14,12 @@ from trimesh.creation import annulus, box, capsule, cylinder, icosphere
 from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.simplify.simplify import simplify
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
-from coeflab.workbench import hulls, read_body
+from coeflab.workbench import hulls
 from coeflab.workbench.hulls import added_masses
 
 RHO, COARSE, FINE = 1000.0, 1200, 2000

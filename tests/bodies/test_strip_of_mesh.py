@@ -12,9 +12,9 @@ from coeflab.bodies.added_mass import strip
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 
 RHO = 1000.0
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, StandIn
 from coeflab.bodies.triangulation import APART, OF_MESH, RULE, Triangulation, _felt
 from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
 from coeflab.report.tables.added_mass import derivatives
-from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
 
 RHO = 1000.0

@@ -71,7 +71,7 @@ def changed(folder: Path, **keys: object) -> Path:
 def test_without_a_target_they_are_listed(coeflab: Run) -> None:
     done = coeflab("export", PARAMS)
     assert (done.returncode, done.stdout) == (2, "")
-    assert '"--to": found no target; expected one of csv, fmi, gazebo' in flat(done.stderr)
+    assert '"--to": found no target; expected one of c, csv, fmi, gazebo' in flat(done.stderr)
 
 
 def test_a_loss_in_short_has_no_reasons_and_no_impossible_bound(coeflab: Run) -> None:

@@ -125,7 +125,9 @@ def test_a_bench_test_of_a_rotor(coeflab: Run, tmp_path: Path) -> None:
     assert len(found["stretches"]) == 9
     written = coeflab(*asked, "--out", tmp_path / "out")
     assert "Curves of rotor1" in written.stdout
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["rotor1.bench.json", "rotor1.bench.svg"]
+    written = sorted(p.name for p in (tmp_path / "out").iterdir())
+    assert [n for n in written if "bench" in n] == ["rotor1.bench.json", "rotor1.bench.svg"]
+    assert sum(n.endswith(".parameters.json") for n in written) == 1
     refused = coeflab(*asked[:-1], "rotor9")
     assert refused.returncode == 2
     assert '"--thruster": found the thruster "rotor9"; expected one of rotor1' in refused.stderr

@@ -34,8 +34,7 @@ def test_formats_are_told_by_content(coeflab: Run, tmp_path: Path, name: str, ki
 def test_findings_are_listed(coeflab: Run) -> None:
     done = coeflab("params", "check", DATA / "rexrov.urdf")
     assert done.returncode == 0
-    assert "M_A Zr and Nw" in flat(done.stdout)
-    assert "10.774 and 10.775" in flat(done.stdout)
+    assert "M_A" not in flat(done.stdout)  # 10.774 and 10.775 are one number
     assert "-74.82" in flat(done.stdout)
 
 

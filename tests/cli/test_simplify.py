@@ -16,9 +16,9 @@ import trimesh
 from manifold3d import Manifold
 
 from coeflab.bodies.mesh.solids import box, surface
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Cylinder, Plate
 from coeflab.core.files import shipped
-from coeflab.workbench import read_body
 from tests.bodies.twelve import ducted_quadrotor, manta
 from tests.cli.conftest import flat
 

@@ -1,7 +1,9 @@
-"""The FMU in a real FMI master, FMPy: its motion is that of our own integration of the same equations."""
+"""The FMU in a real FMI master, FMPy: its motion is that of our own integration of the same equations, its rates the vectors'."""
 
 from __future__ import annotations
 
+import ctypes
+import json
 from pathlib import Path
 from typing import Any
 
@@ -9,15 +11,22 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from coeflab.core.finding import Severity
+from coeflab.core.texts import words
+from coeflab.formats.flat_law import flat_law
 from coeflab.formats.fmi import write as fmi
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
-from coeflab.study.study import Study
+from coeflab.law.symbols import CONTROLS, MOTIONS
+from coeflab.motion.dynamics import rates_of_one
+from coeflab.motion.marching import alone
+from coeflab.motion.vehicle import vehicle
+from coeflab.vehicle.conform import compared, vector_sets
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.formats import files as made
 from tests.formats.files import control_force
-from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
-from tests.formats.of_a_vehicle import floating, quaternion, restoring
+from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo, with_mass
+from tests.formats.of_a_vehicle import driven, floating, quaternion, restoring
 from tests.rigid_motion import motion
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
@@ -26,7 +35,7 @@ pytestmark = pytest.mark.slow
 
 
 def unit(folder: Path, file: ParameterFile) -> str:
-    ((name, content),) = fmi.render(file).items()
+    ((name, content),) = fmi.built(fmi.render(file)).items()
     (folder / name).write_bytes(content)
     return str(folder / name)
 
@@ -65,7 +74,8 @@ def test_it_is_a_valid_fmu(tmp_path: Path) -> None:
     from fmpy.validation import validate_fmu
 
     assert validate_fmu(unit(tmp_path, torpedo())) == []
-    assert validate_fmu(unit(tmp_path, made.named(made.HOSTILE[0]))) == []
+    assert validate_fmu(unit(tmp_path, with_mass(made.named(made.HOSTILE[0])))) == []
+    assert validate_fmu(unit(tmp_path, driven())) == []
 
 
 def test_a_start_and_a_coefficient_are_set(tmp_path: Path) -> None:
@@ -77,11 +87,94 @@ def test_a_start_and_a_coefficient_are_set(tmp_path: Path) -> None:
     assert blunt["hydrodynamic.X"][0] == pytest.approx(2.0 * plain["hydrodynamic.X"][0])
 
 
-def test_suboff_starts_when_its_roll_inertia_is_given(tmp_path: Path, suboff: Study) -> None:
-    path = unit(tmp_path, suboff.parameter_files["suboff_fully_appended"])
-    with pytest.raises(fmpy.fmi1.FMICallException):
-        simulated(path, 0.5)
-    assert simulated(path, 0.5, mass__Ixx=20.0)["velocity.u"][-1] < 3.3439
+def test_the_rates_are_those_of_the_conformance_vectors(tmp_path: Path) -> None:
+    """By model exchange, at the states of the vectors."""
+    from fmpy.fmi2 import FMU2Model
+
+    for given in vector_sets():
+        file = ParameterFile.model_validate_json(json.dumps(given.parameters)).model_copy(update={"name": given.name})
+        if file.mass is None:
+            continue
+        path = unit(tmp_path, file)
+        described = fmpy.read_model_description(path)
+        at = {v.name: v.valueReference for v in described.modelVariables}
+        free = "".join(MOTIONS[k] for k in flat_law(file).free)
+        model = FMU2Model(
+            guid=described.guid, unzipDirectory=fmpy.extract(path, str(tmp_path / given.name)),
+            modelIdentifier=described.modelExchange.modelIdentifier, instanceName="one",
+        )  # fmt: skip
+        model.instantiate()
+        model.enterInitializationMode()
+        model.exitInitializationMode()
+        answers = []
+        for s, v in zip(given.states, given.vectors, strict=True):
+            if v["force"] is None or v.get("free", "uvwpqr") != free:
+                answers.append({"force": v["force"], "acceleration": v["acceleration"]})
+                continue
+            delta, commands = s.get("delta", [0.0] * 3), s.get("commands", {})
+            inputs = {f"control.{c}": x for c, x in zip(CONTROLS, delta, strict=True)}
+            inputs["external.X"] = commands.get("thrust", 0.0)
+            for t in file.thrusters:
+                inputs |= {
+                    f"thruster.{t.name}": commands.get(t.name, 0.0),
+                    f"tilt.{t.name}": commands.get(f"{t.name}.tilt", 0.0),
+                }
+            model.setReal([at[n] for n in inputs], list(inputs.values()))
+            state = (ctypes.c_double * 16)(0, 0, 0, *s.get("attitude", [1, 0, 0, 0]), *s["nu"], *delta)
+            model.setContinuousStates(state, 16)
+            force = model.getReal([at[f"hydrodynamic.{c}"] for c in "XYZKMN"])
+            answers.append({"force": force, "acceleration": model.getReal([at[f"der(velocity.{m})"] for m in MOTIONS])})
+        model.terminate()
+        model.freeInstance()
+        (found,) = compared(given, answers)
+        assert found.severity is Severity.PASS, words(found)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_a_rudder_doublet_and_a_reversal_are_those_of_simulate(tmp_path: Path, kind: str) -> None:
+    """Thrust by a thruster, rudder by its rate; +1 m/s to -1 m/s and back within 30 s."""
+    file, seconds = driven(), 30.0
+    made = unit(tmp_path, file)
+    t = np.arange(0.0, seconds + 0.05, 0.1)
+    rudder = np.where((t >= 5) & (t < 9), 0.2, np.where((t >= 9) & (t < 13), -0.2, 0.0))
+    duty = np.where(t < 5, 0.3, np.where(t < 18, -0.9, 0.9))
+    rows = np.zeros(2 * len(t) - 1, dtype=[("time", float), ("control.dr", float), ("thruster.propeller", float)])
+    for name, column in (("control.dr", rudder), ("thruster.propeller", duty)):  # both values at a step: a line else
+        rows[name][::2], rows[name][1::2] = column, column[:-1]
+    rows["time"][::2], rows["time"][1::2] = t, t[1:]
+    if kind == "CoSimulation":
+        rows = rows[::2]
+    found = fmpy.simulate_fmu(
+        made, stop_time=seconds, step_size=0.1 if kind == "CoSimulation" else 0.005, output_interval=0.1, fmi_type=kind,
+        solver="Euler" if kind == "CoSimulation" else "CVode", input=rows, start_values={"start.u": 1.0},
+    )  # fmt: skip
+    moved, x, angle, out = vehicle(file), np.array([0, 0, 0, 1.0, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0]), 0.0, []
+    rate = rates_of_one(alone(moved).dynamics(np.zeros(3)))
+    for k in range(len(t)):
+        out.append(x[7:13])
+        wrench = moved.wrench({"propeller": float(duty[k])})
+        for _ in range(10):
+            start = angle
+
+            def rates(
+                state: np.ndarray, after: float, start: float = start, k: int = k, wrench: np.ndarray = wrench
+            ) -> np.ndarray:
+                turned = np.clip(rudder[k], start - 0.2 * after, start + 0.2 * after)
+                return np.array(rate(state.tolist(), [float(turned), 0.0, 0.0], wrench.tolist()))
+
+            a = rates(x, 0.0)
+            b = rates(x + 0.005 * a, 0.005)
+            d = rates(x + 0.005 * b, 0.005)
+            x = x + 0.01 / 6 * (a + 2 * b + 2 * d + rates(x + 0.01 * d, 0.01))
+            x[3:7] /= np.linalg.norm(x[3:7])
+            angle = float(np.clip(rudder[k], start - 0.002, start + 0.002))
+    ours, theirs = np.array(out), columns(found, "velocity", "uvwpqr")
+    theirs = theirs[np.unique(np.round(found["time"], 6), return_index=True)[1]]  # at an event there are two
+    assert ours[:, 0].min() < -0.5
+    peak = np.abs(ours).max(axis=0)
+    group = np.repeat([peak[:3].max(), peak[3:].max()], 3)
+    limit = 1e-3
+    assert np.max(np.abs(theirs - ours) / group) < limit
 
 
 def test_weight_and_buoyancy_are_those_of_our_own_integration(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from coeflab.bodies.readers import read_body
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -20,7 +21,6 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.study.study import Study
 from coeflab.tables.campaign import Campaign, read_campaign
 from coeflab.tables.force_table import ForceTable
-from coeflab.workbench import read_body
 from tests.law.test_scaling import coefficients
 
 

@@ -37,6 +37,7 @@ def file(suboff: Study, body: str = BODIES[0]) -> ParameterFile:
 
 def test_the_simulators_are_here() -> None:
     known = {
+        "c",
         "fmi",
         "gazebo",
         "holoocean",

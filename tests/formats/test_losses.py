@@ -62,6 +62,10 @@ def test_a_whole_file_lacks_nothing(target: str) -> None:
 @pytest.mark.parametrize("target", NEED_MASS)
 def test_a_mass_that_is_needed_and_not_there_is_a_loss(target: str) -> None:
     file = made.plain()
+    if target == "fmi":  # nothing would move
+        with pytest.raises(InputError, match="no mass"):
+            export(file, target)
+        return
     (said,) = lost(file, target, Kind.MISSING)
     assert "inertia" in said
     made_of = export(file, target)
@@ -148,6 +152,9 @@ def test_a_file_of_tables_alone_is_no_proof_of_an_export_without_them(target: st
     assert np.ptp(nu[:, 5]) > 0.0
     np.testing.assert_allclose(loss.largest, np.abs(ours.force(nu, np.zeros((len(nu), 3)))).max(axis=0), rtol=1e-12)
     assert loss.largest[0] > 1.0
+    if "tables" in EXPORTERS.load(target).holds:
+        assert loss.relative.max() < 1e-12
+        return
     assert loss.relative[0] > 0.9
     assert loss.relative[1] > 0.5
     assert "the file's force with its fitted tables" in loss.grid
@@ -234,7 +241,7 @@ def test_what_a_control_does_stands_in_every_export(target: str) -> None:
     report = next(c for n, c in made_of.files.items() if n.endswith(".loss.txt")).decode()
     for said in ("dr > 0: turns to port (Ndr < 0)", "ds > 0: bow down (Mds < 0)"):
         assert said in report
-        if target in STEERED and target != "fmi":
+        if target in STEERED and target not in ("c", "fmi"):  # as comments of C, and in the zip
             assert any(said in c.decode() for n, c in made_of.files.items() if not n.endswith(".loss.txt"))
     assert ("controls: dr, ds not held" in report) == (target not in STEERED)
 
@@ -244,9 +251,7 @@ def test_the_unit_says_what_its_inputs_do() -> None:
         c for n, c in export(read_parameter_file(Path("remus100")), "fmi").files.items() if n.endswith(".fmu")
     )
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        assert (
-            'description="rad; dr &gt; 0: turns to port (Ndr &lt; 0)"' in archive.read("modelDescription.xml").decode()
-        )
+        assert 'description="dr &gt; 0: turns to port (Ndr &lt; 0)"' in archive.read("modelDescription.xml").decode()
 
 
 def test_products_of_the_ideal_fluid_are_named_only_where_they_are_written() -> None:

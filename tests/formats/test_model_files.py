@@ -25,7 +25,7 @@ KNOWN = ["lauv.urdf.xacro", "rexrov.urdf", "tethys_like.sdf", "nps_auv2.m", "blu
 # The cross-flow strips of nps_auv2.m are left out, and the file says so.
 # Healey and Lienard print Mvp' with the sign of Yrdot'; by Kirchhoff's equations it is -Yrdot'.
 FORMAT = {"<quadratic_damping>", "<disable_coriolis>"}
-WELL_KNOWN = {"rexrov.urdf": {"M_A Zr and Nw"}, "lauv.urdf.xacro": {"<quadratic_damping>"},
+WELL_KNOWN = {"rexrov.urdf": set(), "lauv.urdf.xacro": {"<quadratic_damping>"},
               "tethys_like.sdf": {"<disable_coriolis>", "Nv'", "Yur'"},
               "nps_auv2.m": {"Mvp'", "nps_auv2"}}  # fmt: skip
 
@@ -150,8 +150,8 @@ def test_planes_of_different_axes(tmp_path: Path) -> None:
 
 def test_a_vehicle_upside_down(tmp_path: Path) -> None:
     check = only(tmp_path, LAUV.replace("0 0 0.01<", "0 0 -0.01<"), Severity.WARN)
-    assert check.subject == "<center_of_buoyancy>"
-    assert "z down (NED)" in check.comment
+    assert check.subject == "hydrostatics.centre_of_buoyancy"
+    assert "z up" in check.comment
     check = only(tmp_path, BLUEROV_M + "zG = -0.02; zB = 0;", Severity.WARN)
     assert check.subject == "zG and zB"
     assert found(tmp_path, BLUEROV_M + "zG = 0.02; zB = 0;") == []
@@ -161,8 +161,10 @@ def test_a_model_without_density_is_read_in_every_format(tmp_path: Path) -> None
     for text in (BLUEROV_M.replace("rho = 1000;", ""), GLIDER.replace("uniform_fluid_density", "something")):
         path = tmp_path / "model.txt"
         path.write_text(text, encoding="utf-8")
-        notes = [c for c in read_model_file(path).findings if c.severity is Severity.NOTE and c.name != "model"]
-        assert ["is assumed" in c.statistic for c in notes] == [True]
+        notes = [
+            c for c in read_model_file(path).findings if c.severity is Severity.NOTE and "no density" in c.statistic
+        ]
+        assert ["1000 kg/m^3 is assumed" in c.statistic for c in notes] == [True]
         assert read_model_file(path, 1020.0).parameters.conditions.density == 1020.0
 
 

@@ -87,7 +87,10 @@ def test_an_sdf_in_slug_and_foot(tmp_path: Path) -> None:
     told = failing(written(tmp_path, "m.sdf", hull.replace("<mass>150", "<mass>330.7")))
     assert "the mass in pounds" in told["<mass> and <collision>"].comment
     rough = shape.replace("0.15", "0.3")
-    assert failing(written(tmp_path, "m.sdf", GLIDER.replace("</link>", rough + "</link>"))) == {}
+    buoyed = failing(
+        written(tmp_path, "m.sdf", GLIDER.replace("</link>", rough + "</link>"))
+    )  # its world has a Buoyancy
+    assert set(buoyed) == {"mass and hydrostatics.volume"}
 
 
 def test_a_torpedo_in_slug_and_foot_that_says_so(tmp_path: Path) -> None:

@@ -53,13 +53,12 @@ def test_foreign_models_keep_the_plugins_law(path: Path) -> None:
     np.testing.assert_allclose(force_law(file).force(nu), link.force(nu), rtol=1e-10, atol=1e-8)
 
 
-def test_rexrovs_matrix_is_kept_as_it_is() -> None:
-    """10.774 against 10.775: no kinetic energy, so acceleration derivatives, both as printed."""
+def test_rexrovs_matrix_is_symmetric_but_for_rounding() -> None:
+    """10.774 against 10.775 is one number of four digits; before it made 90 rows of products."""
     file = uuv_simulator.read(REXROV)
-    assert file.added_mass is None
-    assert file.coefficient("Zrdot").value_si == pytest.approx(-10.774)
-    assert file.coefficient("Nwdot").value_si == pytest.approx(-10.775)
-    assert any("not symmetric: Zrdot -10.774 against Nwdot -10.775" in n for n in file.provenance.notes)
+    assert file.added_mass is not None
+    assert file.added_mass.matrix[2, 4 + 1] == file.added_mass.matrix[5, 2] == pytest.approx(10.7745)
+    assert len(file.coefficients) < 30
     assert any("1028" in n for n in file.provenance.notes)
 
 

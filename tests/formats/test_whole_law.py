@@ -21,7 +21,7 @@ from tests.formats.massed import torpedo
 from tests.vehicle.hybrid import RATES, hybrid
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
-CODE = ["fmi", "mss", "python_vehicle_simulator", "xdyn"]  # targets that are programs
+CODE = ["c", "fmi", "mss", "python_vehicle_simulator", "xdyn"]  # targets that are programs
 ASTERN = np.array(
     [[-1.0, 0, 0, 0, 0, 0], [-0.05, 1.0, 0, 0, 0, 0], [0.0, 1.0, 0.2, 0, 0, 0], [0.0] * 6, [0, 0, 0, 0, 0, 0.4]]
 )
@@ -76,6 +76,9 @@ def test_a_target_without_tables_says_which_parts_it_lacks_and_writes_no_ideal_f
     target: str,
 ) -> None:
     file = hybrid()
+    if "tables" in EXPORTERS.load(target).holds:
+        assert export(file, target).lossless
+        return
     try:
         made = export(file, target, accept_loss=True)
     except InputError:

@@ -183,8 +183,6 @@ NO_PRIMES = {
     "estimates/ring_wing.py": (1, "dynamic pressure on a ring wing's area"),
     "vehicle/force_law.py": (1, "dynamic pressure on the reference area of a fitted table"),
     "fits/uncertainty/budget.py": (1, "relative errors of density, speed and length: factors near one"),
-    "formats/fmi/unit.py": (1, "runs inside the FMU, without coeflab"),
-    "formats/fmi/write.py": (2, "repeats what the unit in the FMU computes, from its model.json"),
     "formats/mss/m_file.py": (
         1,
         "recognises r2 = rho L^2 / 2 of a foreign file in the units of that file, slug and foot too",

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Part, Parts
 from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
@@ -23,7 +24,7 @@ from coeflab.report.sections.conventions import AXES, axes_figures
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.study.checks.symmetry import check as symmetry_check
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_body, read_tables
+from coeflab.workbench import read_tables
 from tests.motion.vehicles import made
 from tests.report.studies import FULL, HOSTILE, LENGTH, small_study, small_table
 

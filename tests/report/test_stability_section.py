@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.report.content import document
 from coeflab.report.first_page import study_summary
@@ -14,7 +15,6 @@ from coeflab.report.sections.parameter_file import in_words, stability_sections
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.study.checks.stability import check as stability_check
 from coeflab.vehicle.reference import read_references
-from coeflab.workbench import read_body
 from tests.motion.vehicles import STABLE, UNSTABLE, made
 from tests.report.studies import FULL, small_study
 

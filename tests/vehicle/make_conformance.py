@@ -32,7 +32,7 @@ from tests.vehicle.test_force_law import HULL, parameters
 
 UNUSED = ("measured", "law_at_points", "law_holds", "findings", "covered")
 LEVEL = [1.0, 0.0, 0.0, 0.0]
-HEELED = [0.9659258262890683, 0.1, -0.2, 0.12732206]
+HEELED = (np.array([0.96, 0.1, -0.2, 0.12]) / np.linalg.norm([0.96, 0.1, -0.2, 0.12])).tolist()
 TRIANGLE = [[-1.0, 0.0, -0.4], [0.0, -1.0, -0.4], [1.0, 1.0, -0.1]]
 
 

@@ -13,11 +13,15 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.family import family
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.ring_sheets import ring_sheets
+from coeflab.bodies.outline import RingWing
 from coeflab.bodies.panel_solver import influence
 from coeflab.bodies.panel_solver.refinement import Refinement, refined, volume_gap
 from coeflab.bodies.panel_solver.solve import PanelSolution, memory_needed, panel_added_mass
 from coeflab.bodies.panel_solver.wall import SAID, WALLS, Wall
+from coeflab.bodies.recognition import of_mesh
 from coeflab.bodies.shape import Part, Parts, Plate, Shape
+from coeflab.bodies.volume_moments import displaced
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import compiles, physical_memory, stage
 from coeflab.core.options import bounded, measured, one_of, parse_options, share
@@ -35,6 +39,7 @@ RESOLVED, RAISED = 0.05, 2.0  # of the surface may be left thinner than panels t
 COMPILE_FROM = 5_000
 MOST_SHEETS, RATIO, INSIDE = 4_096, 4, 2.0 * np.pi
 SAME, NOISE = 1e-6, 2e-3
+FEW_CORNERS = 200
 NAMES = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot")
 
 
@@ -112,6 +117,8 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     """
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
+    if isinstance(shape, TriangleMesh) and (rings := _rings_alone(shape)):
+        return _of_sheets(body, shape, ring_sheets(rings), density, options or {})
     panelled = _resolved(shape, chosen)
     _fits(panelled.count)
     while True:
@@ -125,6 +132,29 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
             )
             return replace(found, statements=(said, *found.statements))
         panelled = finer
+
+
+def _rings_alone(shape: TriangleMesh) -> tuple[RingWing, ...]:
+    """The rings of a mesh that is nothing else, with a wall thinner than the smallest panels; none of another."""
+    if not len(shape.faces) or len(shape.sheets):
+        return ()
+    area = shape.integrals.area
+    if 2.0 * shape.volume / area > influence.side_of(area, MOST_PANELS):
+        return ()
+    seen = of_mesh(shape)
+    return seen.rings if not (seen.hulls or seen.foils or seen.bluff) else ()
+
+
+def _of_sheets(
+    body: Body, shape: TriangleMesh, sheets: TriangleMesh, density: float, options: Mapping[str, Any]
+) -> AddedMass:
+    """Added mass of a wall by its middle surface; what the thickness moves is in the error as the water that it displaces."""
+    found = added_mass(replace(body, shape=sheets), density, options)
+    thick = displaced(shape, density, found.reference_point)
+    error = np.zeros((6, 6)) if found.error is None else found.error
+    said = "a wall thinner than its panels: dipoles on its middle surface, the water in its thickness is in the error"
+    root = np.sqrt(thick)
+    return replace(found, error=error + np.outer(root, root), statements=(said, *found.statements))
 
 
 def _finer(shape: Shape, panelled: _Panelled, above: float, chosen: Options) -> _Panelled | None:
@@ -457,17 +487,26 @@ def _alike(shape: Shape, panelled: _Panelled, centre: Array, wall: Wall | None, 
     size = float(np.ptp(away, axis=0).max())
     tree = cKDTree(away)
     moments = mirrors(shape) if given is not None else (False, False, False)
+    few = away[:: max(1, len(away) // FEW_CORNERS)]
+
+    def pairs(g: Array) -> bool:
+        """Whether every corner's image is a corner; a few tell most that it is not."""
+        return all(
+            float(tree.query(some @ g.T, distance_upper_bound=2.0 * SAME * size)[0].max()) <= SAME * size
+            for some in (few, away)
+        )
+
     out = []
     for k in range(3):
         g = np.eye(3)
         g[k, k] = -1.0
         six, root = _six(g), np.sqrt(np.abs(np.diag(matrix)))
         small = np.abs(matrix - six.T @ matrix @ six) <= 2.0 * NOISE * np.outer(root, root)
-        if float(tree.query(away @ g.T)[0].max()) <= SAME * size or (moments[k] and np.all(small)):
+        if pairs(g) or (moments[k] and np.all(small)):
             out.append(g)
     for k in range(3):
         g = np.eye(3)[[k, (k + 2) % 3, (k + 1) % 3]][np.argsort([k, (k + 1) % 3, (k + 2) % 3])]
-        if float(tree.query(away @ g.T)[0].max()) <= SAME * size:
+        if pairs(g):
             out.append(g)
     if wall is not None:
         out = [g for g in out if np.allclose(g @ wall.normal, wall.normal)]

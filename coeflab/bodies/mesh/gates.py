@@ -45,9 +45,10 @@ BY_HAND = "Mend it where it was made; repair does not untangle surfaces."
 SMALL_HOLE = 0.01
 BOTH_SIDES = "where water is on both sides of the wall, set sheets = true, or --sheets."
 NAMED = 3
+ROUNDED = 1e-6  # of the size: single precision moves corners by a tenth of it
 FILL = (
-    f"Close them where it was made. Or set fill = true under [mesh], or --fill, which closes holes of up to {SMALL_HOLE:.0%} of the "
-    "surface each; or, where water is on both sides of the wall, sheets = true, or --sheets."
+    f"Close them where it was made. Or {ASK}, which closes holes of up to {SMALL_HOLE:.0%} of the surface each and mends "
+    "what else it can (fill = true, or --fill, the holes alone); or, where water is on both sides of the wall, sheets = true, or --sheets."
 )
 
 
@@ -121,7 +122,7 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     if len(faces) > MOST_TESTED:
         said += (f"self-intersection not looked for above {MOST_TESTED} faces",)
     else:
-        crossing = crossing_faces(vertices, faces)
+        crossing = crossing_faces(vertices, faces, ROUNDED * float(np.ptp(vertices, axis=0).max()))
         if crossing is None:
             said += ("self-intersection not looked for: too many faces lie close together",)
         elif crossing:
@@ -222,7 +223,7 @@ def sound(
     vertices, faces : (n, 3) and (m, 3) arrays
     file : Path
     repair : bool
-        See `repaired`.
+        See `repaired`; small holes are closed as with ``fill``, unless open surfaces are sheets.
     fill : bool
         Close holes of up to 1 % of the surface each, but for rims that touch in a vertex; faces are then turned alike as well.
     open_sheets : bool
@@ -235,12 +236,15 @@ def sound(
     """
     said: tuple[str, ...] = ()
     unfilled = ""
-    if fill:
+    if fill or (repair and not open_sheets):
         vertices, faces = joined(vertices, faces, JOINED)
+        if repair:
+            faces = faces[~repeated(faces)]
         turned = oriented(faces)
         done = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
         vertices, faces, unfilled = done.vertices, done.faces, _unfilled(done)
-        said = (f"{done.number} hole{'s' * (done.number != 1)} of up to {SMALL_HOLE:.0%} of the surface filled",)
+        many = f"{done.number} hole{'s' * (done.number != 1)} of up to {SMALL_HOLE:.0%} of the surface filled"
+        said = (many,) if fill or done.number else ()
         said += (f"not filled: {unfilled}",) if unfilled else ()
     thin = np.zeros((0, 3), dtype=np.int64)
     if open_sheets:
@@ -321,6 +325,7 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
             said.append(
                 f"{number} shells united" if number > 1 else "faces without an area merged into their neighbours"
             )
+        vertices, faces = _without_slivers(vertices, faces, file)
     found = examined(vertices, faces, file, unfilled)
     return SoundMesh(
         found.vertices, found.faces, (f"repaired: {', '.join(said) or 'nothing to do'}", *found.statements)
@@ -341,6 +346,16 @@ def _whole(vertices: Array, faces: Faces, file: Path) -> Solid:
         return InputError(found, expected, file=file, advice=advice)
 
     return as_solid(vertices, faces, fail)
+
+
+def _without_slivers(vertices: Array, faces: Faces, file: Path) -> tuple[Array, Faces]:
+    """Faces without an area, which a union of near surfaces leaves, merged into their neighbours; the surface moves by rounding."""
+    size = float(np.ptp(vertices, axis=0).max())
+    for share in (ROUNDED / 10.0, ROUNDED, 10.0 * ROUNDED):
+        if not degenerate(vertices, faces).any():
+            break
+        vertices, faces = surface(_whole(vertices, faces, file).simplify(share * size))
+    return vertices, faces
 
 
 def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path) -> tuple[Array, Faces]:

@@ -332,8 +332,10 @@ MOST_PAIRS = 8_000_000
 TOUCH, SHARED = 1e-5, 1e-3
 
 
-def crossing_faces(vertices: Array, faces: Faces) -> int | None:
+def crossing_faces(vertices: Array, faces: Faces, within: float = 0.0) -> int | None:
     """How many pairs of faces cross, or None where more than eight million pairs would have to be looked at.
+
+    Pairs that reach no deeper than ``within`` through each other do not count: corners in single precision are off by as much.
 
     Two faces cross when a side of one passes through the inside of the other, or when their planes meet in a line on
     which both have a length in common: sides that meet sides, as in bodies with planes of symmetry. Faces that only
@@ -354,7 +356,18 @@ def crossing_faces(vertices: Array, faces: Faces) -> int | None:
         for k in range(3):
             cut |= _pierced(triangles[through], triangles[by, k], triangles[by, (k + 1) % 3])
     cut[~cut] = _share_a_length(triangles[one[~cut]], triangles[two[~cut]])
+    if within > 0.0 and cut.any():
+        first, second = triangles[one[cut]], triangles[two[cut]]
+        return int(np.sum(np.minimum(_depth(first, second), _depth(second, first)) > within))
     return int(cut.sum())
+
+
+def _depth(triangle: Array, other: Array) -> Array:
+    """How far the corners of one triangle reach to the side of another's plane on which they reach less, (n,)."""
+    normal = np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
+    height = np.einsum("nij,nj->ni", other - triangle[:, :1], normal)
+    return np.asarray(np.minimum(height.max(axis=1), -height.min(axis=1)))
 
 
 def _astride(triangle: Array, other: Array) -> NDArray[np.bool_]:

@@ -91,7 +91,7 @@ def _require_stated(unit: str, axes: str, path: Path) -> None:
             f"no {' and no '.join(what for what, _ in lacking)}",
             "; and ".join(option for _, option in lacking),
             file=path,
-            advice=f"A mesh file does not say its {' and '.join(what for what, _ in lacking)}.",
+            advice=f"A mesh file does not say its {' and '.join(what for what, _ in lacking)}: coeflab inspect {path.name} proposes.",
         )
 
 

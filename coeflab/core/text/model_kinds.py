@@ -8,8 +8,9 @@ from pathlib import Path
 from coeflab.core.text.bounded import stream_of
 
 _KINDS = (
-    ("an SDF", re.compile(r"\s*<.*<sdf\b", re.DOTALL)),
-    ("a URDF", re.compile(r"\s*<.*<robot\b", re.DOTALL)),
+    ("an SDF", re.compile(r"\s*<(.*<)?sdf\b", re.DOTALL)),
+    ("a Stonefish scenario", re.compile(r"\s*<(.*<)?scenario\b", re.DOTALL)),
+    ("a URDF", re.compile(r"\s*<(.*<)?robot\b", re.DOTALL)),
     ("an xdyn YAML", re.compile(r"(?:.*\n)?rotations convention\s*:", re.DOTALL)),
     ("a MATLAB file", re.compile(r"(?:\s*%[^\n]*\n)*\s*function\b")),
 )

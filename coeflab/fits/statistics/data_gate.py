@@ -146,6 +146,7 @@ def prepare(x: Array, parity: Parity, variance: Array | None = None) -> Gate:
     rows = np.eye(n) if variance is None else np.diag(variance / np.median(variance))
     covariance, prior = [], []
     total = sum(CURVES.values())
+    curves = {name: _curve(name, parity, t) for name in CURVES}
     for size, share in others:
         noise = rows + size**2 * other
         covariance.append(noise)
@@ -154,7 +155,7 @@ def prepare(x: Array, parity: Parity, variance: Array | None = None) -> Gate:
             covariance.append(noise + np.diag(growth**2 * t * t))
             prior.append(0.05 * share)
         for (name, odds), large in product(CURVES.items(), SIZES):
-            covariance.append(noise + large**2 * _curve(name, parity, t))
+            covariance.append(noise + large**2 * curves[name])
             prior.append((0.9 - STRAIGHT) * share * odds / total / len(SIZES))
     v = np.array(covariance)
     factor = np.linalg.cholesky(v)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy import special
-from scipy.ndimage import uniform_filter1d
 
 from coeflab.core.types import Array
 
@@ -76,6 +75,8 @@ def by_neighbours(x: Array, y: Array) -> Neighbours:
         weight = given * np.maximum(1.0 - (left / (TUKEY * sd[:, None])) ** 2, 0.0) ** 2
     lever = np.linalg.inv(normal)[:, 0, 0]
     # One window knows its scatter to a seventh; four together to a twelfth, and scatter changes slowly along a sweep.
+    from scipy.ndimage import uniform_filter1d
+
     around = uniform_filter1d((sd * size) ** 2, 4 * NEIGHBOURS, mode="nearest")
     sd = np.sqrt(np.maximum(around, (ROUNDING * size) ** 2)) / size
     scatter = sd * np.sqrt(1.0 + np.clip(lever, 0.0, 10.0))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +21,22 @@ from numpy.typing import NDArray
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, in_angles
-from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
-from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status, transfer_matrix
+from coeflab.core.types import in_angles
+from coeflab.fits.uncertainty.grid_studies import gravest, grid_studies, variant_studies
+from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
+from coeflab.law.coefficient import Parts, Status, transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS, primed
-from coeflab.tables.campaign import NAMES, InputUncertainty
-from coeflab.tables.force_table import STUDIES, ForceTable
+from coeflab.tables.campaign import NAMES
+from coeflab.tables.force_table import STUDIES
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
+    from coeflab.fits.uncertainty.propagation import Propagated
+    from coeflab.law.coefficient import Coefficient, CoefficientSet
+    from coeflab.tables.campaign import InputUncertainty
+    from coeflab.tables.force_table import ForceTable
 
 ROUNDING = 1e-9
 NEWTON = 4

@@ -21,11 +21,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import brief
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
 
 LOWEST_ORDER, ORDER_SLACK, STEEPEST = 0.5, 0.1, 60.0
 WITHIN, OUTSIDE = 1.25, 3.0

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.types import brief
-from coeflab.fits.uncertainty.grid_convergence import GridConvergence, cell_sizes, fitted_convergence, grid_convergence
+from coeflab.fits.uncertainty.grid_convergence import cell_sizes, fitted_convergence, grid_convergence
 from coeflab.law.symbols import LINEAR, MOTIONS
-from coeflab.tables.force_table import STUDIES, ForceTable
+from coeflab.tables.force_table import STUDIES
+
+if TYPE_CHECKING:
+    from coeflab.fits.uncertainty.grid_convergence import GridConvergence
+    from coeflab.tables.force_table import ForceTable
 
 MANY = 3
 WITHOUT_PLATEAU = {"too short", "drifting", "unconverged"}

@@ -12,18 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import brief, locked
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
     COUPLED,
     MODEL,
-    Budget,
     InputPart,
     acting,
     budget_of,
@@ -32,14 +31,24 @@ from coeflab.fits.uncertainty.budget import (
     variant_studies_of,
     with_budget,
 )
-from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy, gravest
-from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
-from coeflab.law.coefficient import Coefficient
+from coeflab.fits.uncertainty.grid_studies import gravest
+from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS, derivative
 from coeflab.law.transforms import incidence
-from coeflab.tables.campaign import NAMES, InputUncertainty
+from coeflab.tables.campaign import NAMES
 from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.fits.uncertainty.budget import (
+        Budget,
+    )
+    from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
+    from coeflab.fits.uncertainty.propagation import Propagated
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.tables.campaign import InputUncertainty
 
 SET_ANGLES = {"alpha": "alpha", "w": "alpha", "beta": "beta", "v": "beta", "dr": "dr", "ds": "ds", "db": "db"}
 

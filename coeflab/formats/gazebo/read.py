@@ -7,19 +7,25 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import XML_BYTES
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.types import Array
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
+from coeflab.formats.gazebo.actuators import actuators
+from coeflab.formats.gazebo.assembly import MOVING, Assembly, Lumped, assembly, collision_box, displaced_by, lumped
 from coeflab.formats.gazebo.law import (
     DENSITIES,
     FORCES,
@@ -32,45 +38,13 @@ from coeflab.formats.gazebo.law import (
     read_tags,
 )
 from coeflab.formats.gazebo.systems import GZ_SIM
-from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
+from coeflab.formats.left_out import MOST, left_out, other_plugins, unread_tags
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from coeflab.vehicle.second_order import FLU, SecondOrder
-from coeflab.vehicle.stated_numbers import Written, displaced, gravity, imperial, munk_twice, no_mass, water
-
-
-def collision_volume(link: Element | None, file: Path | str | None = None) -> float:
-    """Sum over boxes, cylinders, spheres, capsules and ellipsoids, m^3; zero where there are none.
-
-    Raises
-    ------
-    InputError
-        A size that is no number.
-    """
-    shapes = [] if link is None else [s for g in link.iterfind("collision/geometry") for s in g]
-    return sum(_volume(s, file) for s in shapes)
-
-
-def _volume(shape: Element, file: Path | str | None) -> float:
-    def size(tag: str, count: int = 1) -> tuple[float, ...]:
-        return numbers(shape.findtext(tag), (count,), f"{shape.tag} {tag}", file)
-
-    match shape.tag:
-        case "box":
-            return math.prod(size("size", 3))
-        case "cylinder":
-            return math.pi * size("radius")[0] ** 2 * size("length")[0]
-        case "capsule":
-            radius = size("radius")[0]
-            return math.pi * radius**2 * (size("length")[0] + 4.0 / 3.0 * radius)
-        case "sphere":
-            return 4.0 / 3.0 * math.pi * size("radius")[0] ** 3
-        case "ellipsoid":
-            return 4.0 / 3.0 * math.pi * math.prod(size("radii", 3))
-        case _:
-            return 0.0
-
+from coeflab.vehicle.stated_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water
 
 summary = "gz-sim SDF or URDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
 citations = ("fossen2011", "gz_sim")
@@ -79,6 +53,8 @@ signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> posit
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
 FRESH = 1000.0
+TURN, FREE = 2.0 * math.pi + 1e-3, 1e6  # rad; limits of joints that turn freely are written as huge numbers
+OF_BOX = (0.5, 2.5, 4.5)  # a cylinder has 1.5 times the water of its ellipsoid, a box 2
 
 
 def recognises(path: Path) -> bool:
@@ -120,43 +96,108 @@ def read(
             advice="The plugin needs none, primes do: give it (--density 1025), or write <uniform_fluid_density>.",
         )  # fmt: skip
     of_primes = root.find(f".//{LENGTH}")
+    name = link.model or link.link
+    held = assembly(root, link.link.rpartition("::")[2], path)
+    driven = actuators(root, held, name, path)
+    weighed, said = _weighed(link, held, name, path)
+    afloat, of_volume = _afloat(root, held, weighed, rho, name, path)
+    form = _form(link)
+    absolute = form.absolute.copy()
+    absolute[:, :, 0] += driven.drift
     model = LinkModel(
         model=link.model,
         link=link.link,
         density=rho,
-        form=_form(link),
+        form=replace(form, absolute=absolute),
         added=_coriolis(link),
         matrix=_added_mass(link),
-        mass=link.mass,
-        centre=link.centre * FLU[:3] + 0.0,
-        inertia=None if link.inertia is None else link.inertia * np.outer(FLU[:3], FLU[:3]) + 0.0,
+        mass=None if weighed is None else weighed.mass,
+        centre=(link.centre if weighed is None else weighed.centre) * FLU[:3] + 0.0,
+        inertia=None
+        if weighed is None or weighed.inertia is None
+        else weighed.inertia * np.outer(FLU[:3], FLU[:3]) + 0.0,
+        hydrostatics=afloat,
+        thrusters=driven.thrusters,
+        surfaces=driven.surfaces,
+        controls=driven.controls,
         length=None if of_primes is None else numbers(of_primes.text, (1,), LENGTH, path)[0],
         length_name="" if of_primes is None else one_line(of_primes.get("name") or "length")[:200],
         notes=(
             "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
             "|u| v is read as U v: both agree on straight courses",
         ),
-        findings=_left_out(root, link),
+        findings=(*_left_out(root, link, held, driven.read), *said, *of_volume, *driven.findings),
     )
     return link_file(model, path, citations, length, speed)
 
 
-def _left_out(root: Element, link: GzLink) -> tuple[Finding, ...]:
+def _weighed(link: GzLink, held: Assembly, name: str, path: Path) -> tuple[Lumped | None, tuple[Finding, ...]]:
+    """The hull and what joints hold to it as one body, and which links those are."""
+    if link.mass is None or link.mass <= 0.0:
+        return None, ()
+    found = lumped(held, (link.mass, link.centre, link.inertia), path)
+    return found, () if not found.names else (
+        Finding.of("model.one_body", name, Severity.NOTE, statistic=found.mass, names=found.names[:MOST]),
+    )
+
+
+def _afloat(
+    root: Element, held: Assembly, weighed: Lumped | None, density: float, name: str, path: Path
+) -> tuple[ParameterHydrostatics | None, tuple[Finding, ...]]:
+    """Volume and its centre as the Buoyancy system counts them; left out where a shape states none, or where no Buoyancy stands in
+    the file and the collisions cannot be the displaced volume.
+    """
+    found = displaced_by(held, path)
+    if found.unknown:
+        return None, left_out(name, "hydrostatics", found.unknown)
+    if found.volume <= 0.0:
+        return None, ()
+    ratio = None if weighed is None else density * found.volume / weighed.mass
+    acts = any(
+        "buoyancy" in (p.get("name", "") + p.get("filename", "")).lower() and "engine" not in p.get("name", "").lower()
+        for p in root.iter("plugin")
+    )
+    if ratio is None or (not acts and not BUOYANCY[0] <= ratio <= BUOYANCY[1]):
+        out = Finding.of(
+            "model.rough_volume",
+            name,
+            Severity.WARN if ratio else Severity.NOTE,
+            statistic=ratio or 0.0,
+            threshold=1.0,
+            volume=found.volume,
+        )
+        return None, (out,)
+    strengths = [
+        float(np.linalg.norm(numbers(e.text, (3,), "gravity", path)))
+        for e in root.iter("gravity")
+        if len((e.text or "").split()) == 3
+    ]
+    x, y, z = (found.centre * FLU[:3] + 0.0).tolist()
+    g = strengths[0] if strengths and strengths[0] > 0.0 else STANDARD_GRAVITY
+    return ParameterHydrostatics(volume=found.volume, centre_of_buoyancy=(x, y, z), gravity=g), ()
+
+
+def _left_out(root: Element, link: GzLink, held: Assembly, read_too: Sequence[Element]) -> tuple[Finding, ...]:
     """What the file says of the vehicle's motion and a parameter file does not hold, and what its plugin takes by itself."""
     plugin, system = hydrodynamics(root)
     name = link.model or link.link
-    hull = link.link.rpartition("::")[2]
-    links = tuple(root.iter("link"))
-    volume = [f"collisions of {hull}" for e in links if e.get("name") == hull and e.find("collision") is not None]
     currents = ("default_current", "namespace", "lookup_current_x", "lookup_current_y", "lookup_current_z")
     unread = unread_tags(plugin, (*read_tags(system), *currents))
-    joints = [j.get("name", "") for j in root.iter("joint") if j.get("type") != "fixed"]
+    turned = {p.findtext("joint_name") for p in read_too} | {
+        j.name for p in read_too for j in held.joints if j.child == (p.findtext("link_name") or "").strip()
+    }
+    joints = [j.get("name", "") for j in root.iter("joint") if j.get("type") in MOVING and j.get("name") not in turned]
+    shown = {id(p) for gui in root.iter("gui") for p in gui.iter("plugin")}
+    plugins = [
+        p
+        for p in root.iter("plugin")
+        if id(p) not in shown and not any(p is q for q in read_too) and not _is_buoyancy(p)
+    ]
     out = [
         *left_out(name, "terms", unread),
         *left_out(name, "environment", [f"<{t}>" for t in currents if plugin.find(t) is not None]),
-        *left_out(name, "hydrostatics", volume),
-        *other_plugins(name, root.iter("plugin"), plugin),
-        *other_masses(name, links, hull),
+        *other_plugins(name, plugins, plugin),
+        *left_out(name, "masses", held.unplaced),
         *left_out(name, "joints", joints),
     ]
     if system is not GZ_SIM:
@@ -166,6 +207,13 @@ def _left_out(root: Element, link: GzLink) -> tuple[Finding, ...]:
     if system.faces_aft:
         out.append(Finding.of("model.ahead", name, Severity.WARN))
     return tuple(out)
+
+
+def _is_buoyancy(plugin: Element) -> bool:
+    """gz-sim's Buoyancy, whose volumes are read."""
+    return (
+        plugin.get("name", "").endswith("systems::Buoyancy") or plugin.get("filename", "") == "gz-sim-buoyancy-system"
+    )
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -178,7 +226,7 @@ def examine(path: Path) -> tuple[Check, ...]:
     root = as_sdf(read_xml(path))
     link = read_gz_link(root, path)
     own = link.plugin_mass if not link.disable_added_mass else np.zeros((6, 6))
-    out = [*_units(root, link, path)]
+    out = [*_units(root, link, path), *_angles(root, link, path), *_of_box(root, link, path)]
     if np.any(link.fluid_mass) and np.any(own):
         out.append(_found(Severity.FAIL, "<fluid_added_mass>", "<fluid_added_mass> and <xDotU> ...", "one of the two",
                           "Added mass counts twice. Remove the plugin's."))  # fmt: skip
@@ -197,6 +245,51 @@ def examine(path: Path) -> tuple[Check, ...]:
     return tuple(out)
 
 
+def _angles(root: Element, link: GzLink, path: Path) -> list[Check]:
+    """Poses and limits of hinges in degrees."""
+    found = []
+    for e in root.iter("pose"):
+        if (e.get("degrees") or "").strip().lower() not in ("true", "1") and len((e.text or "").split()) == 6:
+            found.append(("<pose>", max(map(abs, numbers(e.text, (6,), "pose", path)[3:]))))
+    for e in root.iter("origin"):
+        found.append(("<origin rpy>", max(map(abs, numbers(e.get("rpy", "0 0 0"), (3,), "origin rpy", path)))))
+    held = assembly(root, link.link.rpartition("::")[2], path)
+    for j in held.joints:
+        ends = [abs(x) for x in (j.low, j.high) if x not in (0.0,) and abs(x) < FREE]
+        found += [(f"<limit> of {j.name}", max(ends))] if j.kind == "revolute" and ends else []
+    wrong = [(k, x) for k, x in found if x > TURN]
+    if not wrong:
+        return []
+    said = Finding.of("model.turned", link.model or link.link, Severity.WARN, statistic=max(x for _, x in wrong), threshold=TURN,
+                      names=tuple(dict.fromkeys(k for k, _ in wrong)))  # fmt: skip
+    return [as_check("gazebo", said)]
+
+
+def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
+    """Added mass across against that of the ellipsoid in the box of the hull's collisions."""
+    held = assembly(root, link.link.rpartition("::")[2], path)
+    box = collision_box(held, path)
+    if box is None or not np.all(box > 0.0):
+        return []
+    own = np.diag(_added_mass(link))
+    due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or FRESH))
+    hull = held.elements.get(held.hull)
+    boxed = hull is not None and hull.find("collision/geometry/box") is not None
+    low, high = OF_BOX[0], OF_BOX[2 if boxed else 1]
+    ratios = {f"{f}{v}": float(own[i] / due[i]) for i, f, v in ((1, "Y", "v"), (2, "Z", "w")) if own[i] > 0.0}
+    wrong = {k: r for k, r in ratios.items() if not low <= r <= high}
+    if not wrong:
+        return []
+    said = Finding.of(
+        "model.added_of_box",
+        link.model or link.link,
+        Severity.WARN,
+        statistic=next(iter(wrong.values())),
+        names=tuple(wrong),
+    )
+    return [as_check("gazebo", said)]
+
+
 def _found(severity: Severity, key: str, statistic: str, rule: str, comment: str) -> Check:
     return Check("gazebo", key, severity, statistic, rule, comment)
 
@@ -210,8 +303,8 @@ def _units(root: Element, link: GzLink, path: Path) -> list[Check]:
         if len((element.text or "").split()) == 3:
             value = float(np.linalg.norm(numbers(element.text, (3,), "gravity", path)))
             out += gravity("gazebo", value, "<gravity>")
-    hull = next((e for e in root.iter("link") if e.get("name") == link.link.rpartition("::")[2]), None)
-    volume, density = collision_volume(hull, path), link.density or FRESH
+    held, density = assembly(root, link.link.rpartition("::")[2], path), link.density or FRESH
+    volume = displaced_by(held, path).volume
     # A collision is often a rough box: only the ratios of units are told by it.
     if link.mass and link.mass > 0.0 and imperial(density * volume / link.mass):
         out += displaced("gazebo", link.mass, volume, density, "<mass> and <collision>")

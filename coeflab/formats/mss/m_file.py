@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -113,6 +113,14 @@ def _pieces(line: str, depth: int) -> tuple[list[str], int, bool]:
 
 
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Loa", "L_auv", "length")
+SPHEROID_DENSITY = {
+    "imlay61": 1026.0,
+    "spheroid": 1025.0,
+}  # kg/m^3, in the functions themselves, LIBRARY/modeling of MSS 736a3d1
+_CALL = re.compile(
+    r"\[\s*([A-Za-z]\w*)[\s,]+[A-Za-z~]\w*\s*\]\s*=\s*(imlay61|spheroid)\s*\(([^()]*(?:\([^()]*\)[^()]*)*)\)", re.ASCII
+)
+_VECTOR = re.compile(r"\[([^\[\];]*)\]'?|\[([^\[\],]*)\]", re.ASCII)
 DENSITIES, GRAVITIES, MASSES = ("rho", "rho_water"), ("g", "g_mu"), ("m", "mass")
 _CHANGED = re.compile(r"^[^%#\n]*\bC_?A\s*\(", re.MULTILINE)
 _ADDED = ("CA", "C_A")
@@ -135,6 +143,10 @@ class MFile:
         What the expression of a number names.
     unread : mapping of last name to line
         Assignments whose value is no plain arithmetic.
+    calls : tuple of str
+        Calls of `imlay61` and `spheroid`, of which mass, inertia and added mass are computed.
+    vectors : mapping of last name to three numbers
+        Such as r_bG.
     """
 
     numbers: dict[str, float]
@@ -144,6 +156,8 @@ class MFile:
     changes_coriolis: bool
     uses: dict[str, frozenset[str]]
     unread: dict[str, int]
+    calls: tuple[str, ...] = ()
+    vectors: dict[str, tuple[float, ...]] = field(default_factory=dict)
 
     def needed(self, names: Iterable[str]) -> set[str]:
         """These names and all that their expressions name."""
@@ -175,7 +189,7 @@ def read_m_file(path: Path) -> MFile:
     """
     text = read_text(path, M_FILE_BYTES)
     lines = assignments(text)
-    adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines)
+    adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines) or "imlay61" in text
     out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {})
     names: dict[str, float] = {"pi": math.pi}
     for a in lines:
@@ -185,6 +199,9 @@ def read_m_file(path: Path) -> MFile:
             continue
         symbol = _symbol(last)
         value = _value(a, symbol, names, path)
+        if value is None and (three := _three(a.expression, names)) is not None:
+            out.vectors.setdefault(last, three)
+            continue
         if value is None:
             out.unread.setdefault(last, a.line)
             continue
@@ -194,8 +211,82 @@ def read_m_file(path: Path) -> MFile:
             before = out.derivatives.setdefault(symbol, (group.rpartition(".")[2], value))
             if before[1] != value:
                 raise InputError(f"{last} = {value:g} after {before[1]:g}", "one value", file=path, line=a.line)
+    called = _spheroids(text, names, out, path)
+    out = replace(out, calls=called)
     if not out.derivatives:
         raise InputError("no derivative such as Yv or Zwdot", "plain assignments of SNAME derivatives", file=path)
+    return out
+
+
+def _three(expression: str, names: Mapping[str, float]) -> tuple[float, ...] | None:
+    """Three numbers or names in brackets, such as ``[0 0 0.02]'``; None of anything else."""
+    match = _VECTOR.fullmatch(expression.strip())
+    if match is None:
+        return None
+    parts = re.split(r"[\s,;]+", (match[1] or match[2] or "").strip())
+    try:
+        return tuple(float(evaluate(p, names)) for p in parts) if len(parts) == 3 else None
+    except ArithmeticProblem:
+        return None
+
+
+def _spheroids(text: str, names: Mapping[str, float], out: MFile, path: Path) -> tuple[str, ...]:
+    """Mass, inertia and added mass of the file's calls of MSS's spheroids, computed here: Fossen (2021), section 8.4.2; Imlay (1961)."""
+    calls = []
+    for line, statement in _statements(text):
+        match = _CALL.fullmatch(statement)
+        if match is None:
+            continue
+        arguments = _arguments(match[3])
+        try:
+            a, b = (float(evaluate(x, names)) for x in arguments[:2])
+            roll = float(evaluate(arguments[3], names)) if match[2] == "imlay61" and len(arguments) > 3 else 0.0
+        except (ArithmeticProblem, ValueError, IndexError) as why:
+            raise InputError(
+                f"{shown(statement)}: {why}", "semi-axes that the file states", file=path, line=line
+            ) from None
+        if not a > b > 0.0 or positive_number(a) or positive_number(b):
+            raise InputError(f"semi-axes {a:g} and {b:g}", "a above b above zero", file=path, line=line)
+        mass = 4.0 / 3.0 * math.pi * SPHEROID_DENSITY[match[2]] * a * b**2
+        ix, iy = 0.4 * mass * b**2, 0.2 * mass * (a**2 + b**2)
+        if match[2] == "spheroid":
+            at = out.vectors.get(arguments[3].strip(), (0.0, 0.0, 0.0)) if len(arguments) > 3 else (0.0, 0.0, 0.0)
+            for key, number in (
+                ("m", mass),
+                ("Ix", ix),
+                ("Iy", iy),
+                ("Iz", iy),
+                ("xG", at[0]),
+                ("yG", at[1]),
+                ("zG", at[2]),
+            ):
+                out.numbers.setdefault(key, number)
+            out.uses.setdefault("m", frozenset())
+        else:
+            e = math.sqrt(1.0 - (b / a) ** 2)
+            log = math.log((1.0 + e) / (1.0 - e))
+            alpha, beta = 2.0 * (1.0 - e**2) / e**3 * (0.5 * log - e), 1.0 / e**2 - (1.0 - e**2) / (2.0 * e**3) * log
+            k1, k2 = alpha / (2.0 - alpha), beta / (2.0 - beta)
+            k = e**4 * (beta - alpha) / ((2.0 - e**2) * (2.0 * e**2 - (2.0 - e**2) * (beta - alpha)))
+            for symbol, number in zip(
+                ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot"),
+                (mass * k1, mass * k2, mass * k2, roll * ix, k * iy, k * iy), strict=True,
+            ):  # fmt: skip
+                out.derivatives.setdefault(symbol, ("", -number))
+        calls.append(match[2])
+        out.uses[match[2]] = frozenset(n for x in arguments for n in _NAMED.findall(x))
+    return tuple(dict.fromkeys(calls))
+
+
+def _arguments(text: str) -> list[str]:
+    """Arguments of a call, apart at commas outside of brackets."""
+    out, depth = [""], 0
+    for c in text:
+        depth += (c in _OPENING) - (c in _CLOSING)
+        if c == "," and not depth:
+            out.append("")
+        else:
+            out[-1] += c
     return out
 
 

@@ -15,6 +15,7 @@ from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.formats.left_out import left_out
 from coeflab.formats.mss.m_file import (
     DENSITIES,
@@ -31,10 +32,11 @@ from coeflab.formats.mss.m_file import (
 )
 from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, matrix_doubts, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
-from coeflab.law.rigid_body import MassProperties, ideal_quadratics
+from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from coeflab.vehicle.stated_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units recognised by rho or g"
@@ -52,7 +54,9 @@ def recognises(path: Path) -> bool:
     other = re.search(
         r"^(\[+[A-Za-z_][\w.\"'-]*\]+[ \t]*(#.*)?|[ \t-]*[a-z][\w ]*:[ \t]*)$", text, re.MULTILINE
     )  # TOML, YAML
-    assigned = re.search(r"^[^%#\n]*\b[XYZKMN]\w*[ \t]*=[ \t]*[-+.\d(\w]", text, re.MULTILINE)
+    assigned = re.search(
+        r"^[^%#\n]*(\b[XYZKMN]\w*[ \t]*=[ \t]*[-+.\d(\w]|=[ \t]*(imlay61|spheroid)[ \t]*\()", text, re.MULTILINE
+    )
     return text.lstrip()[:1] not in ("<", "{") and other is None and assigned is not None
 
 
@@ -234,11 +238,18 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     if squares:
         both = ", ".join(f"{a} read as {b}" for a, b in squares.items())
         notes.append(f"{both}: damping in both directions")
-    mass = _mass(found, v)
+    findings: list[Finding] = []
+    mass = _mass(found, v, findings, path.stem)
+    afloat = _hydrostatics(found, v)
+    taken = [*READ, *found.calls, *(() if mass is None else (*MASSES, *ABOUT, *AXES_OF_INERTIA))]
+    taken += [] if mass is None or mass.inertia_matrix is None else INERTIAS
+    taken += [] if afloat is None else [*BUOYANCIES, *CENTRES_B]
+    if found.calls:
+        findings.append(Finding.of("model.imlay", path.stem, Severity.NOTE, names=found.calls))
     return Stated(
         name=path.stem[:200], body=path.stem[:200], scaling=v.scaling, conditions=v.conditions, coefficients=coefficients,
-        matrix=kept, mass=mass, notes=tuple(notes),
-        findings=left_behind(found, path.stem, READ if mass is None else (*READ, *MASSES, *FORWARD, *TRANSVERSE)),
+        matrix=kept, mass=mass, hydrostatics=afloat, notes=tuple(notes),
+        findings=(*left_behind(found, path.stem, tuple(taken)), *findings),
     )  # fmt: skip
 
 
@@ -250,6 +261,12 @@ MEANS = (
     ("propulsion", re.compile(r"n_?prop\w*|n_?max|[Dd]_?prop\w*|w_?(ake|frac)?|t_?(hr|ded)\w*|[KTQ]_?[tqTQ]_?\w*|Tau\w*|tau\w*|prop\w*|eta|eps\w*|[XKMN]prop")),
     ("terms", re.compile(r"[XYZKMN][a-z]\w*")),
 )  # fmt: skip
+ABOUT = ("xG", "x_G", "xg", "yG", "y_G", "yg", "zG", "z_G", "zg")
+AXES_OF_INERTIA = ("Iy", "Iyy", "Iz", "Izz")
+INERTIAS = ("Ix", "Ixx", "Iy", "Iyy", "Iz", "Izz", "Ixy", "Ixz", "Iyz")
+BUOYANCIES = ("B", "Buoyancy", "nabla", "Vol", "V_disp")
+CENTRES_B = ("xB", "x_B", "xb", "yB", "y_B", "yb", "zB", "z_B", "zb")
+EQUATIONS = re.compile(r"tau\w*|D|Dmtrx|g|X_\w+|Y_\w+|Z_\w+|K_\w+|M_\w+|N_\w+")
 FORWARD, TRANSVERSE = ("xG", "x_G", "xg"), ("Iy", "Iyy", "Iz", "Izz")
 READ = (*DENSITIES, *GRAVITIES, *LENGTHS, "U0", "U", "r2", "r3", "r4", "r5")
 OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity", "mxG", "xG", "yG", "zG", "I_transverse",
@@ -274,7 +291,11 @@ def left_behind(found: MFile, subject: str, read: tuple[str, ...]) -> tuple[Find
             kind = next((k for k, means in MEANS if means.fullmatch(name)), "numbers")
             kinds.setdefault(kind, []).append(name)
     own = "coeflab" in found.numbers  # its equations are the exporter's
-    equations = [f"{n} (line {line})" for n, line in found.unread.items() if n in COMPONENTS and not own]
+    equations = [
+        f"{n} (line {line})"
+        for n, line in found.unread.items()
+        if not own and (n in COMPONENTS or EQUATIONS.fullmatch(n))
+    ]
     return (
         *(f for kind, names in kinds.items() for f in left_out(subject, kind, names)),
         *left_out(subject, "equations", equations),
@@ -291,14 +312,60 @@ def _coriolis_note(found: MFile, kept: bool) -> str:
     return "no C_A(nu) in the file: products of velocities that it does not name are taken as zero"
 
 
-def _mass(found: MFile, v: MValues) -> MassProperties | None:
-    """Mass where the centre of gravity is known too; in a file of primes a mass below one is a prime."""
-    mass, forward = found.first(*MASSES), found.first(*FORWARD)
-    if mass is None or forward is None or mass <= 0.0:
-        return None
+def _point(found: MFile, letter: str, unit: float) -> np.ndarray | None:
+    """A centre from the origin, m: xG yG zG, or a vector r_bg; what is not stated of it is zero, None where nothing is."""
+    parts = [found.first(*(f"{axis}{form}" for form in (letter, f"_{letter}", letter.lower()))) for axis in "xyz"]
+    if any(p is not None for p in parts):
+        return np.array([0.0 if p is None else p * unit for p in parts])
+    named = (f"r_b{letter}", f"r_b{letter.lower()}", f"r_{letter.lower()}", f"r_{letter}", f"r{letter}")
+    vector = next((found.vectors[n] for n in named if n in found.vectors), None)
+    return None if vector is None else np.array(vector) * unit
+
+
+def _mass(found: MFile, v: MValues, findings: list[Finding], subject: str) -> MassProperties | None:
+    """Mass where the centre of gravity is known too; in a file of primes a mass below one is a prime.
+
+    Moments of inertia are about the origin, as MSS's rigid-body matrices of such files take them; those of `spheroid` about the centre.
+    """
     mass_unit, length_unit = v.units
+    mass, centre = found.first(*MASSES), _point(found, "G", length_unit)
+    if mass is None or centre is None or mass <= 0.0:
+        return None
     prime = v.primed and mass < 1.0
     kilograms = mass * v.scaling.unit("m", v.conditions.density) if prime else mass * mass_unit
-    pitch, yaw = found.first("Iy", "Iyy"), found.first("Iz", "Izz")
-    transverse = pitch * mass_unit * length_unit**2 if pitch is not None and pitch == yaw and pitch > 1.0 else None
-    return MassProperties(kilograms, kilograms * forward * length_unit, transverse)
+    rolling, pitch, yaw = (found.first(*names) for names in (("Ix", "Ixx"), ("Iy", "Iyy"), ("Iz", "Izz")))
+    square = mass_unit * length_unit**2
+    transverse = pitch * square if pitch is not None and pitch == yaw and pitch > 1.0 else None
+    matrix = None
+    if rolling is not None and pitch is not None and yaw is not None and (not v.primed or pitch > 1.0):
+        xy, xz, yz = (found.first(n) or 0.0 for n in ("Ixy", "Ixz", "Iyz"))
+        matrix = square * np.array([[rolling, -xy, -xz], [-xy, pitch, -yz], [-xz, -yz, yaw]])
+        if "spheroid" in found.calls:
+            matrix = matrix + parallel_axis(kilograms, centre)
+        if doubt := inertia_doubt(kilograms, centre, matrix):
+            findings.append(Finding.of("model.no_inertia", subject, Severity.FAIL, why=doubt))
+            matrix = transverse = None
+    if matrix is not None and "spheroid" in found.calls:
+        transverse = float(matrix[1, 1]) if abs(matrix[1, 1] - matrix[2, 2]) < 1e-9 * matrix[1, 1] else None
+    return MassProperties(kilograms, kilograms * float(centre[0]), transverse, centre, matrix)
+
+
+def _hydrostatics(found: MFile, v: MValues) -> ParameterHydrostatics | None:
+    """Of the buoyancy B in the file's unit of force, or of a volume nabla; with the centre of buoyancy that it states."""
+    mass_unit, length_unit = v.units
+    centre = _point(found, "B", length_unit)
+    buoyancy, volume = found.named("B", "Buoyancy"), found.named("nabla", "Vol", "V_disp")
+    strength = found.first(*GRAVITIES)
+    g = STANDARD_GRAVITY if strength is None else strength * length_unit
+    if centre is None or not g > 0.0:
+        return None
+    if volume is not None:
+        displaced = volume[1] * length_unit**3
+    elif buoyancy is not None:
+        displaced = buoyancy[1] * mass_unit * length_unit / (v.conditions.density * g)
+    else:
+        return None
+    if not displaced > 0.0:
+        return None
+    x, y, z = centre.tolist()
+    return ParameterHydrostatics(volume=displaced, centre_of_buoyancy=(x, y, z), gravity=g)

@@ -16,9 +16,10 @@ from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
 from coeflab.formats.stated_file import LinkModel, link_file
-from coeflab.formats.uuv_simulator.law import MATRICES, PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
+from coeflab.formats.uuv_simulator.law import FRD, MATRICES, PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from coeflab.vehicle.second_order import SURGE, SecondOrder
 from coeflab.vehicle.stated_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 
@@ -71,6 +72,8 @@ def read(
         notes.append(
             "the plugin's force acts at the centre of gravity: moments, and added mass, are moved to the link's origin"
         )
+    name = root.get("name", "") or link.link
+    afloat, not_afloat = _afloat(root, link, rho, name, path)
     stated = LinkModel(
         model=root.get("name", ""),
         link=link.link,
@@ -84,9 +87,31 @@ def read(
         length=link.length,
         length_name="length of the box",
         notes=tuple(notes),
-        findings=_left_out(root, link),
+        findings=(*_left_out(root, link), *not_afloat),
+        hydrostatics=afloat,
     )
     return link_file(stated, path, citations, length, speed)
+
+
+def _afloat(
+    root: Element, link: FossenLink, density: float, name: str, path: Path
+) -> tuple[ParameterHydrostatics | None, tuple[Finding, ...]]:  # fmt: skip
+    """Volume, of the mass where the link is neutrally buoyant, and the centre of buoyancy, which the plugin counts from that of gravity
+    (BuoyantObject.cc, ApplyBuoyancyForce: AddForceAtRelativePosition), z up.
+    """
+    element = next(
+        e for e in root.iter("link") if e.get("name") == link.link and e.find("hydrodynamic_model") is not None
+    )
+    neutral = (element.findtext("neutrally_buoyant") or "").strip().lower() in ("1", "true")
+    volume = link.mass / density if neutral and link.mass else link.volume
+    stated = [t for t in ("volume", "center_of_buoyancy", "neutrally_buoyant") if element.find(t) is not None]
+    if not volume or volume <= 0.0:
+        return None, left_out(name, "hydrostatics", [f"<{t}>" for t in stated])
+    text = element.findtext("center_of_buoyancy")
+    x = Xacro(root, path)
+    own = np.zeros(3) if text is None else np.array(numbers(x.text(text), (3,), "center_of_buoyancy", path)) * FRD
+    at = (link.centre + own + 0.0).tolist()
+    return ParameterHydrostatics(volume=volume, centre_of_buoyancy=(at[0], at[1], at[2])), ()
 
 
 PLUGIN = re.compile(r"(lib)?(uuv|dave)\w*underwater_object\w*(\.so)?", re.IGNORECASE)
@@ -100,15 +125,11 @@ def _left_out(root: Element, link: FossenLink) -> tuple[Finding, ...]:
     model = next(m for e in links if (m := e.find("hydrodynamic_model")) is not None)
     plugins = tuple(root.iter("plugin"))
     own = next((p for p in plugins if model in p.iter("hydrodynamic_model")), model)
-    weight = [
-        f"<{t}>" for e in links for t in ("volume", "center_of_buoyancy", "neutrally_buoyant") if e.find(t) is not None
-    ]
     ignored = link.quadratic - np.diag(np.diag(link.quadratic))
     off = [f"<quadratic_damping> row {i + 1} column {j + 1}" for i, j in np.argwhere(ignored)]
     out = [
         *left_out(name, "terms", unread_tags(model, (*MATRICES, "type"))),
         *left_out(name, "ignored", off),
-        *left_out(name, "hydrostatics", weight),
         *left_out(name, "environment", [f"<{t}>" for t in CURRENT if own.find(t) is not None]),
         *other_plugins(name, plugins, own),
         *other_masses(name, root.iter("link"), link.link),
@@ -140,7 +161,7 @@ def examine(path: Path) -> tuple[Check, ...]:
                           "The plugin takes velocities at one and applies forces at the other."))  # fmt: skip
     added = momentum_quadratics(link.added_mass)
     out += munk_twice("uuv_simulator", _turning(link), added, ideal_quadratics(link.added_mass))
-    return (*out, *_capsizes(root, link, path))
+    return tuple(out)
 
 
 def _found(key: str, statistic: str, rule: str, comment: str) -> Check:
@@ -170,20 +191,6 @@ def _turning(link: FossenLink) -> list[Written]:
         ):  # fmt: skip
             out.append(Written(component, f"<{tag}> row {i + 1} column {j + 1}", float(matrix[i, j]), with_speed))
     return out
-
-
-def _capsizes(root: Element, link: FossenLink, path: Path) -> tuple[Check, ...]:
-    """A centre of buoyancy below that of gravity, which in the link's own axes, z up, is a sign from z down."""
-    text = next(
-        (e.findtext("center_of_buoyancy") for e in root.iter("link") if e.find("hydrodynamic_model") is not None), None
-    )
-    if text is None:
-        return ()
-    height = numbers(Xacro(root, path).text(text), (3,), "center_of_buoyancy", path)[2] + float(link.centre[2])
-    if height >= 0.0:
-        return ()
-    return (Check("uuv_simulator", "<center_of_buoyancy>", Severity.WARN, f"{-height:.4g} m below the centre of gravity",
-                  "above it", "The vehicle turns over. The link's z is up: was it copied from axes with z down (NED)?"),)  # fmt: skip
 
 
 def _form(link: FossenLink) -> SecondOrder:

@@ -19,7 +19,7 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import factor
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterThruster
+from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterThruster
 
 LOADS = {"thrust": ("T", "thrust", "force", "N"), "torque": ("Q", "torque", "moment", "N*m")}
 WINDOW, STEADY = 0.5, 0.01  # s, and of the largest command: what the command may change by within it
@@ -194,6 +194,64 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
         loads,
         tuple(laws),
         tuple(said),
+    )
+
+
+def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
+    """The file with the curves of a bench test in the place of its thruster's, over the commands that were tested.
+
+    Where a n + b n^2 falls somewhere, which no thruster's curve may, and where the test goes through zero to both sides, the curve is
+    b n|n| of least squares alone, and a note says so.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    found : BenchTest
+
+    Raises
+    ------
+    InputError
+        Thrust that falls with the square of the command.
+    """
+    thruster = next(t for t in parameters.thrusters if t.name == found.thruster)
+    curves, said = {}, []
+    for load, law in zip(found.loads, found.laws, strict=False):
+        old = thruster.curve if load == "thrust" else thruster.torque_curve or thruster.curve
+        low, high = float(np.min(found.command)), float(np.max(found.command))
+        a, b = (float(v) for v in law.value)
+        ends = (min(low, 0.0), max(high, 0.0))
+        plain = CurveSegment(low=ends[0], high=ends[1], coefficients=(0.0, a, b))
+        curve = ParameterCurve(command=old.command, unit=old.unit, segments=(plain,))
+        if low < 0.0 < high or (load == "thrust" and curve.falls_at() is not None):
+            n, values = found.command, found.loads[load]
+            odd = n * np.abs(n) if load == "thrust" else n**2
+            square = float(odd @ values / (odd @ odd))
+            if square <= 0.0:
+                raise InputError(
+                    f"a {load} of {square:.3g} n^2", "one that rises with the command", column="--thruster"
+                )
+            back = -square if load == "thrust" else square
+            pieces = [
+                CurveSegment(low=lo, high=hi, coefficients=(0.0, 0.0, c))
+                for lo, hi, c in ((ends[0], 0.0, back), (0.0, ends[1], square))
+                if lo < hi
+            ]
+            curve = ParameterCurve(command=old.command, unit=old.unit, segments=tuple(pieces))
+            said.append(
+                f"{load} of {found.thruster} as {square:.5g} n^2: a n + b n^2 falls or the test goes through zero"
+            )
+        curves["curve" if load == "thrust" else "torque_curve"] = curve
+    made = thruster.model_copy(update=curves)
+    notes = (
+        *parameters.provenance.notes,
+        f"curve of {found.thruster} from its bench test: {', '.join(found.files)}",
+        *said,
+    )
+    return parameters.model_copy(
+        update={
+            "thrusters": tuple(made if t.name == found.thruster else t for t in parameters.thrusters),
+            "provenance": parameters.provenance.model_copy(update={"notes": notes}),
+        }
     )
 
 

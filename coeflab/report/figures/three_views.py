@@ -21,6 +21,7 @@ from coeflab.core.types import Array
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import FRONT, SIDE, TOP, Sheet, rulers
 from coeflab.report.figures.body_scene import part_facets, picture_surface
+from coeflab.report.figures.outline_overlay import STYLES, drawn, overlay
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.svg import POINTS, settings, sheet, svg_text
 
@@ -116,6 +117,8 @@ def _drawn(body: Body) -> Drawing:
                     color=COLOURS["ink"],
                     linewidth=1.4,
                 )
+        if body.outline is not None:
+            overlay(one, body.outline, names=view is not FRONT)
         rulers(one, points)
         _size(one, points)
         for control in body.controls:
@@ -214,6 +217,12 @@ def _key(axes: Axes, body: Body, y: float) -> None:
         words = MARKS[name][2]
         axes.text(x + 8.0, y, words, fontsize=8.5)
         x += 26.0 + 4.7 * len(words)
+    kinds = {part.kind for part in drawn(body.outline)} if body.outline is not None else set()
+    for kind, (colour, dash, words) in STYLES.items():
+        if kind in kinds:
+            axes.plot([x - 5.0, x + 5.0], [y + 3.0, y + 3.0], color=COLOURS[colour], linewidth=1.2, linestyle=dash)
+            axes.text(x + 8.0, y, words, fontsize=8.5)
+            x += 30.0 + 4.7 * len(words)
     for there, colour, words in ((body.controls, "d", "hinge"), (body.thrusters, "b", "thruster")):
         if there:
             axes.plot([x - 5.0, x + 5.0], [y + 3.0, y + 3.0], color=COLOURS[colour], linewidth=1.4)

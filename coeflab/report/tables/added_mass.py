@@ -5,18 +5,22 @@ Mass and inertia that indices, roots and manoeuvres are computed with.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
-from coeflab.law.added_mass import AddedMass
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.law.added_mass import AddedMass
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
 TRANSLATIONS, MARK, WIDEST, SMALLEST = "uvw", "*", 10.0, 1e-3

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,16 +18,20 @@ from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.text.json import parse_json
 from coeflab.core.texts import known, remark
-from coeflab.formats.export import LOSSLESS, RARE, Apart, Kind, Loss
+from coeflab.formats.export import LOSSLESS, RARE, Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.report.tables.own_numbers_page import OWN_NUMBERS
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.inertia import MEASURED, WaterInertia, stated_accelerations
-from coeflab.vehicle.law_at_points import LawAtPoints
+from coeflab.vehicle.inertia import MEASURED, stated_accelerations
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
 from coeflab.vehicle.second_order import ROUNDING, products_once
+
+if TYPE_CHECKING:
+    from coeflab.formats.export import Apart, Loss
+    from coeflab.vehicle.inertia import WaterInertia
+    from coeflab.vehicle.law_at_points import LawAtPoints
 
 NAMED = 3
 MOST_APART = 1000.0  # per cent of a force; a larger difference is not told from this one
@@ -273,6 +277,12 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
     )
     headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
     return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}), ("how", "origin"))
+
+
+def left_out(names: Mapping[str, Sequence[str]], whose: str) -> Table:
+    """What a model states and its parameter file does not hold."""
+    rows = tuple((kind, ", ".join(held)) for kind, held in names.items())
+    return Table(f"Left out of {whose}", ("kind", "names"), rows or (("nothing", ""),), (), frozenset({0, 1}))
 
 
 def by_added_mass(parameters: ParameterFile) -> Table:

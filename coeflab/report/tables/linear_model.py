@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,8 +11,10 @@ from coeflab.core.table import Table, folded, number
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import one_line
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
 from coeflab.vehicle.expected_signs import TURNS
+
+if TYPE_CHECKING:
+    from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
 
 PART = 0.1  # a state with a smaller share is not named in a mode
 FUNCTION = "linear"

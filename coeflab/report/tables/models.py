@@ -11,19 +11,24 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import degrees
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability, with_u95
-from coeflab.fits.results.fit_result import FitResult, Pooling
-from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
 from coeflab.fits.statistics.least_squares import factorise
 from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
+from coeflab.motion.behaviour import Behaviour
 from coeflab.report.figures.variables import domain_in_words
-from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison, Verdict
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.comparison import Verdict
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult, Pooling
+    from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
+    from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:
@@ -240,6 +245,31 @@ def models(found: Comparison, *, with_statements: bool = True) -> Table:
     left = frozenset({0, 4, 7, 8})
     return Table(
         "Fitted tables", headers, rows, found.statements if with_statements else (), left, ("at", "points", "largest")
+    )
+
+
+def behaviour(found: Sequence[Behaviour], a: str, b: str) -> Table:
+    """What two vehicles do: a row a figure, with the difference over combined U95."""
+    rows = []
+    for r in found:
+        one, other, difference, combined = (
+            ABSENT if x is None else number(x, 4) for x in (r.a, r.b, r.difference, r.combined)
+        )
+        rows.append(
+            (
+                r.name,
+                one,
+                other,
+                difference,
+                combined,
+                ABSENT if r.ratio is None else number(r.ratio, 2),
+                r.unit,
+                r.reason,
+            )
+        )
+    headers = ("figure", "first", "second", "difference", "combined U95", "ratio", "unit", "note")
+    return Table(
+        f"{a} and {b} by what they do", headers, tuple(rows), (), frozenset({0, 6, 7}), ("note", "combined U95")
     )
 
 

@@ -11,22 +11,24 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.types import Array
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.glider.glide import GlideRun, SteadyGlide
-from coeflab.motion.glider.glider import Glider
-from coeflab.motion.glider.motion import shallowest
-from coeflab.motion.glider.space import Spiral
-from coeflab.motion.identify.identification import Identified, IdentifiedTerm
-from coeflab.motion.manoeuvre import Figure
-from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.tune.tuning import STATUSES, WORDS, Tuning, largest_correlations
 from coeflab.report.tables.nouns import NO_VALUE
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.motion.glider.glide import GlideRun, SteadyGlide
+    from coeflab.motion.glider.glider import Glider
+    from coeflab.motion.glider.space import Spiral
+    from coeflab.motion.identify.identification import Identified, IdentifiedTerm
+    from coeflab.motion.manoeuvre import Figure
+    from coeflab.motion.trajectory import Trajectory
+    from coeflab.motion.tune.tuning import Tuning
 
 DEGREES = {"rad": "deg", "rad/s": "deg/s"}
 
@@ -194,6 +196,8 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
         )
         for g in glides
     )
+    from coeflab.motion.glider.motion import shallowest
+
     low, high = np.degrees(glider.polar.searched)
     dive, climb = np.degrees(shallowest(glider.body.polar))
     notes = [
@@ -280,6 +284,8 @@ def basis(glider: Glider) -> Table:
 
 def parameters(tuning: Tuning) -> Table:
     """Every parameter from where to where, with its interval or why there is none."""
+    from coeflab.motion.tune.tuning import STATUSES, WORDS
+
     rows = tuple(
         (
             p.name,
@@ -309,6 +315,8 @@ def quantities(tuning: Tuning) -> Table:
 
 def correlations(tuning: Tuning) -> Table:
     """Pairs of parameters with a correlation of 0.7 and more; without rows where there are none."""
+    from coeflab.motion.tune.tuning import largest_correlations
+
     rows = tuple((a, b, f"{r:+.2f}") for a, b, r in largest_correlations(tuning))
     return Table(f"{tuning.name}: correlations", ("parameter", "with", "correlation"), rows, (), frozenset({0, 1}))
 

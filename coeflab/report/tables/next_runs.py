@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, with_u95
-from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.tables.results import signed
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.study.study import Study
 
 
 def next_runs(study: Study, sweep: Sweep, count: int) -> tuple[tuple[float, float], ...]:

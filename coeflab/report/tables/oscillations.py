@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, plus_minus, probability, with_u95
 from coeflab.core.wording import finite
 from coeflab.fits.planar_motion import beside_steady
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.oscillation import Explained, Oscillation
 from coeflab.law.symbols import primed
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.results.oscillation import Explained, Oscillation
 
 OWN = "zero amplitude"
 SIGNIFICANT = 0.05

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import listed
@@ -11,8 +12,11 @@ from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.tables.uncertainty import sentences_on_open
 from coeflab.study.lines import MEANING, NAME
 from coeflab.study.towed import NO_RESULT as SHARE
-from coeflab.study.towed import Towed
-from coeflab.study.validation import AS_PRINTED, Validation, in_millions
+from coeflab.study.validation import AS_PRINTED, in_millions
+
+if TYPE_CHECKING:
+    from coeflab.study.towed import Towed
+    from coeflab.study.validation import Validation
 
 NO_RESULT = "no result"
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coeflab.core.table import Table
 from coeflab.report.printable import shortened
-from coeflab.tables.column_map import ColumnMap
-from coeflab.tables.evidence import Evidence
 from coeflab.tables.mapping import known_as
-from coeflab.tables.proposals import Proposal
-from coeflab.tables.raw_table import RawColumn, RawTable, Run
+
+if TYPE_CHECKING:
+    from coeflab.tables.column_map import ColumnMap
+    from coeflab.tables.evidence import Evidence
+    from coeflab.tables.proposals import Proposal
+    from coeflab.tables.raw_table import RawColumn, RawTable, Run
 
 NAME, UNIT = 20, 8
 MANY = 20  # columns, beyond which those that no fit uses stand in a note

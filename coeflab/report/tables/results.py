@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.axes import point_in_words
-from coeflab.core.finding import Finding
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
-    Check,
     Table,
     as_printed,
     coefficient,
@@ -23,22 +22,30 @@ from coeflab.core.table import (
     with_u95,
 )
 from coeflab.core.texts import remark, words
-from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
-from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.rows.sweeps import arm_shift
-from coeflab.fits.uncertainty.budget import Budget
-from coeflab.law.coefficient import COVERS, Coefficient, Status
+from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
-from coeflab.study.study import Study
 from coeflab.study.towed import STATES
 from coeflab.study.validation import WIDE
 from coeflab.tables.assumptions import CODE, depends
-from coeflab.tables.force_table import Exclusion, ForceTable
-from coeflab.vehicle.reference import Comparison, Reference, Relation
+from coeflab.vehicle.reference import Relation
+
+if TYPE_CHECKING:
+    from coeflab.core.finding import Finding
+    from coeflab.core.table import (
+        Check,
+    )
+    from coeflab.core.types import Array
+    from coeflab.fits.results.fit_result import Sweep
+    from coeflab.fits.results.straight_runs import StraightRuns
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import Exclusion, ForceTable
+    from coeflab.vehicle.reference import Comparison, Reference
 
 NO_DATA, NO_VALUE = "no data", "no value"
 NO_WORK = "none"  # as a citation

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
 from coeflab.core.table import Table
 from coeflab.core.wording import listed
-from coeflab.study.study import Study
-from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import HALF
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 
 def declared(tables: Sequence[ForceTable]) -> Table:

@@ -21,15 +21,16 @@ from coeflab.report.printable import shortened
 from coeflab.study.checks.symmetry import biases
 from coeflab.study.towed import NO_RESULT
 from coeflab.tables.conditions import named
-from coeflab.tank.campaign import TowedRun
-from coeflab.tank.jobs import Job, JobState
-from coeflab.tank.states import JobRow
-from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import TowCondition
+from coeflab.tank.jobs import JobState
 
 if TYPE_CHECKING:
     from coeflab.study.study import Study
     from coeflab.study.towed import TowedRow
+    from coeflab.tank.campaign import TowedRun
+    from coeflab.tank.jobs import Job
+    from coeflab.tank.states import JobRow
+    from coeflab.tank.tank import Tank
+    from coeflab.tank.test_matrix import TowCondition
 
 NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
 SIGN_OPEN = "sign open"

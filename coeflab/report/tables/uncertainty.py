@@ -6,6 +6,7 @@ Uncertainty budgets, grid studies, validations and derived quantities, as tables
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,14 +14,18 @@ from coeflab.bodies.hull_flow import FRICTION_APART
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.uncertainty.budget import COUPLED, Budget
+from coeflab.fits.uncertainty.budget import COUPLED
 from coeflab.law.symbols import primed
-from coeflab.motion.uncertainty.spread import Importance, Spread
-from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.tables.motion import DEGREES
-from coeflab.study.validation import AS_PRINTED, WIDE, Validation
-from coeflab.vehicle.stability import Derived
+from coeflab.study.validation import AS_PRINTED, WIDE
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.motion.uncertainty.spread import Importance, Spread
+    from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.study.validation import Validation
+    from coeflab.vehicle.stability import Derived
 
 SMALL = 0.01
 LISTED = 5

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "added mass that is a rough guide, or not by the panel method"
 citations = ("lamb1932",)

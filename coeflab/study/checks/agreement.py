@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, plus_minus
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "the same coefficient from two campaigns against the combined U95"
 citations = ("ittc_uncertainty",)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.bodies.mass_model import at_rest
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.from_shape import displaced_mass, floods
+
+if TYPE_CHECKING:
+    from coeflab.study.study import FromShape, Study
 
 summary = "mass of a vehicle from its shape against its displacement"
 citations = ("sname1950",)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, plus_minus
-from coeflab.study.study import Study
 from coeflab.vehicle.stability import centre_of_pressure
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "x = Nv'/Yv' and -Mw'/Zw' with intervals"
 citations = ("feldman1979",)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +11,11 @@ from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
-from coeflab.study.study import Study
-from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import TAKEN_OUT
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 summary = "density, Reynolds number of speed, length and viscosity, reference point, inertia of a model that turns"
 citations = ("ittc_water",)

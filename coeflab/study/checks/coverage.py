@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.diagnostics import replicate_groups
-from coeflab.fits.statistics.least_squares import Index, factorise, solve
+from coeflab.fits.statistics.least_squares import factorise, solve
 from coeflab.fits.statistics.linear_model import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
 from coeflab.tables.evidence import trend
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.force_table import AT_REST
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import Sweep
+    from coeflab.fits.statistics.least_squares import Index
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 summary = "points, sides, distance of the first angle, sign, replicates, a moment of the other plane"
 citations = ("roddy1990",)

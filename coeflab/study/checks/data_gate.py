@@ -8,24 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check, number
-from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
 from coeflab.fits.statistics import data_gate, origin_slope
-from coeflab.fits.statistics.data_gate import FEWEST, Gate, Parity, Screened
+from coeflab.fits.statistics.data_gate import FEWEST, Parity
 from coeflab.fits.statistics.slopes import rest_and_curvature
 from coeflab.law.symbols import MOMENTS, PORT_STARBOARD, primed
 from coeflab.study.exchanged_rows import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
-from coeflab.study.study import Study
 from coeflab.study.table_sweeps import Sweep, ahead_counts, setting_in_words, sweeps_of
-from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    from coeflab.core.types import Array
+    from coeflab.fits.statistics.data_gate import Gate, Screened
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 summary = "every reading predicted from the others of its sweep; rows that decide a derivative; pasted rows"
 citations = ("ittc_uncertainty",)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.core.wording import listed
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "components of an export that are further from the parameter file than no force at all"
 citations = ("fossen2011",)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.bodies.outlining import fins_along
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "where the fins of a vehicle from its shape stand along its hull"
 citations = ("sname1950",)

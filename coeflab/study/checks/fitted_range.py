@@ -7,14 +7,17 @@ sweep, as the method says; the finding names what a shorter one gives.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, plus_minus
-from coeflab.fits.results.fit_result import Sensitivity, Sweep
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import Sensitivity, Sweep
+    from coeflab.study.study import Study
 
 summary = "slopes whose U95 grows, and whose value moves beyond U95 of a shorter sweep, with the largest setting"
 citations = ("ittc_uncertainty",)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.bodies.mesh.particulars import likeness
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "length and volume of the added mass's body against the vehicle's"
 citations = ("sname1950",)

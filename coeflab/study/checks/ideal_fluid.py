@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.core.wording import listed
 from coeflab.estimates import IDEAL, every_way
 from coeflab.law.symbols import derivative
-from coeflab.study.study import Study
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "estimates of the ideal fluid against the potential part that the added mass gives"
 citations = ("lamb1932", "fossen2011")

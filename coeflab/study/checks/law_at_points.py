@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from coeflab.core.table import Check
 from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import law_findings
+
+if TYPE_CHECKING:
+    from coeflab.core.table import Check
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "distance of a parameter file's law from its measured points, and where the law holds"
 citations = ("roddy1990",)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.orientation import doubt
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "whether a vehicle's mesh lies as its axes say: longest ahead, sail up, tail aft"
 citations = ("sname1950",)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import Secant, explained
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
-from coeflab.vehicle.reference import PublishedValue, Reference
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.study.study import Study
+    from coeflab.vehicle.reference import PublishedValue, Reference
 
 summary = "slope at the origin, secant and published oscillation value of rotary derivatives"
 citations = ("roddy1990",)
@@ -34,7 +37,7 @@ def _tied(sweep: Sweep, slope: float) -> tuple[Secant, dict[int, float]]:
         rest = y - slope * x - columns @ solved
         found.append((float(rest @ rest), power, float(solved[0]), float(np.linalg.pinv(columns.T @ columns)[0, 0])))
     scatter, power, high, variance = min(found)
-    half = float(stats.t.ppf(0.975, freedom)) * np.sqrt(variance * scatter / freedom) * reach ** (power - 1)
+    half = float(special.stdtrit(freedom, 0.975)) * np.sqrt(variance * scatter / freedom) * reach ** (power - 1)
     here = Secant(sweep.symbol, sweep.variable, slope, slope + high * reach ** (power - 1), float(half), reach)
     return here, {1: slope, power: high}
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import Check, as_check
-from coeflab.study.study import Study
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.core.table import as_check
 from coeflab.vehicle.plausibility import LAW, plausibility
+
+if TYPE_CHECKING:
+    from coeflab.core.table import Check
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "what coeflab params check finds in the files that are written"
 citations = ("fossen2011",)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "campaigns of a joint fit against one common law"
 citations = ("chow1960", "tipton2015")

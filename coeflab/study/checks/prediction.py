@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
 
 summary = "left-out rows of fitted models against their own scatter"
 citations = ("allen1974",)

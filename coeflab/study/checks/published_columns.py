@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import Check, as_check
-from coeflab.study.study import Study
-from coeflab.vehicle.reference import Reference, Relation
+from coeflab.core.table import as_check
+from coeflab.vehicle.reference import Relation
+
+if TYPE_CHECKING:
+    from coeflab.core.table import Check
+    from coeflab.study.study import Study
+    from coeflab.vehicle.reference import Reference
 
 summary = "published columns that are compared with nothing, and by which key"
 citations = ()

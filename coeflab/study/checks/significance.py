@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, plus_minus
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.study.study import Study
 
 summary = "values smaller than their U95"
 citations = ("ittc_uncertainty",)

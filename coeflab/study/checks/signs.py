@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.study.study import Study
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import MISTYPED
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "Yv', Zw', Nr', Mq', X0' and accelerations negative, added mass symmetric; fitted and literature"
 citations = ("gertler1967",)

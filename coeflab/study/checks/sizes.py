@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.law.coefficient import Coefficient
-from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
-from coeflab.tables.force_table import ForceTable
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.law.scaling import Conditions, Scaling
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 summary = (
     "rates, levers of forces, primed slopes and X0' between friction of a slender body and a bluff plate of side L"

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.fits.results.straight_runs import DOUBTFUL, StraightRuns
+from coeflab.fits.results.straight_runs import DOUBTFUL
 from coeflab.fits.rows.straight_runs import straight_runs
-from coeflab.study.study import Study
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.straight_runs import StraightRuns
+    from coeflab.study.study import Study
 
 summary = "X0' of straight runs: its trend with speed against the scatter"
 citations = ("mackinnon1985", "bell2002")

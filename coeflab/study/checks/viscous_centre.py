@@ -12,15 +12,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
-from coeflab.study.study import Study
 from coeflab.tables.to_frd import TAKEN_OUT
 from coeflab.vehicle.expected_signs import REACH, UNSURE
-from coeflab.vehicle.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.study.study import Study
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "centres of the viscous side force against the hull; inertia in rotating-arm forces against m'"
 citations = ("feldman1979", "gertler1967")

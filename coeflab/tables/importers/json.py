@@ -11,11 +11,11 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES, LARGEST_NUMBER, TABLE_COLUMNS
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.json import parse_json
-from coeflab.tables.dialect import name_and_unit, names_and_units
+from coeflab.tables.dialect import Marks, name_and_unit, names_and_units
 from coeflab.tables.monitor_files import head
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.text_dialect import Marks
 from coeflab.tables.words.above import words_above
 
 summary = "lists of points in JSON, a row an object or a list a column"
@@ -84,13 +84,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
 
 def _content(path: Path) -> Any:
     try:
-        with path.open("rb") as stream:
-            data = stream.read(JSON_BYTES + 1)
-        if len(data) > JSON_BYTES:
-            raise InputError(f"more than {JSON_BYTES >> 20} MiB", "a list of points", file=path)
-        return parse_json(data.decode("utf-8-sig"), path, "a list of points")
-    except OSError as why:
-        raise InputError(str(why.strerror or why), "a readable file", file=path) from None
+        return parse_json(whole_bytes(path, JSON_BYTES).decode("utf-8-sig"), path, "a list of points")
     except UnicodeDecodeError:
         raise InputError("another encoding", "UTF-8", file=path) from None
 

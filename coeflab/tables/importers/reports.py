@@ -17,6 +17,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.text.bounded import whole_bytes
 from coeflab.tables.dialect import Marks, name_and_unit
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, head, header_cells, lines_of
@@ -73,14 +74,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         Another content, or a value that is no number.
     """
     parse_options(NoOptions, options or {}, "importers.reports")
-    try:
-        with path.open("rb") as stream:
-            raw = stream.read(JSON_BYTES + 1)
-    except OSError as why:
-        raise InputError(str(why.strerror or why), "a readable file", file=path) from None
-    if len(raw) > JSON_BYTES:
-        raise InputError(f"more than {JSON_BYTES >> 20} MiB", "final values of one run", file=path)
-    text = decoded(raw)[0]
+    text = decoded(whole_bytes(path, JSON_BYTES))[0]
     lines = lines_of(text)
     stated: dict[str, Stated] = {}
     conditions: dict[str, Stated] = {}
@@ -109,9 +103,9 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         )
     broken = not all(math.isfinite(float(c.values[0])) for c in columns)
     table = RawTable(path, tuple(columns), files=(path, *texts), dialect=dialect, stated=stated)
-    why = f"{path.name}: a value that is no number" * broken
+    reason = f"{path.name}: a value that is no number" * broken
     return Run(
-        path, path.stem, table, conditions, ended=Ended.DIVERGED if broken else Ended.WHOLE, why=why, is_final=True
+        path, path.stem, table, conditions, ended=Ended.DIVERGED if broken else Ended.WHOLE, why=reason, is_final=True
     )
 
 

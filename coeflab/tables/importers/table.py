@@ -32,6 +32,7 @@ reads = "tables of delimited text"
 _BLOCK = 1 << 20  # letters
 _COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
+_NESTED = frozenset("{[")  # what a table does not begin with
 _PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
 
 
@@ -239,7 +240,7 @@ def recognises(path: Path) -> bool:
         sample, whole = text_dialect.first_bytes(path)
         encoding = text_dialect.encoding_of(sample, text_dialect.Options(), path)
         lines, _ = text_dialect.first_lines(sample, whole, encoding, path)
-        if is_of_openfoam(lines) or kind_of(head(path)):
+        if is_of_openfoam(lines) or kind_of(head(path)) or "".join(lines).lstrip()[:1] in _NESTED:
             return False
         dialect = text_dialect.sniff(path, text_dialect.Options())
     except text_dialect.AmbiguousError:

@@ -1,0 +1,267 @@
+"""Two vehicles by what they do at a speed: stability, eigenvalues, turning, zigzag, and the forces of both laws about one point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coeflab.core.errors import CoeflabError
+from coeflab.core.types import Array, brief
+from coeflab.law.symbols import COMPONENTS
+from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.motion.dynamics import modes
+from coeflab.motion.simulation import simulate
+from coeflab.motion.vehicle import vehicle
+from coeflab.vehicle.comparison import coefficient_set
+from coeflab.vehicle.force_law import motion_law
+from coeflab.vehicle.matching import by_plain_names
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.stability import stability
+
+CURVES = (("v/U", 1, 0.25), ("w/U", 2, 0.25), ("p L/U", 3, 0.5), ("q L/U", 4, 0.5), ("r L/U", 5, 0.5))
+POINTS = 11
+MANOEUVRES: tuple[tuple[str, Mapping[str, float], tuple[str, ...]], ...] = (
+    (
+        "turning_circle",
+        {"rudder": float(np.radians(15.0))},
+        ("tactical diameter", "turning radius", "steady turning diameter"),
+    ),
+    ("zigzag", {"rudder": float(np.radians(10.0))}, ("first overshoot", "second overshoot")),
+)
+EQUAL = 1e-9
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """One figure of two vehicles.
+
+    Attributes
+    ----------
+    name, unit : str
+    a, b : float or None
+    difference : float or None
+        b - a; of a curve the largest over its grid.
+    combined : float or None
+        U95 of both, root sum of squares, taken as independent; of a curve where the difference is largest.
+    reason : str
+        Why there is none, or no U95.
+    """
+
+    name: str
+    unit: str
+    a: float | None
+    b: float | None
+    difference: float | None
+    combined: float | None = None
+    reason: str = ""
+
+    @property
+    def ratio(self) -> float | None:
+        """Difference over combined U95."""
+        return abs(self.difference) / self.combined if self.difference is not None and self.combined else None
+
+
+def under_plain_names(parameters: ParameterFile) -> ParameterFile:
+    """The file with every slope under its plain name, for what asks by names: one force on a straight course, no law for a motion."""
+    found, _ = by_plain_names(coefficient_set(parameters))
+    rows = tuple(replace(c, symbol=f"{c.symbol}'", value_si=None, potential=None) for c in found.coefficients)
+    cells = tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in found.covariance)
+    return parameters.model_copy(
+        update={
+            "coefficients": rows,
+            "covariance": ParameterCovariance(symbols=tuple(c.symbol for c in rows), matrix=cells),
+        }
+    )
+
+
+def behaviour(a: ParameterFile, b: ParameterFile, speed: float) -> tuple[Behaviour, ...]:
+    """G_h, G_v, eigenvalues, turning circle at 15 deg, zigzag 10/10, and curves of forces over drift and rates.
+
+    Parameters
+    ----------
+    a, b : ParameterFile
+        Forces are about the point of the first, where both measure it from one datum.
+    speed : float
+        m/s.
+    """
+    return (*_indices(a, b), *_eigenvalues(a, b, speed), *_figures(a, b, speed), *_curves(a, b, speed))
+
+
+def _pair(
+    name: str, unit: str, values: tuple[float | None, float | None], reason: str = "", combined: float | None = None
+) -> Behaviour:
+    one, other = values
+    difference = None if one is None or other is None else other - one
+    return Behaviour(name, unit, one, other, difference, combined, reason)
+
+
+def _indices(a: ParameterFile, b: ParameterFile) -> list[Behaviour]:
+    both = [{d.name: d for d in stability(f)} for f in (under_plain_names(a), _beside(under_plain_names(b), a))]
+    out = []
+    for name in ("G_h", "G_v"):
+        one, other = (s.get(name) for s in both)
+        if one is None and other is None:
+            continue
+        halves = [None if d is None or d.result is None else d.result.monte_carlo for d in (one, other)]
+        combined = float(np.hypot(*halves)) if all(h is not None for h in halves) else None  # type: ignore[arg-type]
+        why = "" if one and other else "mass or a slope is missing in one file"
+        out.append(
+            _pair(
+                name, "1", (None if one is None else one.value, None if other is None else other.value), why, combined
+            )
+        )
+    return out
+
+
+def _beside(b: ParameterFile, a: ParameterFile) -> ParameterFile:
+    """A file by the length and about the point of another, coefficients and mass; as it is where their datums differ.
+
+    The index is a ratio whose parts depend on the point.
+    """
+    if a.reference_point.origin != b.reference_point.origin:
+        return b
+    found = coefficient_set(b).to_length(a.scaling).about(np.array(a.reference_point.point))
+    rows = tuple(replace(c, symbol=f"{c.symbol}'", value_si=None, potential=None) for c in found.coefficients)
+    cells = tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in found.covariance)
+    mass = b.mass
+    if mass is not None:
+        shift = float(a.reference_point.point[0] - b.reference_point.point[0])
+        moved = replace(
+            mass, mass_moment=mass.mass_moment - mass.mass * shift, inertia=None, inertia_matrix=None, centre=None
+        )
+        mass = moved.primed(a.scaling, b.conditions.density)
+    covariance = ParameterCovariance(symbols=tuple(c.symbol for c in rows), matrix=cells)
+    update = {
+        "scaling": a.scaling,
+        "reference_point": a.reference_point,
+        "mass": mass,
+        "coefficients": rows,
+        "covariance": covariance,
+    }
+    return b.model_copy(update=update)
+
+
+def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Array:
+    """Largest real part first: eigenvalues of small motions about straight ahead, 1/s."""
+    made = vehicle(parameters, free)
+    at = made.free_columns
+    nu = np.zeros(6)
+    nu[0] = speed
+
+    def acceleration(x: Array) -> Array:
+        states = np.tile(nu, (len(x), 1))
+        states[:, at] = x
+        attitude = np.tile([1.0, 0.0, 0.0, 0.0], (len(x), 1))
+        return made.acceleration(states, attitude, np.zeros((len(x), 3)), np.zeros(6))[:, at]
+
+    step = 1e-5 * max(speed, 1e-3)
+    base, eye = nu[list(at)], np.eye(len(at))
+    jacobian = np.column_stack(
+        [
+            ((acceleration((base + step * e)[None]) - acceleration((base - step * e)[None])) / (2.0 * step))[0]
+            for e in eye
+        ]
+    )
+    return np.asarray(modes(jacobian))
+
+
+def _eigenvalues(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]:
+    out = []
+    for plane, free in (("horizontal", ("v", "r")), ("vertical, no weight", ("w", "q"))):
+        found, why = _both(lambda p, free=free: np.sort_complex(_rates(p, speed, free))[::-1], a, b)  # type: ignore[misc]
+        for k in range(2):
+            values = tuple(None if f is None else float(np.real(f[k])) for f in found)
+            out.append(
+                _pair(f"eigenvalue {k + 1}, {plane}", "1/s", (values[0], values[1]), why or "no U95 of eigenvalues")
+            )
+    return out
+
+
+def _both(function: Callable[[ParameterFile], object], a: ParameterFile, b: ParameterFile) -> tuple[list, str]:  # type: ignore[type-arg]
+    found, why = [], ""
+    for p in (a, b):
+        try:
+            found.append(function(p))
+        except CoeflabError as wrong:
+            found.append(None)
+            why = f"{p.name}: {wrong}"[:160]
+    return found, why
+
+
+def _figures(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]:
+    out = []
+    for name, options, wanted in MANOEUVRES:
+
+        def run(
+            p: ParameterFile, name: str = name, options: Mapping[str, float] = options
+        ) -> dict[str, tuple[float | None, str]]:
+            return {f.name: (f.value, f.unit) for f in simulate(p, name, {**options, "speed": speed}).figures}
+
+        found, why = _both(run, a, b)
+        known = [n for n in dict.fromkeys(k for f in found if f for k in f) if any(w in n for w in wanted)]
+        for figure in known or [name.replace("_", " ")]:
+            pairs = [None if f is None else f.get(figure) for f in found]
+            values = [None if x is None else x[0] for x in pairs]
+            unit = next((x[1] for x in pairs if x is not None), "")
+            out.append(_pair(figure, unit, (values[0], values[1]), why or "no U95 of motions: coeflab uncertainty"))
+    return out
+
+
+def _law_at(parameters: ParameterFile, point: Array | None) -> Callable[[Array], tuple[Array, Array]]:
+    """Forces (n, 6) and their U95 about a point of the file's datum."""
+    law, _ = motion_law(parameters)
+    shift = np.zeros(3) if point is None else point - np.array(parameters.reference_point.point)
+    back, on = velocity_transfer(-shift), force_transfer(shift)
+    listed = list(parameters.covariance.symbols)
+    matrix = np.array([[np.nan if v is None else v for v in row] for row in parameters.covariance.matrix]).reshape(
+        len(listed), len(listed)
+    )
+
+    def force(nu: Array) -> tuple[Array, Array]:
+        own = nu @ back.T
+        value = law.force(own) @ on.T
+        columns = {}
+        for c in parameters.coefficients:
+            if c.u95 and c.symbol in listed and c.value is not None:
+                more = parameters.model_copy(update={"coefficients": tuple(
+                    replace(x, value=x.value + x.u95, value_si=None, potential=None) if x is c and x.value is not None and x.u95 else x
+                    for x in parameters.coefficients)})  # fmt: skip
+                columns[c.symbol] = (motion_law(more)[0].force(own) @ on.T - value) / c.u95
+        if not columns:
+            return value, np.full(value.shape, np.nan)
+        at = [listed.index(s) for s in columns]
+        gradient = np.stack(list(columns.values()), axis=-1)
+        spread = np.einsum("nij,jk,nik->ni", gradient, np.nan_to_num(matrix[np.ix_(at, at)]), gradient)
+        return value, 2.0 * np.sqrt(np.maximum(spread, 0.0))
+
+    return force
+
+
+def _curves(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]:
+    same = a.reference_point.origin == b.reference_point.origin
+    point = np.array(a.reference_point.point)
+    laws = (_law_at(a, None), _law_at(b, point if same else None))
+    out = []
+    for name, column, reach in CURVES:
+        nu = np.zeros((POINTS, 6))
+        nu[:, 0] = speed
+        nu[:, column] = np.linspace(-reach, reach, POINTS) * (speed if column < 3 else speed / a.scaling.length)
+        (one, half), (other, other_half) = (law(nu) for law in laws)
+        largest = float(np.max(np.abs(one)))
+        for i, component in enumerate(COMPONENTS):
+            difference = other[:, i] - one[:, i]
+            if max(float(np.max(np.abs(one[:, i]))), float(np.max(np.abs(other[:, i])))) <= EQUAL * max(largest, 1e-30):
+                continue
+            at = int(np.argmax(np.abs(difference)))
+            size = float(difference[at]) if abs(difference[at]) > EQUAL * max(np.max(np.abs(one[:, i])), 1e-30) else 0.0
+            combined = float(np.hypot(half[at, i], other_half[at, i]))
+            where = f"largest at {name} = {np.linspace(-reach, reach, POINTS)[at]:.3g}" + (
+                "" if same else "; points of other datums"
+            )
+            out.append(Behaviour(f"{component} over {name}", "N m" if component in "KMN" else "N", float(one[at, i]), float(other[at, i]),
+                                 size, None if np.isnan(combined) or combined == 0.0 else combined, where))  # fmt: skip
+    return out

@@ -1,0 +1,106 @@
+"""Fifteen faults planted in a sound SDF are found, none is in three sound files. All models are made up."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.finding import Severity
+from coeflab.formats.model_files import read_model_file
+
+TORPEDO = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity><model name="t"><link name="b"><inertial><pose>0 0 -0.012 0 0 0</pose><mass>31.4</mass>
+<inertia><ixx>0.11</ixx><iyy>5.9</iyy><izz>5.9</izz></inertia></inertial>
+<collision name="c"><pose>0 0 0 0 1.5707963 0</pose><geometry><cylinder><radius>0.076</radius><length>1.7</length></cylinder></geometry></collision></link>
+<link name="prop"><pose>-0.9 0 0 0 0 0</pose><inertial><mass>0.1</mass><inertia><ixx>0.0001</ixx><iyy>0.0001</iyy><izz>0.0001</izz></inertia></inertial></link>
+<joint name="pj" type="revolute"><parent>b</parent><child>prop</child><axis><xyz>1 0 0</xyz></axis></joint>
+<link name="fin"><pose>-0.75 0 0 0 0 0</pose><inertial><mass>0.1</mass><inertia><ixx>0.0001</ixx><iyy>0.0001</iyy><izz>0.0001</izz></inertia></inertial></link>
+<joint name="fj" type="revolute"><parent>b</parent><child>fin</child><axis><xyz>0 0 1</xyz><limit><lower>-0.3</lower><upper>0.3</upper></limit></axis></joint>
+<plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster"><joint_name>pj</joint_name><thrust_coefficient>0.0046</thrust_coefficient>
+<fluid_density>1025</fluid_density><propeller_diameter>0.16</propeller_diameter><max_thrust_cmd>40</max_thrust_cmd><min_thrust_cmd>-30</min_thrust_cmd><deadband>0.5</deadband></plugin>
+<plugin filename="gz-sim-lift-drag-system" name="gz::sim::systems::LiftDrag"><link_name>fin</link_name><air_density>1025</air_density><cla>3.6</cla><cda>0.0</cda>
+<area>0.011</area><forward>1 0 0</forward><upward>0 1 0</upward></plugin>
+<plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics"><link_name>b</link_name><disable_coriolis>true</disable_coriolis>
+<uniform_fluid_density>1025</uniform_fluid_density>
+<xDotU>-1.1</xDotU><yDotV>-30.0</yDotV><zDotW>-30.0</zDotW><kDotP>-0.02</kDotP><mDotQ>-5.6</mDotQ><nDotR>-5.6</nDotR>
+<xUabsU>-1.6</xUabsU><yVabsV>-96</yVabsV><zWabsW>-96</zWabsW><kPabsP>-0.1</kPabsP><mQabsQ>-61</mQabsQ><nRabsR>-61</nRabsR>
+<yVabsU>-22</yVabsU><nVabsU>-13</nVabsU><zWabsU>-22</zWabsU><mWabsU>13</mWabsU><yRabsU>4.6</yRabsU><nRabsU>-2.4</nRabsU><zQabsU>-4.6</zQabsU><mQabsU>-2.4</mQabsU></plugin></model></world></sdf>"""
+ROV = """<?xml version="1.0"?><robot name="rov"><link name="base_link"><inertial><origin xyz="0 0 -0.02"/><mass value="17.3"/>
+<inertia ixx="0.31" ixy="0" ixz="0" iyy="0.42" iyz="0" izz="0.55"/></inertial>
+<collision><origin xyz="0 0 0.01"/><geometry><box size="0.4 0.3 0.146"/></geometry></collision></link>
+<gazebo><plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics"><link_name>base_link</link_name><disable_coriolis>true</disable_coriolis>
+<xDotU>-6.1</xDotU><yDotV>-11.2</yDotV><zDotW>-13.9</zDotW><kDotP>-0.14</kDotP><mDotQ>-0.17</mDotQ><nDotR>-0.19</nDotR>
+<xUabsU>-21</xUabsU><yVabsV>-37</yVabsV><zWabsW>-58</zWabsW><kPabsP>-1.1</kPabsP><mQabsQ>-1.3</mQabsQ><nRabsR>-1.7</nRabsR></plugin></gazebo></robot>"""
+SOUND = {
+    "torpedo": TORPEDO,
+    "rov": ROV,
+    "rounded": TORPEDO.replace("<yDotV>-30.0", "<yDotR>0.201</yDotR><nDotV>0.2012</nDotV><yDotV>-30.0"),
+}
+# What is changed, and what the finding must name.
+FAULTS = {
+    "mass in pounds": (("<mass>31.4", "<mass>69.2"), "<mass>|volume|mass"),
+    "mass in grams": (("<mass>31.4", "<mass>31400"), "<mass>|volume|mass"),
+    "length in inches": (("<length>1.7", "<length>66.9"), "collision|volume"),
+    "radius in mm": (("<radius>0.076", "<radius>76"), "collision|volume"),
+    "length in feet": (("<length>1.7", "<length>5.58"), "collision|volume"),
+    "inertia in g m^2": (("<iyy>5.9", "<iyy>5900"), "inertia|Iy"),
+    "inertia in lb ft^2": (("<iyy>5.9</iyy><izz>5.9", "<iyy>140.0</iyy><izz>140.0"), "Iy"),
+    "triangle": (("<ixx>0.11", "<ixx>13.0"), "inertia"),
+    "centre of gravity above": (("0 0 -0.012", "0 0 0.012"), "centre_of_buoyancy|turns over"),
+    "pose in degrees": (("0 0 0 0 1.5707963 0", "0 0 0 0 90 0"), "<pose>"),
+    "limits in degrees": (("<lower>-0.3</lower><upper>0.3", "<lower>-17</lower><upper>17"), "limit"),
+    "added mass in grams": (("<yDotV>-30.0", "<yDotV>-30000"), "Yv|M_A"),
+    "added mass over ten": (("<yDotV>-30.0</yDotV><zDotW>-30.0", "<yDotV>-3.0</yDotV><zDotW>-3.0"), "Yv"),
+    "damping with a plus": (("<nRabsR>-61", "<nRabsR>61"), "Nr"),
+    "density in g/cm^3": (("<uniform_fluid_density>1025", "<uniform_fluid_density>1.025"), "density"),
+    "gravity in feet": (("0 0 -9.8<", "0 0 -32.17<"), "gravity"),
+    "Munk moment of the other sign": (("<nVabsU>-13", "<nVabsU>13"), "Nv"),
+    "rates in degrees": (("<nRabsR>-61", "<nRabsR>-0.0186"), "Nr"),
+    "Coriolis on": (("<disable_coriolis>true", "<disable_coriolis>false"), "disable_coriolis"),
+}  # fmt: skip
+
+
+def wrong(folder: Path, text: str) -> list[str]:
+    path = folder / ("model.urdf" if "<robot" in text else "model.sdf")
+    path.write_text(text, encoding="utf-8")
+    found = read_model_file(path, 1025.0).findings
+    return [f"{c.subject} {c.statistic} {c.comment}" for c in found if c.severity in (Severity.WARN, Severity.FAIL)]
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_none_in_a_sound_file(name: str, tmp_path: Path) -> None:
+    assert wrong(tmp_path, SOUND[name]) == []
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_found(fault: str, tmp_path: Path) -> None:
+    (before, after), named = FAULTS[fault]
+    assert before in TORPEDO
+    found = wrong(tmp_path, TORPEDO.replace(before, after, 1))
+    assert any(re.search(named, line) for line in found), found
+
+
+def test_what_a_torpedo_is_read_as(tmp_path: Path) -> None:
+    """Thruster, fin, mass and volume by hand: dead band .5 N, Ydr = 1/2 rho A cla, Ndr = x Ydr, all links as one body."""
+    path = tmp_path / "t.sdf"
+    path.write_text(TORPEDO, encoding="utf-8")
+    p = read_model_file(path).parameters
+    assert p.mass is not None
+    assert p.hydrostatics is not None
+    assert p.mass.mass == pytest.approx(31.6)
+    assert p.mass.centre == pytest.approx([(-0.1 * 0.9 - 0.1 * 0.75) / 31.6, 0.0, 31.4 * 0.012 / 31.6])
+    assert p.hydrostatics.volume == pytest.approx(3.14159265 * 0.076**2 * 1.7)
+    assert p.hydrostatics.gravity == 9.8
+    (thruster,) = p.thrusters
+    assert thruster.direction == (1.0, 0.0, 0.0)
+    assert thruster.position == pytest.approx((-0.9, 0.0, 0.0))
+    assert [thruster.curve.at(x) for x in (-50.0, 0.4, 10.0, 90.0)] == pytest.approx([-30.0, 0.0, 10.0, 40.0])
+    (fin,) = p.surfaces
+    assert (fin.control, fin.limit) == ("dr", 0.3)
+    lift = 0.5 * 1025.0 * 0.011 * 3.6
+    unit = 0.5 * 1025.0  # of a prime by 1 m
+    assert p.coefficient("Ydr").value * unit == pytest.approx(lift, rel=1e-6)
+    assert p.coefficient("Ndr").value * unit == pytest.approx(-0.75 * lift, rel=1e-6)
+    assert p.coefficient("Yv").value * unit == pytest.approx(-22.0 - lift, rel=1e-6)
+    assert p.coefficient("Yr").value * unit == pytest.approx(4.6 + 0.75 * lift, rel=1e-6)

@@ -1,0 +1,108 @@
+"""One vehicle in two spellings and about two points is one vehicle; a single added mass is an entry of a matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coeflab.law.added_mass import AddedMass
+from coeflab.motion.behaviour import behaviour
+from coeflab.vehicle.comparison import compare
+from coeflab.vehicle.matching import plain_name
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.own_numbers import own_numbers, stated_beside, typed_file
+from coeflab.vehicle.parameter_file import ParameterFile
+
+YV, NV, YR, NR, X = -0.031, -0.012, 0.006, -0.0055, 0.07  # X: in lengths, ahead; all made up
+M = {"m": 46.0, "xg": 0.01}
+
+
+def file(slope: str, ahead: float, added: str = "stated", u95: str = "") -> ParameterFile:
+    """About a point ``ahead`` of the nose's datum, in lengths of 2.5 m: the transfer of conventions.md by hand."""
+    nv, yr = NV - ahead * YV, YR - ahead * YV
+    nr = NR - ahead * (NV + YR) + ahead**2 * YV
+    names = {"plain": ("Yv", "Nv", "Yr", "Nr", "X0"), "products": ("Yuv", "Nuv", "Yur", "Nur", "Xu|u|")}[slope]
+    numbers = [f"{n}'={v!r}{u95}" for n, v in zip(names, (YV, nv, yr, nr, -0.003), strict=True)]
+    a22, a26, a66 = 0.03, 0.001, 0.0016
+    mine = {
+        "Yvdot": -a22,
+        "Nvdot": -(a26 - ahead * a22),
+        "Yrdot": -(a26 - ahead * a22),
+        "Nrdot": -(a66 - 2.0 * ahead * a26 + ahead**2 * a22),
+    }
+    if added == "stated":
+        numbers += [f"{n}'={v!r}" for n, v in mine.items()]
+    x = M["xg"] - ahead * 2.5
+    made = typed_file("auv", numbers, length="2.5 m", length_name="LOA", speed="1.5 m/s", density="1025", about="nose", mass="46",
+                      cg=f"{x},0,0.02", inertia="1,20,20")  # fmt: skip
+    point = made.reference_point.model_copy(update={"point": (ahead * 2.5, 0.0, 0.0)})
+    made = made.model_copy(update={"reference_point": point})
+    if added == "matrix":
+        unit = {(1, 1): "Yvdot", (1, 5): "Yrdot", (5, 1): "Nvdot", (5, 5): "Nrdot"}
+        matrix = np.zeros((6, 6))
+        for at, symbol in unit.items():
+            matrix[at] = -mine[symbol] * made.scaling.unit(symbol, 1025.0)
+        hull = AddedMass(matrix, np.array(point.point), point.origin, "auv", "stated", density=1025.0)
+        made = made.model_copy(update={"added_mass": hull})
+    return made
+
+
+def test_names() -> None:
+    assert [plain_name(s) for s in ("Yuv'", "Y|u|v", "Nur", "Xuu", "Yuudr", "Yuvv", "Yvr", "Yvdot")] == [
+        "Yv", "Yv", "Nr", "X0", "Ydr", "Yuvv", "Yvr", "Yvdot",
+    ]  # fmt: skip
+
+
+def test_one_vehicle_in_two_spellings_about_two_points_differs_by_zero() -> None:
+    found = compare(file("plain", 0.0), file("products", 0.3, "matrix"))
+    rows = {r.symbol: r for r in found.rows}
+    assert set(rows) == {"Yv'", "Nv'", "Yr'", "Nr'", "X0'", "Yvdot'", "Nvdot'", "Yrdot'", "Nrdot'"}
+    for r in found.rows:
+        assert r.difference == pytest.approx(0.0, abs=1e-12), r.symbol
+    assert any("Yuv'" in s for s in found.statements)
+    assert any("added mass matrix" in s and "Nrdot'" in s for s in found.statements)
+
+
+def test_a_slope_five_per_cent_apart_is_seen() -> None:
+    wrong = merged(
+        file("products", 0.3), stated_beside(file("products", 0.3), own_numbers(["Yuv'=-0.03255"])), alone=True
+    ).parameters
+    rows = {r.symbol: r for r in compare(file("plain", 0.0), wrong).rows}
+    assert rows["Yv'"].difference == pytest.approx(0.05 * YV)
+
+
+def test_they_do_the_same() -> None:
+    a, b = file("plain", 0.0, u95=" +- 0.001"), file("products", 0.3, "matrix", u95=" +- 0.001")
+    found = {r.name: r for r in behaviour(a, b, 1.5)}
+    assert found["G_h"].difference == pytest.approx(0.0, abs=1e-9)
+    # In drift the two spellings are two laws, U v and u v: apart by less than 1 - u/U at v/U = .25.
+    for name in ("Y over v/U", "N over v/U"):
+        assert abs(found[name].difference or 0.0) <= 0.032 * max(
+            abs(found[name].a or 0.0), abs(found[name].b or 0.0)
+        ), name
+        assert found[name].combined is not None
+    for k in (1, 2):
+        one = found[f"eigenvalue {k}, horizontal"]
+        assert one.difference == pytest.approx(0.0, abs=1e-6 * abs(one.a or 1.0))
+
+
+def test_merge_takes_the_number_under_the_name_of_the_base() -> None:
+    base = file("products", 0.3)
+    other = typed_file(
+        "tank",
+        ["Yv'=-0.04", "Nv'=-0.02"],
+        length="2.5 m",
+        length_name="LOA",
+        speed="1.5 m/s",
+        density="1025",
+        about="nose",
+    )
+    done = merged(base, other).parameters
+    symbols = [c.symbol for c in done.coefficients]
+    assert symbols.count("Yuv'") == 1
+    assert "Yv'" not in symbols
+    yuv, nuv = done.coefficient("Yuv"), done.coefficient("Nuv")
+    assert yuv is not None
+    assert nuv is not None
+    assert yuv.value == pytest.approx(-0.04)
+    assert nuv.value == pytest.approx(-0.02 - 0.3 * -0.04)
