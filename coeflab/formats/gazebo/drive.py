@@ -19,6 +19,7 @@ from coeflab.formats.exported_law import number
 from coeflab.formats.gazebo.assembly import HERE, STAND_IN, assembly
 from coeflab.formats.gazebo.lift_drag import at_hull, read_lift_drag
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterSurface
 from coeflab.vehicle.second_order import FLU
 
 SMALL_MASS, SMALL_INERTIA = 1e-3, 1e-6  # kg, kg m^2: SDFormat wants some
@@ -70,7 +71,7 @@ def drive(model: Element, parameters: ParameterFile, hull: str, length: float, r
     length, radius : float
         Of the displaced volume, m, for what is seen.
     """
-    limits = {s.control: s for s in parameters.surfaces}
+    limits: dict[str, ParameterSurface] = {s.control: s for s in parameters.surfaces}
     for control, (area, place) in driven_fins(parameters).items():
         _, _, _, _, _, hinge, upward = FINS[control]
         surface = limits.get(control)
