@@ -213,12 +213,12 @@ def is_unit_row(cells: Sequence[str], numbers: Set[int]) -> bool:
     if not any(cells):
         return False
     if not all(units):  # units that nobody knows between those of columns of numbers, as H:M:S
-        over = [k for k in numbers if k < len(bare)]
-        known = [bare[k] for k in over if bare[k] and bare[k] not in (*_NO_UNIT, "1") and units[k]]
+        places = [k for k in numbers if k < len(bare)]
+        known = [bare[k] for k in places if bare[k] and bare[k] not in (*_NO_UNIT, "1") and units[k]]
         return (
             len({*known}) > 1
             and sum(units) >= MOSTLY * len(units)
-            and sum(units[k] for k in over) >= MOSTLY * len(over)
+            and sum(units[k] for k in places) >= MOSTLY * len(places)
         )
     over = [bare[k] for k in numbers if k < len(bare)]
     if any(c and c != b for c, b in zip(cells, bare)) or any(
