@@ -24,6 +24,7 @@ GROUPS = {
     "Files": ("export", "formats", "schema"),
 }
 ORDER = [name for names in GROUPS.values() for name in names]
+MOST = 10**9  # of anything that is counted
 WITHOUT_TABLES = {
     "new",
     "report",
@@ -161,6 +162,10 @@ def _finite(before: Any) -> Any:
             from coeflab.core.errors import InputError
 
             raise InputError(str(value), "a finite number", column=param.opts[0])
+        if isinstance(value, int) and abs(value) > MOST:
+            from coeflab.core.errors import InputError
+
+            raise InputError(str(value)[:60], f"at most {MOST:,}", column=param.opts[0])
         return value if before is None else before(ctx, param, value)
 
     return checked

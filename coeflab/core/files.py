@@ -15,13 +15,15 @@ from importlib.resources import files
 from pathlib import Path
 
 from coeflab.core.errors import InputError, OutputError, clipped, shown
-from coeflab.core.text.bounded import holds
+from coeflab.core.machine import stage
+from coeflab.core.text.bounded import holds, leading_bytes
 from coeflab.core.wording import repeated
 
 if sys.platform != "win32":
     import fcntl
 
 SUFFIX = ".coeflab"
+LOCKS = Path("/proc/locks")
 PATIENCE = 60.0  # s for which a writer waits for another one of the same folder
 OTHER_FOLDER = "Name another folder."
 _LITTER = re.compile(rf"\..+\.\w{{8}}{re.escape(SUFFIX)}", re.DOTALL)
@@ -231,20 +233,35 @@ def _alone(folder: Path) -> Iterator[None]:
         return
     handle = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
     try:
-        until = time.monotonic() + PATIENCE
+        begun = time.monotonic()
+        told = False
         while True:
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 break
             except BlockingIOError:
-                if time.monotonic() > until:
-                    raise OutputError(f"another process writes into {clipped(folder)}. Wait for it.") from None
+                waited = time.monotonic() - begun
+                if waited > PATIENCE:
+                    raise OutputError(f"{_holder(handle)} writes into {clipped(folder)}. Wait for it.") from None
+                if waited > PATIENCE / 60.0 and not told:
+                    stage(f"waiting for {_holder(handle)}, which writes into {clipped(folder)}")
+                    told = True
                 time.sleep(0.01)
             except OSError:  # a file system without locks
                 break
         yield
     finally:
         os.close(handle)
+
+
+def _holder(handle: int) -> str:
+    """Who has the lock of an open folder, by its number where the system says it."""
+    with suppress(OSError, ValueError):  # not on Linux, or not to be read
+        for line in leading_bytes(LOCKS, 1 << 20).decode("ascii", "replace").splitlines():
+            words = line.split()
+            if "FLOCK" in words and "->" not in words and words[5].endswith(f":{os.fstat(handle).st_ino}"):
+                return f"process {int(words[4])}"
+    return "another process"
 
 
 def _on_disk(folder: Path) -> None:

@@ -100,7 +100,9 @@ def moved(
         strange = [m for m in hold if m not in MOTIONS]
         if strange or not wanted:
             raise InputError(
-                f"{', '.join(strange or hold)} held", f"some of {', '.join(whole)}, not all of them", column="--hold"
+                f"{', '.join(map(shown, strange)) or ', '.join(hold)} held",
+                f"some of {', '.join(whole)}, not all of them",
+                column="--hold",
             )
     return vehicle(parameters, wanted, plane, **how)
 

@@ -19,7 +19,7 @@ COEFLAB = Path(sys.executable).with_name("coeflab")
 PATIENCE = 120.0
 AT_IMPORT = ("PYTHON", "NUMBA", "MPL")  # variables that are read when an interpreter starts or a library is imported
 SERVER = """
-import atexit, gc, importlib, json, os, pkgutil, sys, threading
+import atexit, gc, importlib, json, os, pkgutil, resource, sys, threading
 import coeflab.cli
 os.environ.update(dict.fromkeys(coeflab.cli.THREADS, "1"))
 for module in pkgutil.walk_packages(coeflab.__path__, "coeflab."):
@@ -39,7 +39,7 @@ answers = os.dup(1)
 gc.collect()
 gc.freeze()
 for line in sys.stdin:
-    sys.argv, folder, environment, *files = json.loads(line)
+    sys.argv, folder, environment, largest, *files = json.loads(line)
     child = os.fork()
     if not child:
         break
@@ -52,6 +52,8 @@ for number, file in enumerate((os.devnull, *files)):
     opened = os.open(file, os.O_RDWR)
     os.dup2(opened, number)
     os.close(opened)
+if largest >= 0:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
 os.chdir(folder)
 os.environ.clear()
 os.environ.update(environment)
@@ -80,11 +82,18 @@ class Forks:
         self._at_import: dict[str, str] = {}
 
     def run(
-        self, arguments: Sequence[str | Path], folder: Path, terminal: str = ""
+        self,
+        arguments: Sequence[str | Path],
+        folder: Path,
+        terminal: str = "",
+        *,
+        kill: tuple[float, int] = (0.0, 0),
+        largest: int = -1,
     ) -> subprocess.CompletedProcess[str]:
         """A process with these arguments in a folder; a fresh interpreter where the environment asks for one.
 
-        With the name of a ``terminal`` it writes there; then the streams of what comes back are empty.
+        With the name of a ``terminal`` it writes there; then the streams of what comes back are empty. ``kill`` is a signal and the seconds after
+        which it is sent; no file may grow beyond ``largest`` bytes, as on a full disk.
 
         Raises
         ------
@@ -101,11 +110,18 @@ class Forks:
         if _at_import() != self._at_import:
             return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
-            self._say(json.dumps([command, str(folder), dict(os.environ), terminal or out.name, terminal or err.name]))
+            self._say(
+                json.dumps(
+                    [command, str(folder), dict(os.environ), largest, terminal or out.name, terminal or err.name]
+                )
+            )
             child = int(self._heard())
             try:
-                code = int(self._heard(PATIENCE))
+                code = int(self._heard(kill[0] or PATIENCE))
             except TimeoutError:
+                if kill[1]:
+                    os.kill(child, kill[1])
+                    return subprocess.CompletedProcess(command, int(self._heard()), "", "")
                 os.kill(child, 9)
                 self._heard()
                 raise subprocess.TimeoutExpired(command, PATIENCE) from None

@@ -15,6 +15,8 @@ from threading import Thread
 import psutil
 import pytest
 
+from coeflab.core import files
+from coeflab.core.errors import OutputError
 from coeflab.core.files import write_all
 
 pytestmark = pytest.mark.skipif("fork" not in get_all_start_methods(), reason="this system has no fork")
@@ -35,6 +37,8 @@ with in_parallel.begun([partial(job, 0), partial(job, 1)]) as drawn:
 WRITING = """
 import sys
 from pathlib import Path
+from coeflab.core import files
+from coeflab.core.errors import OutputError
 from coeflab.core.files import write_all
 move = Path.replace
 def slowly(self, target):
@@ -139,6 +143,18 @@ def test_a_living_writers_files_stay(started: Started, tmp_path: Path) -> None:
     assert (tmp_path / "report.html").read_bytes() == b"ours"
     assert (tmp_path / "below/b.txt").read_bytes() == b"ours"
     assert hidden(tmp_path) == []
+
+
+def test_who_is_waited_for_is_named(started: Started, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    writer = started(WRITING, tmp_path)
+    assert writer.stdout
+    writer.stdout.readline()
+    monkeypatch.setattr(files, "PATIENCE", 0.3)
+    with pytest.raises(OutputError, match=f"process {writer.pid} writes into"):
+        write_all(tmp_path, {"report.html": b"ours"})
+    monkeypatch.setattr(files, "LOCKS", tmp_path / "none")
+    with pytest.raises(OutputError, match="another process writes into"):
+        write_all(tmp_path, {"report.html": b"ours"})
 
 
 def test_links_and_pipes_with_such_a_name_are_left(tmp_path: Path) -> None:

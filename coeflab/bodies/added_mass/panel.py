@@ -146,7 +146,7 @@ def _rings_alone(shape: TriangleMesh) -> tuple[RingWing, ...]:
 
 
 def _of_sheets(
-    body: Body, shape: TriangleMesh, sheets: TriangleMesh, density: float, options: Mapping[str, Any]
+    body: Body, shape: Shape, sheets: TriangleMesh, density: float, options: Mapping[str, Any]
 ) -> AddedMass:
     """Added mass of a wall by its middle surface; what the thickness moves is in the error as the water that it displaces."""
     found = added_mass(replace(body, shape=sheets), density, options)
