@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import copyreg
+import fcntl
 import os
+import pickle
 import shutil
 import tempfile
 from collections.abc import Callable, Generator, Iterator
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -121,16 +125,46 @@ def forks() -> Iterator[Forks]:
     forks.close()
 
 
-@pytest.fixture(scope="session")
-def suboff() -> Study:
-    """The SUBOFF study, run once."""
-    return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+def _read_only(found: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(found)
+
+
+def _cached(found: Any) -> Any:
+    """A cached function of a module by its name, one of an object by what it caches."""
+    return getattr(found, "__qualname__", None) or (cache, (found.__wrapped__,))
+
+
+copyreg.pickle(MappingProxyType, lambda found: (_read_only, (dict(found),)))
+copyreg.pickle(type(cache(dict)), _cached)
+
+
+def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
+    """What the first worker of a run makes; the others load it."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return make()
+    file = factory.getbasetemp().parent / f"{name}.pickle"
+    with file.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not file.exists():
+            made = make()
+            file.write_bytes(pickle.dumps(made))
+            return made
+    return pickle.loads(file.read_bytes())
 
 
 @pytest.fixture(scope="session")
-def suboff_document(suboff: Study) -> Document:
-    """Its report, whole, drawn once."""
-    return document(suboff)
+def suboff(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    """The SUBOFF study, run once for all workers."""
+    plan = shipped("cfd_data") / "suboff" / "plan.toml"
+    found: Study = _once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
+    return found
+
+
+@pytest.fixture(scope="session")
+def suboff_document(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Document:
+    """Its report, whole, drawn once for all workers; those that only look at it need no study."""
+    found: Document = _once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -32,6 +32,7 @@ SIDEWAYS = 2.0  # so many times as far aside as up or down: a body with one thru
 HEAVY_SIDE = 0.05  # of the depth: centre of volume of a body without a hull, off the middle
 ENDS = 0.3  # of the length: fins there are of the bow, or of the tail
 FULLER = 0.005  # of the length: centre of a hull's volume, off the middle
+ABOUT_Z = np.diag([-1.0, -1.0, 1.0])
 DIRECTIONS = ("x, forward", "y, starboard", "z, down")
 
 
@@ -50,9 +51,11 @@ def doubt(body: Body) -> Finding | None:
     outline = body.outline
     hulls = outline is not None and bool(outline.hulls)
     if spread[widest] > (FAR_LONGER if hulls else LONGER) * spread[0]:
-        turn = _laid_along(shape, widest)
+        turn, told = _laid_along(shape, widest)
         ratio = float(spread[widest] / spread[0])
-        return _finding("orientation.across", body, axes, turn, ratio, LONGER, along=DIRECTIONS[widest])
+        return _finding(
+            "orientation.across", body, axes, turn, ratio, LONGER, either=not told, along=DIRECTIONS[widest]
+        )
     if outline is None:
         return None
     off, limit = _aside(shape, outline)
@@ -90,13 +93,15 @@ def require_orientation(body: Body) -> None:
 
 
 def _finding(
-    code: str, body: Body, axes: Axes, turn: Array, statistic: float | None, threshold: float | None, **facts: str
-) -> Finding:
+    code: str, body: Body, axes: Axes, turn: Array, statistic: float | None, threshold: float | None, *,
+    either: bool = False, **facts: str,
+) -> Finding:  # fmt: skip
     better = axes_of(turn @ axes.rotation)
+    other = f" or --axes {axes_of(ABOUT_Z @ turn @ axes.rotation).typed}, bow for stern" if either else ""
     severity = Severity.NOTE if axes.spelled and code != "orientation.across" else Severity.WARN
     return Finding.of(
         code, body.name, severity, statistic=statistic, threshold=threshold,
-        advice=f"--axes {better.typed}", stated=axes.name, own=axes.typed, **facts,
+        advice=f"--axes {better.typed}{other}", stated=axes.name, own=axes.typed, **facts,
     )  # fmt: skip
 
 
@@ -158,20 +163,20 @@ def _ahead(outline: Outline) -> int:
 
 def _tail_aft(outline: Outline) -> Array:
     """(3, 3) half a turn about z where the tail of a hull is ahead; else none."""
-    return np.diag([-1.0, -1.0, 1.0]) if outline.hulls and _ahead(outline) < 0 else np.eye(3)
+    return ABOUT_Z if outline.hulls and _ahead(outline) < 0 else np.eye(3)
 
 
-def _laid_along(shape: Shape, long: int) -> Array:
-    """(3, 3) turn that lays an axis along x: what stands out of it up, else the side that was up, its tail aft where that shows."""
+def _laid_along(shape: Shape, long: int) -> tuple[Array, bool]:
+    """(3, 3) turn that lays an axis along x: what stands out of it up, else the side that was up, its tail aft; and whether that shows."""
     turn = np.eye(3)[[long, (long + 1) % 3, (long + 2) % 3]]
     if long == 1:  # y, z, x to forward, starboard, down: z, which was down, stays so
         turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     if not isinstance(shape, TriangleMesh):
-        return turn
+        return turn, False
     laid = _turned(shape, turn)
     outline = outline_of(laid)
     turn = _upright(*_aside(laid, outline)) @ turn
-    return _tail_aft(outline) @ turn
+    return _tail_aft(outline) @ turn, bool(outline.hulls) and _ahead(outline) != 0
 
 
 def _turned(shape: TriangleMesh, turn: Array) -> TriangleMesh:

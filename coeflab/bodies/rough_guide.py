@@ -2,7 +2,10 @@
 
 The 95 % half-width of a diagonal entry is a share of the entry and the displaced water together: an ellipsoid of three like
 axes turns about in water without moving any, so that no share of the entry itself would hold. The shares are those that hold 95 %
-of the diagonal entries of the twelve meshes of ``tests/bodies/twelve.py`` against the panel method, 2,000 panels extrapolated.
+of the diagonal entries of the twelve meshes of ``tests/bodies/twelve.py`` against the panel method, 2,000 panels extrapolated: a
+calibration, whose own 95 % validates nothing. Ten single bodies that had no part in it (cone, torus, plate, tall box, disc, wedge,
+octahedron, capsule, flat spheroid, short ring; 1,000 panels) have all of their 108 entries inside, at .71 of the half-width at most.
+On such plain bodies the shares are wide; of vehicles of several parts no other sample was held against them.
 """
 
 from __future__ import annotations

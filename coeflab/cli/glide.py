@@ -47,7 +47,6 @@ def command(
     Write CSV and figures with --out. Exit code 1 when a motion ended early.
     """
     from coeflab.core.files import write_all
-    from coeflab.motion.trajectory import Ended
     from coeflab.report.tables import motion as glide_tables
     from coeflab.workbench.glide import files, fly
 
@@ -66,7 +65,7 @@ def command(
                 show.table(glide_tables.basis(f.run.glider))
         for name, new in changed.items():
             show.path(f"{Path(out or '') / name}:", "written" if new else "unchanged")
-    if any(f.run.trajectory.ended is not Ended.COMPLETE for f in flown):
+    if not all(f.complete for f in flown):
         raise typer.Exit(1)
 
 

@@ -69,7 +69,7 @@ def command(
     if thruster:
         _bench(series, params, thruster, window, out, json)
         return
-    from coeflab.formats.model_files import read_vehicle_file
+    from coeflab.api.parameters import read_parameters
     from coeflab.motion.identify.identify import identify_from
     from coeflab.report.tables import motion as identified_tables
 
@@ -82,7 +82,7 @@ def command(
         options["window"] = window
     with show.progress(json) as say:
         say(f"reading {len(series)} time series")
-        found = identify_from(series, read_vehicle_file(params), options)
+        found = identify_from(series, read_parameters(params), options)
     written = [] if out is None else _write(found, out)
     if json:
         show.json_object({**as_json(found), "files": [str(p) for p in written]})
@@ -100,22 +100,22 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     """Curves of a thruster from its bench tests."""
     from json import dumps
 
+    from coeflab.api.parameters import read_parameters
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
     from coeflab.core.wording import file_stem
-    from coeflab.formats.model_files import read_vehicle_file
     from coeflab.motion.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
 
     within = quantity(window, "time", key="--window") if window else WINDOW
-    found = bench_test(series, read_vehicle_file(params), thruster, within)
+    found = bench_test(series, read_parameters(params), thruster, within)
     content = {
         f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
         f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
     }
     if out is not None:
-        made = with_curves(read_vehicle_file(params), found)
+        made = with_curves(read_parameters(params), found)
         content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
     written = [] if out is None else [out / name for name in content]
     if out is not None:

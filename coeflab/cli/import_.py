@@ -108,6 +108,7 @@ def command(
     write_all(out, made, new=not force, otherwise=OTHER_OUT)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
+    print_list("Not taken", draft.left)  # travels with what was written: the form may not have been shown
     _written(out, filled, tables)
     failed = _first_slopes(out)
     if failed:

@@ -84,8 +84,14 @@ def command(
         if _unstated(table, unit, axes):
             _proposal(table, unit, axes, json)
             return
-        with show.narrated():
-            body = mesh_body(table, unit, axes, repair, fill, sheets)
+        try:
+            with show.narrated():
+                body = mesh_body(table, unit, axes, repair, fill, sheets)
+        except InputError:
+            if unit or axes or repair or fill or sheets or not _repairs(table):
+                raise
+            _proposal(table, unit, axes, json)  # of a URDF, which states its unit and axes
+            return
         _body(body, density, json)
         return
     if unit or axes or repair or fill or sheets:
@@ -118,6 +124,19 @@ def _unstated(table: str, unit: str, axes: str) -> bool:
         return False
     own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
     return not ((unit or own_unit) and (axes or own_axes))
+
+
+def _repairs(table: str) -> bool:
+    """Whether a mesh file is meant that is sound once repaired."""
+    from coeflab.bodies.mesh.file import SELF_DESCRIBED
+    from coeflab.bodies.proposed_mesh import proposed
+    from coeflab.core.files import located
+
+    path = located(table, "geometry")
+    if path.suffix.lower().lstrip(".") not in SELF_DESCRIBED:
+        return False
+    found = proposed(path)
+    return found.closed and found.repair
 
 
 def _proposal(table: str, unit: str, axes: str, json: bool) -> None:

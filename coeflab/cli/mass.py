@@ -22,10 +22,10 @@ def command(
 
     From [[mass]] in its body.toml: solids, shells, payload, ballast and flooded rooms (docs/bodies.md).
     """
-    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.api.body import read_body
     from coeflab.core.errors import InputError
 
-    found = mesh_body(body, "", "", False)
+    found = read_body(body)
     if found.mass_model is None:
         raise InputError(
             f"{found.name}, a body without [[mass]]", "parts with masses",

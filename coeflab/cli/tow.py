@@ -135,10 +135,10 @@ def _tow(
     go_on: bool = True, finished: str = "",
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
+    import coeflab.workbench.tow as tank_room
     from coeflab.core.files import located
     from coeflab.core.wording import file_stem
     from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
-    from coeflab.workbench import tow as tank_room
 
     body = located(said, "geometry") if said else None
     with show.progress(json) as say:
@@ -279,8 +279,8 @@ def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
 
 def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: int, json: bool) -> None:
     """Run what is not finished with a live table; then the answer. Ctrl-C leaves everything to go on from."""
+    import coeflab.workbench.tow as tank_room
     from coeflab.tank.folder import has_begun
-    from coeflab.workbench import tow as tank_room
 
     if before is not None and not json and has_begun(tow.folder):
         _fates(tow, before)
@@ -317,11 +317,11 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
 
     The campaign is written again whenever a run has ended, so that a kill leaves what was finished as a table.
     """
+    import coeflab.workbench.tow as tank_room
     from coeflab.core.errors import CoeflabError
     from coeflab.report.tables import tow as tables
     from coeflab.tank.folder import read_plan
     from coeflab.tank.states import states_of, time_left
-    from coeflab.workbench import tow as tank_room
 
     shown = tables.shown_of(read_plan(tow.folder))
     said: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
@@ -417,7 +417,7 @@ def _status(folder: Path, json: bool) -> None:
 
     plan = read_plan(folder)
     if not plan["jobs"]:
-        from coeflab.workbench import tow as tank_room
+        import coeflab.workbench.tow as tank_room
 
         tow = tank_room.opened(folder)
         done, many = tank_room.filled(tow), len(tow.tank.matrix)
@@ -459,7 +459,7 @@ def _row(row: JobRow) -> dict[str, Any]:
 
 
 def _collected_only(folder: Path, json: bool) -> None:
-    from coeflab.workbench import tow as tank_room
+    import coeflab.workbench.tow as tank_room
 
     with show.progress(json) as say:
         say("reading the tow")

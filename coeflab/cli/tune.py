@@ -38,7 +38,6 @@ def command(
     from coeflab.cli.run import REPORTS
     from coeflab.motion.tune.plan import read_tuning_plan
     from coeflab.report.tables import motion as tuning_tables
-    from coeflab.vehicle.plausibility import plausibility
     from coeflab.workbench.tune import tune, write
 
     read = read_tuning_plan(plan)
@@ -48,7 +47,7 @@ def command(
         say(f"tuning {plan}")
         tuned = tune(read)
     paths = write(tuned, out if out is not None else Path(REPORTS) / tuned.plan.name)
-    found = plausibility(tuned.parameters)
+    found = tuned.checks
     if json:
         from coeflab.cli.as_json import findings
 

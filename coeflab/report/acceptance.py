@@ -260,11 +260,8 @@ def on_predictions(study: Study) -> tuple[str, ...]:
     numbers = by_measured_number(found)
     out = []
     if len(judged) > len(numbers):
-        most = max(len(one) for one in numbers)
-        by, every = ("two", "both comparisons pass") if most == 2 else ("several", "all comparisons pass")
         out.append(
-            f"{len(judged)} comparisons judge {len(numbers)} coefficient{'s' * (len(numbers) > 1)} from CFD. A coefficient that {by} campaigns compute "
-            f"counts once; it passes only if {every}."
+            f"{len(judged)} comparisons judge them; a coefficient of several campaigns passes if all of its comparisons do."
         )
     if weak := [f"{primed(v.symbol)} of {v.simulation} ({v.share})" for v in judged if v.weak]:
         out.append(

@@ -11,7 +11,7 @@ import shlex
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -22,6 +22,7 @@ from typing import TypeVar
 
 from coeflab.core.finding import Severity
 from coeflab.core.machine import cores, end_with_parent
+from coeflab.core.table import ABSENT, Table
 from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS
@@ -136,11 +137,13 @@ def document(study: Study, *, full: bool = True) -> Document:
     verbatim = users_texts(study)
     with keeping(verbatim):
         made = _document(study, full)
-        return replace(made if full else core(made), verbatim=verbatim, bench=bench_of(study))
+        return replace(
+            made if full else core(made, tables.sources_of_numbers(study)), verbatim=verbatim, bench=bench_of(study)
+        )
 
 
-def core(document: Document) -> Document:
-    """A report without what belongs to the appendix; no paragraph, note or caption is longer than three lines."""
+def core(document: Document, sources: Collection[str] | None = None) -> Document:
+    """A report without what belongs to the appendix, and of the works those named, else all; no paragraph, note or caption is longer than three lines."""
     sections = tuple(_short(s, document.digest) if s.anchor == "reproduce" else s for s in _kept(document.sections))
     known = {s.anchor for s in _every(sections)}
     answer = document.answer
@@ -149,7 +152,12 @@ def core(document: Document) -> Document:
         answer = replace(
             answer, rows=rows, chips=tuple(replace(c, anchor=_found(c.anchor, known)) for c in answer.chips)
         )
-    return replace(document, sections=sections, answer=answer)
+    return replace(
+        document,
+        sections=sections,
+        answer=answer,
+        works=tuple(w for w in document.works if sources is None or w[0] in sources),
+    )
 
 
 # Ends of sentences, not of abbreviations; an initial such as that of R. F. Roddy ends none.
@@ -328,17 +336,28 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text: tuple[str, ...] = (
-        "coeflab writes the force law, mass and added mass of a body into a parameter file, and compares its law with the points that it was fitted to.",
-        "Allowed difference: three times the scatter of repeated runs plus 5 % of the largest force. Where a "
-        "law misses a point by more, its range ends before that point. A shortened range is a warning. "
-        "If less than half of the tested range remains, the study fails; X, and laws with slopes only, are exempt. A component below 1 % of the largest force or moment is too small to judge, and ends no range, even where its own terms are fitted to a shorter one.",
-        format_tables.IN_PERCENT,
+        "Allowed difference of a law and its points: three times the scatter of repeated runs plus 5 % of the largest force. Where a law misses a point by "
+        "more, its range ends before that point.",
+        *(_held(name, table) for name, table in zip(study.parameter_files, each, strict=False)),
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (_not_in_a_file(none),)
-    shown = tuple(replace(t, notes=tuple(n for n in t.notes if n != format_tables.IN_PERCENT)) for t in each)
-    return (Section("law-at-points", "Force law at its points", text, shown),)
+    whole = Section("all-laws", "Force laws at their points", (format_tables.IN_PERCENT,), each, appendix=True)
+    return (Section("law-at-points", "Force law at its points", text, subsections=(whole,)),)
+
+
+def _held(name: str, table: Table) -> str:
+    """How the law of a file agrees with its points: how many components of tables hold, and the largest difference in its range."""
+    i, of = table.headers.index("largest"), table.headers.index("allowed")
+    shares = [(float(row[i].rstrip(" %")), row) for row in table.rows if row[i] != ABSENT]
+    holding = sum(row[-1].startswith("holds") for row in table.rows)
+    if not shares:
+        return f"{name}: too small to judge."
+    largest, row = max(shares, key=lambda pair: pair[0])
+    said = f"{name}: {holding} of {len(shares)} components of tables hold; the largest difference is {largest:g} % ({row[0]} of {row[1]}, allowed {row[of]})."
+    outside = [n for n in table.notes if "outside the range" in n]
+    return " ".join((said, *outside))
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:
@@ -352,22 +371,26 @@ def _not_in_a_file(campaigns: Sequence[str]) -> str:
 def _comparison(study: Study) -> tuple[Section, ...]:
     if not study.comparisons:
         return ()
-    text = ["Published values are rescaled to our length before they are compared."]
+    text = ("Published values are rescaled to our length before they are compared.",)
+    lengths = []
     for r in study.references:
         if r.other_scaling is not None:
-            text.append(
+            lengths.append(
                 f'"{r.name}" has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or '
                 f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(
         tables.campaigns(study),
-        tables.without(tables.side_by_side(study), "random", "form"),
         budget_tables.predictions(validations(study, study.budgets)),
         tables.without(tables.verdicts(study), "combined"),
     )
-    apart = filled(tables.differences(study))
-    more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
-    return (Section("comparison", "Comparison with published values", tuple(text), shown, subsections=more),)
+    apart = filled(tables.without(tables.side_by_side(study), "random", "form"), tables.differences(study))
+    more = (
+        (Section("distances", "Published columns and distances", tuple(lengths), tables=apart, appendix=True),)
+        if apart
+        else ()
+    )
+    return (Section("comparison", "Comparison with published values", text, shown, subsections=more),)
 
 
 def _with_campaigns(study: Study, coefficients: Section) -> Section:
@@ -383,7 +406,7 @@ def _checks(study: Study) -> Section:
     grave = [c for c in study.checks if c.severity in (Severity.FAIL, Severity.WARN)]
     found = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
     whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
-    shown = filled(replace(tables.without(tables.checks(grave), "rule"), title="Failures and warnings"))
+    shown = filled(tables.warnings(grave))
     return Section("checks", "Checks", (f"{found}. Warnings do not make the study fail.",), shown, subsections=(whole,))
 
 

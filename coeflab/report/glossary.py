@@ -195,7 +195,7 @@ TERMS: tuple[Term, ...] = (
 # fmt: on
 
 
-def linked_html(text: str, seen: set[str]) -> str:
+def linked_html(text: str, seen: set[str], *, listed: bool = True) -> str:
     """A sentence as HTML with its symbols, as `notation.html`, and the first mention of every term linked to its definition.
 
     Parameters
@@ -203,6 +203,8 @@ def linked_html(text: str, seen: set[str]) -> str:
     text : str
     seen : set of str
         Anchors of the terms that are linked already, in this page or section; those linked here are added.
+    listed : bool
+        Whether the page ends with the definitions; else a term only shows its own.
 
     Returns
     -------
@@ -216,15 +218,18 @@ def linked_html(text: str, seen: set[str]) -> str:
             if term.anchor not in seen and term.anchor not in found:
                 found.append(term.anchor)
                 title = escape(term.meaning, quote=True)
-                yield start, end, f'<a class="term" href="#{term.anchor}" title="{title}">', "</a>"
+                if listed:
+                    yield start, end, f'<a class="term" href="#{term.anchor}" title="{title}">', "</a>"
+                else:
+                    yield start, end, f'<abbr class="term" tabindex="0" title="{title}">', "</abbr>"
 
     out = html_with(text, marks)
-    seen.update(anchor for anchor in found if f'href="#{anchor}"' in out)
+    seen.update(anchor for anchor in found if not listed or f'href="#{anchor}"' in out)
     return out
 
 
 def definitions_html(anchors: Collection[str]) -> str:
-    """The definitions of terms as one ``<dl class="terms">``, in the alphabet's order; empty without terms.
+    """The definitions of terms as one ``<dl class="terms">``, in the alphabet's order; docs/glossary.md has their sources.
 
     Parameters
     ----------
@@ -234,9 +239,7 @@ def definitions_html(anchors: Collection[str]) -> str:
     rows = []
     for term in alphabetical():
         if term.anchor in anchors:
-            sources = " ".join(work(key) for key in term.sources)
-            cite = f' <cite class="source">{escape(sources)}</cite>' if sources else ""
-            rows.append(f'<dt id="{term.anchor}">{html(term.name)}</dt>\n<dd>{html(term.meaning)}{cite}</dd>')
+            rows.append(f'<dt id="{term.anchor}">{html(term.name)}</dt>\n<dd>{html(term.meaning)}</dd>')
     return '<dl class="terms">\n' + "\n".join(rows) + "\n</dl>" if rows else ""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,6 +30,9 @@ ITERATIONS, START, STATUS, ORIGIN = "iterations", "plateau start", "status", "co
 WINDOW = "averaged over"
 DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
+OF_MOTION = re.compile(r"\b(?:velocit(?:y|ies)|speed|angle|inflow)\b")
+SETTING_NAMES = frozenset(SETTINGS)
+MOST_SILENT = 3  # remarks of runs that a complaint about their conditions repeats
 FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
 KEPT = {
     Convergence.FINAL: "taken as they stand: without a history they have no standard error",
@@ -240,6 +244,16 @@ def _collected(
     conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]
     if complaints := required({s.name: s.conditions for s in summaries if s.status.has_numbers}, pattern):
+        silent = list(
+            dict.fromkeys(
+                r
+                for s in summaries
+                if s.status.has_numbers and not SETTING_NAMES & set(s.conditions)
+                for r in s.remarks
+            )
+        )
+        moving = [r for r in silent if OF_MOTION.search(r)]  # what stopped a file from saying it
+        complaints[0].advice += "".join(f" {remark}" for remark in moving[:MOST_SILENT])
         raise together(complaints)
     known = [s for s in SETTINGS if any(s in r.conditions for r in summaries)]
     rows = [s for s in summaries if all(k in s.conditions for k in known)]

@@ -21,6 +21,7 @@ from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
+MOSTLY = 0.6  # of a row of units
 LONGEST_LEGEND = 4000  # letters
 BLANKS = "\u00a0\u2007\u2009\u202f"  # no-break, figure, thin and narrow no-break space: marks between thousands
 _MINUS = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"), "-")
@@ -208,8 +209,17 @@ def is_unit_row(cells: Sequence[str], numbers: Set[int]) -> bool:
         Columns that hold numbers below, see `numbered`.
     """
     bare = [_bare(c) for c in cells]
-    if not any(cells) or not all(not c or is_unit(c) or share(c) is not None for c in bare):
+    units = [not c or is_unit(c) or share(c) is not None for c in bare]
+    if not any(cells):
         return False
+    if not all(units):  # units that nobody knows between those of columns of numbers, as H:M:S
+        within = [k for k in numbers if k < len(bare)]
+        known = [bare[k] for k in within if bare[k] and bare[k] not in (*_NO_UNIT, "1") and units[k]]
+        return (
+            len({*known}) > 1
+            and sum(units) >= MOSTLY * len(units)
+            and sum(units[k] for k in within) >= MOSTLY * len(within)
+        )
     over = [bare[k] for k in numbers if k < len(bare)]
     if any(c and c != b for c, b in zip(cells, bare)) or any(
         c != "1" and c not in _NO_UNIT and is_unit(c) for c in over

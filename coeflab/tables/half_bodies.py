@@ -133,6 +133,8 @@ def planes_beside(
 ) -> tuple[list[str], list[Path]]:
     """Symmetry planes that texts beside a monitor name, each with its place; and the files that name them.
 
+    One setup often serves a whole folder of runs: where a run has a folder of its own without such a text, the folder of runs counts.
+
     Parameters
     ----------
     path : Path
@@ -144,7 +146,15 @@ def planes_beside(
     name : pattern, optional
         Of an earlier line that names the boundary, its first group.
     """
-    folder = path if path.is_dir() else path.parent
+    if not path.is_dir():
+        return _planes_of(path.parent, suffixes, kind, name)
+    own = _planes_of(path, suffixes, kind, name)
+    return own if own[0] else _planes_of(path.parent, suffixes, kind, name)
+
+
+def _planes_of(
+    folder: Path, suffixes: Sequence[str], kind: re.Pattern[str], name: re.Pattern[str] | None
+) -> tuple[list[str], list[Path]]:
     try:
         files = sorted(f for f in folder.iterdir() if f.suffix.lower() in suffixes and f.is_file())[:MONITOR_FILES]
     except OSError:
@@ -167,12 +177,14 @@ def _planes_in(
 ) -> tuple[str, ...]:
     """Symmetry planes that one text names; remembered, as many runs of one folder have the same beside them."""
     raw = leading_bytes(file, JSON_BYTES)
-    if b"\0" in raw or b"symm" not in raw.lower():
+    if b"\0" in raw or b"sym" not in raw.lower():
         return ()
     out: dict[str, str] = {}
-    last = ""
-    for number, line in enumerate(raw.decode("utf-8", "replace").splitlines(), start=1):
-        if len(line) > LONGEST:
+    last = before = ""
+    for number, here in enumerate(raw.decode("utf-8", "replace").splitlines(), start=1):
+        line = before + here
+        before = line.rstrip()[:-1] if line.rstrip().endswith("\\") and len(line) <= LONGEST else ""
+        if before or len(line) > LONGEST:
             continue
         if name is not None and (m := name.search(line)):
             last = m[1].strip()

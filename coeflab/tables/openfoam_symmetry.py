@@ -25,11 +25,12 @@ MIRRORS = (
 MOST = 60  # files of one folder
 PROCESSORS = 4  # of them as many are looked at: each names every patch
 _COMMENTS = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_TYPED = re.compile(rb"\btype\s+(" + "|".join(MIRRORS).encode() + rb")\s*;")
+_TYPED = re.compile(rb'\btype\s+"?(' + "|".join(MIRRORS).encode() + rb')"?\s*;')
 # foam-extend and versions before 2.0 list patches as: symmetryPlane name ( faces )
 _LISTED = re.compile(rb"\b(symmetryPlane|symmetry)\s+([A-Za-z_][\w.\-]*)\s*\(\s*\(")
 _HEAD = re.compile(rb'("[^"]*"|[^\s{}();"]+)?\s*\Z')
 _NAME = re.compile(rb"\bname\s+([^\s;{}]+)\s*;")
+_TIME = re.compile(r"\d+(?:\.\d+)?")  # a steady run often keeps its last time alone
 _ALL_KINDS = re.compile(
     rb"\bprocessor\s*\{\s*type\s+processor"
 )  # a copy of caseDicts/setConstraintTypes: no patch of the case
@@ -73,7 +74,7 @@ def _places(case: FoamCase) -> Iterator[Path]:
     folders = _folders(case.root)
     processors = [f for f in folders if re.fullmatch(r"processors?\d+(?:_\d+-\d+)?", f.name)][:PROCESSORS]
     for root in (case.root, *processors):
-        times = [f for f in _folders(root) if f.name.startswith("0") or f.name == first]
+        times = [f for f in _folders(root) if f.name.startswith("0") or f.name == first or _TIME.fullmatch(f.name)]
         meshes = [f for f in (root / "constant", *times) if f.is_dir()]
         for folder in meshes:
             for within in (folder, *_folders(folder)):

@@ -32,6 +32,7 @@ from coeflab.tables.words.axes import BODY_AXES
 OPEN = "?"
 UNKNOWN = "no known name"
 PURE = ("", "-", "1")
+FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
@@ -301,6 +302,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     try:
         whole = read_column_map(f"{name} [{unit}]") if unit else None
     except InputError:
+        if column.name.strip().upper() in ("X", "Y", "Z") and _fits(unit, "length"):
+            return Proposal("ignore", f"[{unit}] is a length: a position, no force")
         return _unread(name, said, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)
@@ -381,6 +384,7 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
         out = [_beside_the_body(one, taken[body], body) for one in out]
+    out = _without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
         # V is the speed beside what says where the water comes from; alone it may be a sway velocity in capitals.
         beside = {"alpha", "beta", "R"} & set(taken) and not {"U", "v"} & set(taken)
@@ -417,6 +421,22 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
             why=f"its name beside {'CN' if body == 'X' else 'CA'}",
         )
     return one
+
+
+def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
+    """Many columns that neither name nor unit says anything of are of no use, where a force and a setting are known without them."""
+    strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
+    roles = {read_column_map(one.text.partition(" [")[0]).role for one in out if one.text}
+    if (
+        len(strange) <= FEW_STRANGE
+        or "force" not in roles
+        or roles.isdisjoint(("angle", "velocity", "control", "radius"))
+    ):
+        return out
+    return [
+        replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in strange else one
+        for i, one in enumerate(out)
+    ]
 
 
 def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:

@@ -42,6 +42,7 @@ from coeflab.tables.time_record import record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
+ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
 MOST_IDLE = 5  # columns that a warning names
 LOST = "of half of the body"  # why a column of it is left out
 
@@ -220,15 +221,16 @@ def _likely_map(offer: Proposal) -> ColumnMap:
 
 def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     """The complaint about what cannot be a table of forces: no number in it, or nothing known of forces and settings."""
-    if not any(np.any(np.isfinite(c.values)) for c in raw.columns):
+    if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
     roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
-    units = any("or ignore" in o.why for o in offers if not o.text)
-    if units or roles & {"force", "error", *SETTINGS} or any(o.why.startswith("uncertain") for o in offers):
+    if roles & {"force", "error"} or any(
+        "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
+    ):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     return InputError(
-        f"no name or unit of a force, an angle, a speed or a rate: {names}", "forces over settings", file=raw.path,
+        f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings", file=raw.path,
         advice='If it is one, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
     )  # fmt: skip
 

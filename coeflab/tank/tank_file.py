@@ -163,9 +163,12 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
     speed = said.conditions.speed
     sweeps = _sweeps(said.matrix, towed, scaling.length)
     try:
+        if sweeps == Sweeps():
+            raise InputError(  # noqa: TRY301
+                "no condition", "an angle, a rate or a speed", column="matrix",
+                advice='drift = ["2 deg", "4 deg"], or speeds = ["1 m/s"] for the resistance alone; a list left out gives its default.',
+            )  # fmt: skip
         matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
-        if not matrix:
-            raise InputError("no condition", "an angle, a rate or a speed", column="matrix")  # noqa: TRY301
         matrix = test_matrix.with_studies(matrix, [study.made for study in said.study])
     except InputError as why:
         raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None

@@ -365,10 +365,10 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         What the comparison calls them; their own names by default.
     """
     name_a, name_b = names or (a.name, b.name)
-    (ours, own), (theirs, first) = (by_plain_names(coefficient_set(f)) for f in (a, b))
+    (ours, own), (theirs, spelled) = (by_plain_names(coefficient_set(f)) for f in (a, b))
     stated = list(dict.fromkeys((*ours.symbols, *theirs.symbols)))
     (ours, of_ours), (theirs, of_theirs) = with_matrix(ours, a), with_matrix(theirs, b)
-    said = _matched(ours, theirs, (own, first), (of_ours, of_theirs), stated, (name_a, name_b))
+    said = _matched(ours, theirs, (own, spelled), (of_ours, of_theirs), stated, (name_a, name_b))
     if a.body != b.body:
         said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:

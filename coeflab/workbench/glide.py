@@ -18,6 +18,7 @@ from coeflab.motion.glider.glider import GliderPhase, gliders_at
 from coeflab.motion.glider.motion import Setting
 from coeflab.motion.glider.space import Spiral
 from coeflab.motion.simulators import SIMULATORS
+from coeflab.motion.trajectory import Ended
 
 TIMES = ("time [s]", "x [m]", "depth [m]", "V [m/s]", "alpha [deg]", "theta [deg]", "u [m/s]", "w [m/s]", "q [deg/s]")
 ORDERS = ("net_mass [kg]", "position [m]", "phase [-]")
@@ -44,6 +45,11 @@ class Flown:
     run: GlideRun
     steady: tuple[SteadyGlide, ...]
     spirals: tuple[tuple[str, Spiral], ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether the motion came to its end."""
+        return self.run.trajectory.ended is Ended.COMPLETE
 
 
 @one_thread()

@@ -13,6 +13,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
+from coeflab.core.table import Check
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
@@ -34,6 +35,7 @@ from coeflab.motion.tune.tuning import (
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.report.figures.tuning import agreement_figure
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import plausibility
 
 NUDGE = 1e-6  # of a size: central differences, errors of 1e-10 by rounding and less by curvature
 UNITS = {"u": ("m/s", 1.0), "v": ("m/s", 1.0), "V": ("m/s", 1.0), "radius": ("m", 1.0),
@@ -56,6 +58,11 @@ class Tuned:
     plan: TuningPlan
     tuning: Tuning
     parameters: ParameterFile
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """What is implausible in the tuned set."""
+        return plausibility(self.parameters)
 
     def files(self) -> dict[str, bytes]:
         """Everything to write, by file name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import permutations
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def written(folder: Path, kind: str, own: Axes, suffix: str = "stl") -> Path:
 
 
 def proposed(why: InputError) -> str:
-    return why.advice.partition("--axes ")[2].partition(".")[0]
+    return re.findall(r"--axes ([\w,]+)", why.advice)[0]
 
 
 @pytest.mark.parametrize("own", RIGHT, ids=lambda a: a.typed)
@@ -54,6 +55,16 @@ def test_a_submarine_in_any_axes_is_read_right_within_two_commands(tmp_path: Pat
     again = mesh_body(str(path), "m", proposed(why.value))
     require_orientation(again)
     assert doubt(again) is None
+
+
+@pytest.mark.parametrize("own", ["starboard,forward,up", "port,aft,up"])
+def test_what_shows_no_tail_is_offered_both_ways_round(tmp_path: Path, own: str) -> None:
+    """A tube has no bow: one of two proposals is right whichever end leads, and which is not guessed."""
+    with pytest.raises(InputError) as why:
+        require_orientation(mesh_body(str(written(tmp_path, "tube", parse_axes(own))), "m", "FLU"))
+    offered = re.findall(r"--axes (\w+,\w+,\w+)", str(why.value).partition("If it lies right")[0])
+    assert parse_axes(own) in [parse_axes(o) for o in offered]
+    assert len(offered) == 2
 
 
 @pytest.mark.parametrize("kind", ["torpedo", "glider", "box_rov", "frame_rov"])

@@ -78,6 +78,33 @@ def test_half_widths_hold_what_panels_find_in_95_of_100_entries() -> None:
     assert held >= 0.95 * count
 
 
+def wedge() -> trimesh.Trimesh:
+    ends = [[-1.0, y, z] for y in (0.6, -0.6) for z in (0.3, -0.3)]
+    return trimesh.convex.convex_hull(np.array([[1.0, 0.0, 0.0], *ends])).subdivide().subdivide()
+
+
+def ring() -> trimesh.Trimesh:
+    made = annulus(0.45, 0.6, 0.7, sections=32)
+    made.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [0, 1, 0]))
+    return made
+
+
+HELD_OUT = {"wedge": wedge, "ring": ring, "tall box": lambda: box((0.6, 0.4, 1.4)).subdivide().subdivide()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HELD_OUT)
+def test_half_widths_hold_bodies_that_did_not_choose_them(name: str) -> None:
+    """The twelve chose the shares; these had no part in it."""
+    one = body(HELD_OUT[name](), name)
+    panels = added_masses(one, 1.0, "panel", {"panels": 1000}).recommended.matrix
+    for method in ("ellipsoid", "strip:lamb"):
+        rough = added_masses(one, 1.0, method).recommended
+        assert rough.rough
+        assert rough.u95 is not None
+        assert np.all(np.abs(np.diag(rough.matrix - panels)) <= np.diag(rough.u95))
+
+
 @pytest.mark.parametrize("method", ["ellipsoid", "strip:lamb"])
 def test_a_rough_guide_warns_in_every_consumer(tmp_path: Path, method: str) -> None:
     TWELVE["box_rov"]().export(tmp_path / "rov.stl")

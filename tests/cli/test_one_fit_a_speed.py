@@ -38,6 +38,35 @@ def test_a_fit_names_the_dependence_the_constant_column_and_takes_one_speed(
     assert coeflab("fit", "made", "--speed", "3").returncode == 2  # type: ignore[attr-defined]
 
 
+def test_one_speed_keeps_its_rudder_where_it_has_one_run_at_drift(
+    tmp_path: Path, coeflab: Callable[..., object]
+) -> None:
+    """Of four speeds one was run at drift; at the others Ydr' was refused for the sake of Yv'."""
+    rows = [f"{b},0,1.3,{-0.02 * -np.sin(np.radians(b)):.8g},0.001" for b in (-8, -4, 0, 4, 8)]
+    rows += [
+        f"0,{d},{u},{0.01 * np.radians(d) / u:.8g},{-0.004 * np.radians(d):.8g}"
+        for u in (0.5, 1.3)
+        for d in (-20, -10, 10, 20)
+    ]
+    rows += ["0,0,0.5,0,0"]
+    (tmp_path / "t.csv").write_text("\n".join(["beta (deg),rudder angle (deg),speed (m/s),Y',N'", *rows]) + "\n")
+    known = (
+        "axes.frame=FRD",
+        "axes.beta=-",
+        "axes.reference_point=midship",
+        "scaling.length=3 LPP",
+        "coefficients.area=prime",
+    )
+    sets = [w for k in known for w in ("--set", k)]
+    done = invoke("import", tmp_path / "t.csv", "--out", tmp_path / "made", *sets, "--accept")
+    assert done.exit_code == 0, done.output
+    for speed in (0.5, 1.3):
+        one = json.loads(coeflab("fit", "made", "--speed", str(speed), "--json").stdout)  # type: ignore[attr-defined]
+        values = {c["symbol"]: c["value"] for c in one["coefficients"]}
+        assert values["Ydr'"] == pytest.approx(0.01 / speed, rel=1e-3)
+        assert (values["Yv'"] is None) == (speed == 0.5)
+
+
 @pytest.mark.parametrize(("name", "prime"), [("rps", True), ("J", False)])
 def test_a_column_that_no_fit_uses_and_a_slope_hangs_on_is_named(tmp_path: Path, name: str, prime: bool) -> None:
     """A rudder at one speed and three propeller rates: its slope goes with the rate."""

@@ -188,3 +188,16 @@ def test_names_of_one_law_make_one_torpedo() -> None:
     other = with_mass(made.parameters({same[n]: v for n, v in LIFTING.items()}, made.HULL), np.zeros(3))
     assert exporter.render(other) == exporter.render(lifting())
     assert len(exporter.not_held(other)) == len(exporter.not_held(lifting()))
+
+
+def test_buoyancy_of_the_file_rights_it_and_roll_damping_is_that_of_the_file() -> None:
+    from tests.formats.of_a_vehicle import BUOYANT, floating
+
+    file = floating()
+    (content,) = exporter.render(file).values()
+    dynamics = json.loads(content)["agents"][0]["dynamics"]
+    assert dynamics["r_bb"] == list(BUOYANT)
+    speed = file.conditions.speed
+    rolling = np.array([[speed, 0.0, 0.0, 0.1, 0.0, 0.0], [speed, 0.0, 0.0, -0.1, 0.0, 0.0]])
+    found, due = exporter.force(exporter.render(file), rolling), force_law(file).force(rolling)
+    assert found[0, 3] - found[1, 3] == pytest.approx(due[0, 3] - due[1, 3], rel=1e-9)

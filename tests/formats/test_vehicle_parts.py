@@ -24,7 +24,7 @@ from tests.formats.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floatin
 from tests.rigid_motion import rotation
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
-DRIVES = {"c", "fmi"}  # thrusters and limits of fins are in it
+DRIVES = {"gazebo", "gazebo_plugin", "c", "fmi"}  # thrusters and limits of fins are in it
 HOLD = {"c", "fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}
 each_target = pytest.mark.parametrize("target", TARGETS)
 
@@ -57,6 +57,8 @@ def test_hydrostatics_are_held_or_lost_and_never_denied(target: str) -> None:
 
 @each_target
 def test_the_force_of_the_water_does_not_hold_them(target: str) -> None:
+    if target == "holoocean":
+        pytest.skip("its damping of roll and pitch is a share of the critical one: none without a righting moment")
     nu, to = np.random.default_rng(4).normal(size=(9, 6)), EXPORTERS.load(target)
     np.testing.assert_array_equal(to.force(to.render(floating()), nu), to.force(to.render(torpedo()), nu))
 

@@ -198,3 +198,25 @@ def test_titles_of_blocks_are_columns() -> None:
     raw = IMPORTERS.load("table").raw(SAMPLES / "table/blocks.csv", {})
     assert raw.column("U").values.tolist() == [1.0] * 3 + [2.0] * 3
     assert raw.column("block").texts[3] == "speed 2 m/s"
+
+
+def test_a_row_of_units_may_hold_one_that_nobody_knows(tmp_path: Path) -> None:
+    file = tmp_path / "raw.txt"
+    file.write_text("Run_nr\tTime\tAlpha\tFx\tFz\tRho\n/\tH:M:S\tdegrees\tN\tN\tkg/m^3\n" + "".join(
+        f"{i}\t10:{i}:00\t{a}\t1.0\t{-a}\t1.19\n" for i, a in enumerate((-4, -2, 0, 2, 4), 1)))  # fmt: skip
+    raw = IMPORTERS.load("table").raw(file, {})
+    assert [c.unit for c in raw.columns[2:]] == ["degrees", "N", "N", "kg/m^3"]
+
+
+def test_many_strangers_are_of_no_use_and_a_position_is_no_force() -> None:
+    known = (column("alpha", "deg"), column("Fz", "N"))
+    texts = [p.text for p in proposals(table(*known, *(column(n) for n in ("foo", "bar", "baz")), column("Y", "mm")))]
+    assert texts == ["alpha [deg]", "Z [N]", "ignore", "ignore", "ignore", "ignore"]
+    assert [p.text for p in proposals(table(*known, column("foo"), column("bar")))][2:] == ["", ""]
+
+
+def test_what_stopped_the_inflow_is_said_where_no_condition_is_known() -> None:
+    from coeflab.tables.collect import OF_MOTION
+
+    assert OF_MOTION.search("0/U: no boundary states a velocity of the inflow that is read")
+    assert not OF_MOTION.search("rhoInf 1, so forces are those of a fluid of 1 kg/m^3")

@@ -31,6 +31,7 @@ PLACES = {
     "system/snappyHexMeshDict": "geometry { a.stl { type triSurfaceMesh; regions { r { name sym; } } } }\n"
     "castellatedMeshControls { refinementSurfaces { sym { level (0 0); patchInfo { type symmetryPlane; } } } }",
     "system/createPatchDict": "patches ( { name sym; patchInfo { type symmetryPlane; } constructFrom patches; patches (x); } );",
+    "500/p": 'boundaryField { sym { type "symmetryPlane"; } }',
     "system/water/blockMeshDict": "boundary ( sym { type symmetry; faces ((0 1 5 4)); } );",
 }  # fmt: skip
 
@@ -72,6 +73,15 @@ SOLVERS = [
     ("fluent", "drag-rfile.out", FLUENT, "run.trn", "   4711 quadrilateral symmetry faces,  zone  7.\n"),
     ("fluent", "drag-rfile.out", FLUENT, "run.jou", "/define/boundary-conditions/zone-type mid symmetry\n"),
     ("fluent", "drag-rfile.out", FLUENT, "run.cas", "(45 (7 symmetry mid 1)())\n"),
+    ("fluent", "drag-rfile.out", FLUENT, "run.jou", 'define boundary-conditions modify-zones zone-type (mid) "symmetry"\n'),
+    ("fluent", "drag-rfile.out", FLUENT, "run.py", 'bc.set_zone_type(zone_list=["mid"], new_type="symmetry")\n'),
+    ("fluent", "drag-rfile.out", FLUENT, "../all.jou", "/define/boundary-conditions/zone-type mid symmetry\n"),
+    ("cfx", "m.csv", CFX, "run_001.out", " |   BOUNDARY: mid\n |     Boundary Type = SYMMETRY\n"),
+    ("cfx", "m.csv", CFX, "run.ccl", "  BOUNDARY: mid\n    Boundary Type = \\\n  SYMMETRY\n"),
+    ("cfx", "m.csv", CFX, "setup.pre", "> update\nBOUNDARY: mid\nBoundary Type = SYMMETRY\n"),
+    ("cfx", "m.csv", CFX, "../all.ccl", "  BOUNDARY: mid\n    Boundary Type = SYMMETRY\n"),
+    ("starccm", "m.csv", STAR, "summary.txt", "  | mid : Symmetry Plane\n"),
+    ("su2", "history.csv", SU2, "../all.cfg", "MARKER_SYM= ( mid )\n"),
 ]  # fmt: skip
 
 
@@ -79,13 +89,16 @@ SOLVERS = [
 def test_other_solvers_name_it_in_their_own_files(
     solver: str, name: str, text: str, beside: str, setup: str, tmp_path: Path
 ) -> None:
-    (tmp_path / name).write_text(text)
-    plain = IMPORTERS.load(solver).run(tmp_path / name, {}).history
+    run = tmp_path / "a0"
+    run.mkdir()
+    (run / name).write_text(text)
+    plain = IMPORTERS.load(solver).run(run, {}).history
     assert HALF_MODEL not in plain.stated
-    (tmp_path / beside).write_text(setup)
-    found = IMPORTERS.load(solver).run(tmp_path / name, {}).history
-    assert beside in found.stated[HALF_MODEL].contradicted
-    assert tmp_path / beside in found.files
+    file = (run / beside).resolve()
+    file.write_text(setup)
+    found = IMPORTERS.load(solver).run(run, {}).history
+    assert file.name in found.stated[HALF_MODEL].contradicted
+    assert file in found.files
 
 
 @pytest.mark.parametrize("text", ["half model tests", "Halbmodell M3", "essais sur demi-modèle"])

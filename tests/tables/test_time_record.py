@@ -40,3 +40,21 @@ def test_forces_over_time_stay_forces() -> None:
     assert not list(record_over_time(raw(PATH | {"X": np.full(len(T), -9.0), "Y": 12.0 + 0.1 * np.sin(T)})))
     assert not list(record_over_time(raw({n: v for n, v in PATH.items() if n != "t"})))
     assert not list(record_over_time(raw(PATH | {"t": T[::-1]})))
+
+
+@pytest.mark.parametrize(
+    ("path", "rate", "per"), [("y", "v", 1.0), ("z [mm]", "w [mm/s]", 1.0), ("psi [deg]", "r [rad/s]", np.pi / 180)]
+)
+def test_an_oscillation_is_no_sweep_of_steady_runs(path: str, rate: str, per: float) -> None:
+    """Its forces hold the added mass; as a sweep of 400 rows it gave slopes."""
+    t = np.arange(0.0, 20.0, 0.05)
+    made = {
+        "time [s]": t,
+        path: 0.2 * np.sin(1.3 * t),
+        rate: 0.26 * per * np.cos(1.3 * t),
+        "Fy": -50.0 * np.cos(1.3 * t),
+    }
+    (why,) = record_over_time(raw(made))
+    assert "record over time" in str(why)
+    steady = made | {rate: np.resize([0.1, 0.2, 0.3], t.size)}
+    assert not list(record_over_time(raw(steady)))

@@ -165,3 +165,14 @@ def test_it_needs_nothing_installed() -> None:
     assert plugin.installed().missing == ""
     assert plugin.history is None
     assert plugin.stop is None
+
+
+def test_lists_that_are_all_empty_are_no_tow(tmp_path: Path) -> None:
+    """It wrote one straight run, which gives no derivative; speeds ask for the resistance alone."""
+    head = TANK_TOML.partition("[matrix]")[0]
+    nothing = "[matrix]\ndrift = []\nattack = []\nyaw = []\n"
+    (tmp_path / "tank.toml").write_text(head + nothing)
+    with pytest.raises(InputError, match="no condition"):
+        read_tank(tmp_path / "tank.toml", BODY, body_file=BODY_FILE)
+    (tmp_path / "tank.toml").write_text(head + nothing + "speeds = [1.0]\n")
+    assert len(read_tank(tmp_path / "tank.toml", BODY, body_file=BODY_FILE).matrix) == 2

@@ -99,7 +99,7 @@ def test_a_measured_number_counts_once(
         said = " ".join(headline_of_study(study))
         assert f"{good} of 1 coefficients predicted by CFD" in said
         assert (
-            "2 comparisons judge 1 coefficient from CFD. A coefficient that two campaigns compute counts once" in said
+            "2 comparisons judge them; a coefficient of several campaigns passes if all of its comparisons do" in said
         )
         assert "No verdict on Nv' (no grid study)." in said
         assert f"CFD predicts {good} of 1 judged coefficients" in first_page_notes._independent(study)

@@ -145,9 +145,7 @@ def _rings_alone(shape: TriangleMesh) -> tuple[RingWing, ...]:
     return seen.rings if not (seen.hulls or seen.foils or seen.bluff) else ()
 
 
-def _of_sheets(
-    body: Body, shape: TriangleMesh, sheets: TriangleMesh, density: float, options: Mapping[str, Any]
-) -> AddedMass:
+def _of_sheets(body: Body, shape: Shape, sheets: TriangleMesh, density: float, options: Mapping[str, Any]) -> AddedMass:
     """Added mass of a wall by its middle surface; what the thickness moves is in the error as the water that it displaces."""
     found = added_mass(replace(body, shape=sheets), density, options)
     thick = displaced(shape, density, found.reference_point)

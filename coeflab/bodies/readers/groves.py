@@ -241,12 +241,13 @@ def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> 
     """
     whole = _whole(with_sail, with_planes, hull_panels)
     volume, share = appended(with_sail, with_planes).volume, hull_panels / len(whole.faces)
+    return TriangleMesh(whole.vertices, whole.faces, volume, partial(_of_panels, with_sail, with_planes, share, volume))
 
-    def remade(panels: int) -> TriangleMesh:
-        other = _whole(with_sail, with_planes, max(round(panels * share), FEWEST_HULL))
-        return TriangleMesh(other.vertices, other.faces, volume)
 
-    return TriangleMesh(whole.vertices, whole.faces, volume, remade)
+def _of_panels(with_sail: bool, with_planes: bool, share: float, volume: float | None, panels: int) -> TriangleMesh:
+    """The same body on about so many panels; ``share`` of them on the hull."""
+    other = _whole(with_sail, with_planes, max(round(panels * share), FEWEST_HULL))
+    return TriangleMesh(other.vertices, other.faces, volume)
 
 
 def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh:

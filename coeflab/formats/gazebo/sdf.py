@@ -17,8 +17,10 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
+from coeflab.formats.gazebo.drive import drive, driven_force, fin_symbols, in_words, not_driven
 from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.formats.unspoken import in_header
+from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, SecondOrder, slot
@@ -70,6 +72,7 @@ def sdf(
         link = SubElement(model, "link", name=LINK)
         _inertial(link, p, at, fluid)
         _displacing(link, at)
+        _seen(link, at)
         system = SubElement(model, "plugin", SYSTEM)
         SubElement(system, "link_name").text = LINK
         for tag, text in plugin:
@@ -77,8 +80,9 @@ def sdf(
         SubElement(system, DENSITY).text = number(p.conditions.density)
         length = SubElement(system, LENGTH, name=sayable(one_line(p.scaling.length_name)))
         length.text = number(p.scaling.length)
+        drive(model, p, LINK, at.length, at.radius)
     frame = f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3"
-    shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. Add visuals yourself."
+    shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. The visual is an ellipsoid of that volume, no mesh of the body."
     inertia = f"Inertia of the water: {one_line(water_inertia(p).source)}"
     titled = f"{one_line(p.name)}, body: {one_line(p.body)}"
     water = "world" if name != "world" else "world_of_water"
@@ -98,7 +102,7 @@ def sdf(
             watered,
             (
                 titled,
-                f"A world of water without surface or bottom: gz sim {water}.sdf. The model is that of {name}.sdf.",
+                f"A world of water without surface or bottom: gz sim -r {water}.sdf. Not run in Gazebo by coeflab. The model is that of {name}.sdf.",
                 frame,
                 inertia,
                 *in_header(p),
@@ -139,6 +143,17 @@ def _displacing(link: Element, at: Afloat) -> None:
     SubElement(cylinder, "length").text = number(at.length)
 
 
+def _seen(link: Element, at: Afloat) -> None:
+    """An ellipsoid of the displaced volume and length in its centre."""
+    visual = SubElement(link, "visual", name="hull")
+    SubElement(visual, "pose").text = f"{_turned(at.centre_of_buoyancy)} 0 0 0"
+    half = at.length / 2.0
+    across = float(np.sqrt(3.0 * at.volume / (4.0 * np.pi * half)))
+    SubElement(SubElement(SubElement(visual, "geometry"), "ellipsoid"), "radii").text = " ".join(
+        map(number, (half, across, across))
+    )
+
+
 def _turned(vector: Array) -> str:
     return " ".join(map(number, FLU[:3] * vector))
 
@@ -171,27 +186,9 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
     )
 
 
-FINS = {"dr": ("Y", "N", 1.0), "ds": ("Z", "M", -1.0)}  # force and moment by an angle, and the sense of a lever ahead
-
-
 def fins(parameters: ParameterFile) -> tuple[str, ...]:
-    """What a LiftDrag of each control takes: area times cla, m^2 a radian, and where it acts, m ahead of the reference point; in words.
-
-    Lift is 1/2 rho V^2 area cla alpha, so that area cla = Ydr' L^2 and x = L Ndr'/Ydr'; of stern planes -L Mds'/Zds'.
-    """
-    out, length = [], parameters.scaling.length
-    for control, (force, moment, sense) in FINS.items():
-        found = [parameters.coefficient(f"{c}{control}'") for c in (force, moment)]
-        y, n = (c.value if c is not None else None for c in found)
-        if not y or n is None:
-            continue
-        out.append(
-            f"{control} as a LiftDrag of gz-sim: area*cla = {abs(y) * length**2:.4g} m^2 a radian in all, at x = {sense * n / y * length:+.4g} m "
-            f"from the reference point; its lift in drift at {control} = 0 is in the file's law already and would count twice"
-        )
-    if out or parameters.thrusters:
-        out.append("thrust and fins are yours to add in the world: docs/simulators.md")
-    return tuple(out)
+    """Fins and thrusters of the model, in words."""
+    return in_words(parameters)
 
 
 def _spaced(vector: Array) -> str:
@@ -203,6 +200,16 @@ def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:
     return np.asarray(read_gz_link(parse_xml(next(iter(files.values())).decode())).force(nu * FLU) * FLU)
 
 
+def sdf_steered_force(files: Mapping[str, bytes], nu: Array, controls: Array) -> Array:
+    """The same with the fins at angles dr ds db (n, 3)."""
+    root = parse_xml(next(iter(files.values())).decode())
+    fins_alone = [
+        driven_force(root, LINK, nu[i : i + 1], dict(zip(CONTROLS, controls[i].tolist(), strict=True)), {})[0]
+        for i in range(len(nu))
+    ]
+    return np.asarray(sdf_force(files, nu) + np.array(fins_alone).reshape(nu.shape))
+
+
 def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
     """(6, 6) of <fluid_added_mass>, or of <xDotU> ... where the plugin uses them, turned to FRD."""
     link = read_gz_link(parse_xml(next(iter(files.values())).decode()))
@@ -211,8 +218,10 @@ def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
 
 
 def not_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:
-    """Terms that are no product of one or two velocities, and controls."""
-    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
+    """Terms that are no product of one or two velocities, controls that no fin has, and what Thruster has no place for."""
+    steered = fin_symbols(parameters)
+    terms = unheld(exported_law(parameters).law, lambda t: slot(t) is not None or t.symbol in steered, ideal=True)
+    return (*terms, *not_driven(parameters))
 
 
 def missing_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:

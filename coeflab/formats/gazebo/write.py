@@ -12,7 +12,17 @@ from collections.abc import Mapping
 import numpy as np
 
 from coeflab.formats.exported_law import common_changes, exported_law
-from coeflab.formats.gazebo.sdf import fins, missing_in_sdf, not_in_sdf, placed, sdf, sdf_added_mass, sdf_force, tags
+from coeflab.formats.gazebo.sdf import (
+    fins,
+    missing_in_sdf,
+    not_in_sdf,
+    placed,
+    sdf,
+    sdf_added_mass,
+    sdf_force,
+    sdf_steered_force,
+    tags,
+)
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU
@@ -20,9 +30,10 @@ from coeflab.vehicle.second_order import FLU
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
-holds = frozenset({"hydrostatics"})
+holds = frozenset({"hydrostatics", "thrusters", "surfaces"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 added_mass = sdf_added_mass
+steered_force = sdf_steered_force
 
 VERSION = "1.10"
 

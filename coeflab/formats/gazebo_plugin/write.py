@@ -13,16 +13,27 @@ import numpy as np
 
 from coeflab.formats.exported_law import common_changes, exported_law, number
 from coeflab.formats.gazebo.law import FORCES, VELOCITIES
-from coeflab.formats.gazebo.sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_added_mass, sdf_force, tags
+from coeflab.formats.gazebo.sdf import (
+    fins,
+    missing_in_sdf,
+    not_in_sdf,
+    placed,
+    sdf,
+    sdf_added_mass,
+    sdf_force,
+    sdf_steered_force,
+    tags,
+)
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU
 
 summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = False
-holds = frozenset({"hydrostatics"})
+holds = frozenset({"hydrostatics", "thrusters", "surfaces"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 added_mass = sdf_added_mass
+steered_force = sdf_steered_force
 
 VERSION = "1.9"
 
@@ -51,4 +62,4 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             f"UNSTABLE: an added mass of {heaviest:.4g} kg is not below the vehicle's {parameters.mass.mass:.4g} kg, and the "
             "plugin integrates it explicitly; use the target gazebo"
         )
-    return (*out, *common_changes(parameters, h, whole=True), *placed(parameters))
+    return (*out, *common_changes(parameters, h, whole=True), *fins(parameters), *placed(parameters))

@@ -187,7 +187,24 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
     centre = centre_of_gravity(p)
     keys = {**_DEFAULTS, **found}
     unit = Torpedo(
-        p.mass.mass, length, diam, centre, centre, T_surge=1.0, T_sway=1.0, T_yaw=1.0, Cd=blunt / front, **keys
+        p.mass.mass,
+        length,
+        diam,
+        centre,
+        _buoyancy(p, centre),
+        T_surge=1.0,
+        T_sway=1.0,
+        T_yaw=1.0,
+        Cd=blunt / front,
+        **keys,
+    )
+    for k, (key, symbol) in enumerate((("zeta_roll", "Kp"), ("zeta_pitch", "Mq")), 3):
+        size = 2.0 * np.sqrt(unit.mass * GRAVITY * max(0.0, float(unit.r_bg[2] - unit.r_bb[2])) * unit.inert[k])
+        if size > 0.0:  # damping of roll and pitch is a share of the critical one, which needs a righting moment
+            rate = -rest.get(symbol, 0.0) - of.get(symbol, 0.0) * p.conditions.speed
+            found[key] = max(0.0, float(rate / size))
+    unit = replace(
+        unit, zeta_roll=found.get("zeta_roll", unit.zeta_roll), zeta_pitch=found.get("zeta_pitch", unit.zeta_pitch)
     )
     yaw = -rest.get("Nr", 0.0) - of.get("Nr", 0.0) * p.conditions.speed
     rates = (-rest.get("Xu", 0.0), -rest.get("Yv", 0.0), yaw)
@@ -195,6 +212,18 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
     whole = {f.name: getattr(unit, f.name) for f in fields(unit)}
     whole |= dict(zip(("T_surge", "T_sway", "T_yaw"), times, strict=True))
     return Torpedo(**whole), law, tuple(found)
+
+
+def _rights(parameters: ParameterFile) -> bool:
+    """Whether the file has buoyancy above its weight: HoloOcean takes the root of the righting moment."""
+    h = parameters.hydrostatics
+    return h is not None and h.centre_of_buoyancy[2] <= centre_of_gravity(parameters)[2]
+
+
+def _buoyancy(parameters: ParameterFile, centre: Array) -> Array:
+    """r_bb: of the file where it rights the vehicle; else that of gravity."""
+    h = parameters.hydrostatics
+    return np.array(h.centre_of_buoyancy, dtype=float) if h is not None and _rights(parameters) else centre
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
@@ -269,14 +298,24 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         f"Cd {t.Cd:.4g} from X0; lift and drag are computed with 1026 kg/m^3 whatever rho is, for which Cd and area_fraction compensate",
         f"cross-flow drag is that of a cylinder, C_D {CROSS_FLOW:.4g} on {t.length:.4g} x {t.diam:.4g} m, in sway and yaw: not a matter of the file",
         f"T_yaw {t.T_yaw:.4g} s: damping in yaw does not grow with the speed; it equals Nr at {speed:g} m/s",
-        "r_bb lies in r_bg, so that nothing rights the vehicle or damps roll and pitch: "
-        f"{states_buoyancy(parameters, 'the file states no buoyancy')}; write the vehicle's",
+        "r_bb is the file's centre of buoyancy; HoloOcean takes buoyancy as equal to weight, whatever the file's volume is"
+        if _rights(parameters)
+        else "r_bb lies in r_bg, so that nothing rights the vehicle or damps roll and pitch: "
+        + (
+            "the file's buoyancy lies below its weight, where HoloOcean has no number"
+            if parameters.hydrostatics is not None
+            else f"{states_buoyancy(parameters, 'the file states no buoyancy')}; write the vehicle's"
+        ),
         "axes and reference point are the file's",
     ]
     if "area_fraction" in found:
         said.append(f"area_fraction {t.area_fraction:.4g} from Zw: the reference area of the lift, not the hull's")
     if "e" in found:
         said.append(f"e {t.e:.4g} from Xww")
+    if "zeta_roll" in found:
+        said.append(
+            f"zeta_roll {t.zeta_roll:.4g}, zeta_pitch {t.zeta_pitch:.4g} equal Kp and Mq at {speed:g} m/s; damping does not grow with the speed"
+        )
     kept = [k for k in _DEFAULTS if k not in found]
     said.append(f"HoloOcean's default is used for {', '.join(kept)}: not in the file")
     unused = [n for n, value in (("T_surge", t.T_surge), ("T_sway", t.T_sway), ("T_yaw", t.T_yaw)) if value == NEVER]

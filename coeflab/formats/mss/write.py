@@ -7,14 +7,18 @@ VESSELS/navalvessel.m (section "Vessel Data").
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
+from importlib.resources import files as resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.arithmetic import evaluate
+from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, matlab, one_line
+from coeflab.formats.coded_tables import KEYS, coded_tables, law_of_tables
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     COURSE,
@@ -31,7 +35,7 @@ from coeflab.formats.exported_law import (
 )
 from coeflab.formats.mss.m_file import assignments
 from coeflab.formats.unspoken import in_header, unstated
-from coeflab.law.force_law import ForceTerm
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
@@ -40,10 +44,13 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
 citations = ("sname1950", "fossen2011", "mss")
 adds_coriolis = False
-holds = frozenset({"hydrostatics"})
+holds = frozenset({"hydrostatics", "tables"})
 not_held, missing = not_written, missing_water
 
-OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS})
+OWN = frozenset(
+    {"nu", "delta", "tau", "tabled", "held", "tables", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS}
+)
+TABLED = "\nfunction F = tabled("
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -62,7 +69,7 @@ _NAMES = {
 
 def _unspoken(parameters: ParameterFile) -> tuple[str, ...]:
     """Components without a law, and members of h that a loop about the function needs and the file does not give."""
-    return *in_header(parameters), *unstated(parameters, _NAMES)
+    return *in_header(parameters, tables=True), *unstated(parameters, _NAMES)
 
 
 def _quoted(text: str) -> str:
@@ -157,8 +164,51 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             ]
     lines += ["", f"% Primed acceleration derivatives, the negative of the added mass: {one_line(source)}"]
     lines += [f"h.{name} = {value!r};" for name, value in accelerations.items()]
-    lines += ["", *_force(terms, accelerations), "", *_added_mass(accelerations), "end"]
+    tables, wind = coded_tables(parameters)
+    force_lines = _force(terms, accelerations)
+    if tables:
+        force_lines[-1] = "tau = [X; Y; Z; K; M; N] + tabled([u v w p q r], delta(1:3));"
+    lines += ["", *force_lines, "", *_added_mass(accelerations), "end"]
+    if tables:
+        lines += [own_text(resources("coeflab.formats.mss") / "tables.m").rstrip(), "", *_tables(tables, wind)]
     return {f"{function}.m": ("\n".join(lines) + "\n").encode()}
+
+
+def _tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> list[str]:
+    """A function that gives the rows of every table."""
+    out = [
+        "function [T, speaks] = tables()",
+        "% Fitted tables. variables: of u v w p q r dr ds db U alpha beta; a variable is times prime/U where that is not zero; rule",
+        "% outside: 0 nearest point, 1 fading into it, 2 none; terms: X Y Z K M N D S L, value (SI), power of U, then of each variable",
+        "% its power and that of its absolute value.",
+        f"speaks = [{' '.join(str(int(x)) for x in wind)}];",
+    ]
+    for k, t in enumerate(tables, 1):
+        out.append(f"% {one_line(t['name'])}")
+        for key in KEYS:
+            rows = t[key] if isinstance(t[key], list) else [t[key]]
+            nested = rows if rows and isinstance(rows[0], list) else [rows]
+            body = "; ".join(
+                " ".join(repr(float(x)) if key not in ("variables",) else str(x) for x in row) for row in nested
+            )
+            out.append(f"T({k}).{key} = [{body}];")
+    return [*out, "end"]
+
+
+_ROW = re.compile(r"^T\((\d+)\)\.(\w+) = \[([^\]]*)\];$", re.MULTILINE)
+
+
+def _read_tables(text: str) -> ForceLaw:
+    """The law of the tables in a function file."""
+    out: dict[int, dict[str, Any]] = {}
+    for k, key, body in _ROW.findall(text):
+        rows = [[float(x) for x in row.split()] for row in body.split(";")]
+        nested = key in ("spaces", "faces", "maps", "terms")
+        out.setdefault(int(k), {})[key] = (
+            rows if nested else rows[0][0] if key in ("rule", "boxed", "rests") else rows[0]
+        )
+    speaks = [bool(int(x)) for x in text.rpartition("speaks = [")[2].partition("]")[0].split()]
+    return law_of_tables([out[k] for k in sorted(out)], speaks)
 
 
 def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
@@ -192,7 +242,13 @@ def steered_force(
 ) -> NDArray[np.float64]:
     """The same under control angles."""
     names, _ = _evaluated(files, nu, controls)
-    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+    out = np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+    text = _text(files)
+    return out + _read_tables(text).force(nu, controls) if TABLED in text else out
+
+
+def _text(files: Mapping[str, bytes]) -> str:
+    return next(content for name, content in files.items() if name.endswith(".m")).decode()
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
@@ -206,7 +262,7 @@ def _evaluated(
     files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
 ) -> tuple[dict[str, Any], str]:
     """What the function's assignments give at velocities (n, 6) and controls (n, 3), and the text of that of MA."""
-    text = next(content for name, content in files.items() if name.endswith(".m")).decode()
+    text = _text(files).partition(TABLED)[0]
     functions: dict[str, Callable[..., Any]] = {
         "nu": lambda k: nu[:, int(k) - 1],
         "delta": lambda k: controls[:, int(k) - 1],

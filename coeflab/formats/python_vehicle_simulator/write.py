@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
+from importlib.resources import files as resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, one_line, python
+from coeflab.formats.coded_tables import coded_tables, law_of_tables
 from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     COURSE,
@@ -29,7 +32,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.unspoken import in_header
-from coeflab.law.force_law import ForceTerm
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
@@ -39,7 +42,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in SNAME coefficients"
 citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
 adds_coriolis = False
-holds = frozenset({"hydrostatics"})
+holds = frozenset({"hydrostatics", "tables"})
 
 not_held = not_written
 
@@ -142,7 +145,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {name}.py: {one_line(p.name)}, body: {one_line(p.body)}",
         f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
         f"from: {one_line(p.reference_point.datum)}",
-        *(f"# {said}" for said in in_header(p)),
+        *(f"# {said}" for said in in_header(p, tables=True)),
         _HEAD.format(
             name=name,
             m=None if mass is None else mass.mass,
@@ -150,7 +153,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             products=_products(parameters),
             centre=tuple(float(x) for x in centre_of_gravity(parameters)),
             gravity=GRAVITY if h is None else h.gravity,
-            buoyancy=None if h is None else h.centre_of_buoyancy,
+            buoyancy=None if h is None else tuple(map(float, h.centre_of_buoyancy)),
             volume=None if h is None else h.volume,
             controls="".join(f"\n    {said}" for said in control_signs(p)),
         ),
@@ -171,7 +174,18 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             ]
     lines += ["", f"        # Acceleration derivatives, primed: {one_line(source)}"]
     lines += [f"        self.{name} = {value!r}" for name, value in accelerations.items()]
-    lines += [*_added_mass(accelerations), *_force(terms), _TAIL.rstrip()]
+    tables, wind = coded_tables(parameters)
+    if tables:
+        lines += [
+            "",
+            "        # Fitted tables, as tabled() reads them",
+            f"        self.speaks = {[int(x) for x in wind]!r}",
+            "        self.tables = [",
+        ]
+        lines += [f"            {t!r}," for t in tables] + ["        ]"]
+    lines += [*_added_mass(accelerations), *_force(terms, bool(tables)), _TAIL.rstrip()]
+    if tables:
+        lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "tables.py.txt").rstrip())
     return {f"{name}.py": ("\n".join(lines) + "\n").encode()}
 
 
@@ -187,7 +201,7 @@ def _moments(parameters: ParameterFile) -> tuple[float | None, ...]:
 def _products(parameters: ParameterFile) -> tuple[float, ...]:
     mass = parameters.mass
     matrix = None if mass is None else mass.inertia_matrix
-    return (0.0, 0.0, 0.0) if matrix is None else (matrix[0][1], matrix[0][2], matrix[1][2])
+    return (0.0, 0.0, 0.0) if matrix is None else tuple(float(matrix[i][j]) for i, j in ((0, 1), (0, 2), (1, 2)))
 
 
 def _scales(powers: set[int]) -> list[str]:
@@ -204,7 +218,7 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
     return [*lines, "        ])"]
 
 
-def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
+def _force(terms: tuple[ForceTerm, ...], tabled: bool) -> list[str]:
     lines = [
         "",
         "    def hydrodynamics(self, nu, delta=(0.0, 0.0, 0.0)):",
@@ -222,7 +236,8 @@ def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
         parts = [expression(t, _place, "**") for t in terms if t.component == component] or ["0.0"]
         lines += [f"        {component} = (", *(f"            {'+ ' if i else ''}{p}" for i, p in enumerate(parts))]
         lines.append("        )")
-    return [*lines, f"        return np.array([{', '.join(COMPONENTS)}], float)"]
+    more = " + tabled(self.tables, self.speaks, nu, delta)" if tabled else ""
+    return [*lines, f"        return np.array([{', '.join(COMPONENTS)}], float){more}"]
 
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -239,7 +254,23 @@ def steered_force(
     for node in methods["hydrodynamics"].body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             names[node.targets[0].id] = _value(node.value, names)
-    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+    out = np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+    tables = _read_tables(methods["__init__"])
+    return out if tables is None else out + tables.force(nu, controls)
+
+
+def _read_tables(constructor: ast.FunctionDef) -> ForceLaw | None:
+    """The law of the tables that a constructor sets; None without."""
+    found = {
+        node.targets[0].attr: node.value
+        for node in constructor.body
+        if isinstance(node, ast.Assign)
+        and isinstance(node.targets[0], ast.Attribute)
+        and node.targets[0].attr in ("tables", "speaks")
+    }
+    if not found:
+        return None
+    return law_of_tables(ast.literal_eval(found["tables"]), [bool(x) for x in ast.literal_eval(found["speaks"])])
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:

@@ -154,9 +154,10 @@ def render(document: Document) -> Mapping[str, bytes]:
         "is_broad": is_broad,
     }
     seen: set[str] = set()
-    environment.globals["definitions"] = lambda: Markup(definitions_html(seen))
+    whole = any(s.appendix for s in document.sections)
+    environment.globals["definitions"] = lambda: Markup(definitions_html(seen) if whole else "")
     environment.filters |= {
-        "linked": lambda text: Markup(linked_html(text, seen)),
+        "linked": lambda text: Markup(linked_html(text, seen, listed=whole)),
         "spelled": spelled,
         "spelled_cell": spelled_cell,
         "visible": visible,

@@ -41,6 +41,7 @@ from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.tables.uncertainty import SET
+from coeflab.study.lines import MEANING
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 from coeflab.study.towed import Towed, towed
@@ -328,6 +329,9 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
     return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
 
 
+CONDITIONS = "In CFD angle, rate, speed, length, density and reference point are set: they have no reading errors."
+
+
 def tow_sections(study: Study) -> tuple[Section, ...]:
     """Bodies that our own computations tow, or none where the plan names none."""
     found = towed(study)
@@ -337,14 +341,17 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
     left = "; ".join(name for name in unassessed if name not in SET and not name.startswith("grid"))
     text: tuple[str, ...] = (
-        "Own tows are CFD runs in coeflab's virtual towing tank, not tank tests. Grid: the part of U95 that the grid study gives, "
-        f"in % of the value.{f' U95 leaves out: {left}.' * bool(left)}",
-        "The comparison error E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict "
-        "needs a steady test of the same body.",
+        f"CFD of coeflab's virtual towing tank. Grid: the part of U95 that the grid study gives, in % of the value.{f' U95 leaves out: {left}.' * bool(left)} "
+        f"{CONDITIONS} {MEANING}",
+        "E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict needs a steady test of the same body.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)
-    each = (t for one in with_values for t in (own_cfd.own_tow(one), own_cfd.tow_against(one)))
+    judged = {v.simulation for v in validations(study, study.budgets)}  # whose errors stand under Comparison
+    each = (
+        t for one in with_values
+        for t in (own_cfd.own_tow(one), *(() if one.tow.campaign in judged else (own_cfd.tow_against(one),)))
+    )  # fmt: skip
     rest = _filled(tuple(own_cfd.own_tow(one) for one in found if one not in with_values))
     more = (Section("no-tow", "Own CFD without a value", tables=rest, appendix=True),) if rest else ()
     return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)

@@ -11,38 +11,30 @@ from coeflab.core.wording import in_sentences, listed
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
-from coeflab.report.document import Section, Topic
+from coeflab.report.document import Section
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
-from coeflab.report.tables.results import without
 from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 
 SLOPES = (
-    "Each slope is the weighted median of many fits to the whole sweep, each the sum of a line, v|v|, v^3 and a smooth remainder. The better a fit "
-    "explains the points, the more weight it has (docs/slope_at_origin.md). No published value is used."
+    "A slope is the weighted median of many fits to the whole sweep (docs/slope_at_origin.md); no published value is used. n: points in its fit. "
+    "U95, the half-width of the 95 % interval, covers {}; what it leaves out stands below each table. --full has its parts."
 )
-COVERS = "U95 is the half-width of the 95 % interval. For slopes it covers {}; what it leaves out stands below each table of this section."
-PARTS = "The parts of U95 are in % of the value. Random: scatter of the points. Form: unknown shape of the curve."
-SHAPE = "Values with an entry under form assume no single shape of curve. The others, named below the tables, assume the shape of the force law."
-INPUT = "Input: declared errors of the inputs, and the grid."
-SLOPE = "Slope: the part that comes from the U95 of the slopes (of X: Xvv', Xww', Xrr'), which the fit of the term holds fixed."
-DASH = "A dash: not applicable or not assessed; not in U95."
-POINTS = (
-    "n: number of points in the fit. A slope uses the straight runs and those that vary only its motion; a constant without an entry under slope, the "
-    "runs of one sweep (over v or w where there is one). For a term with an entry under slope, n counts the points where its motions are not zero, combined runs included; for a "
-    "constant with such an entry, all points."
-)
-OPEN = "U95 exceeds the value. Use such a term only together with the other terms of the same fit."
+OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
 FIXED = (
     "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
     "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
     "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
 )
-CONDITIONS = "In CFD, angle, rate, speed, length, density and reference point are set, not measured. They have no reading errors."
+UNBOUNDED = "Where an interval could not be had, the value is printed without U95 and should not be relied on."
 OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients."
+PARTS = (
+    "Parts of U95, in % of the value. Random: scatter of the points. Form: unknown shape of the curve; a value without it assumes the shape of the force "
+    "law. Input: declared errors, and the grid. Slope: from the U95 of the slopes, which the fit of the term holds fixed. A dash: not assessed, not in U95.",
+)
 OPEN_SIGN = ", sign open"
 NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 
@@ -64,25 +56,13 @@ def form_not_assessed(found: Sequence[Coefficient]) -> str:
     return in_sentences("U95 of ", [primed(c.symbol) for c in without], end, join=listed)
 
 
-def _covered(study: Study) -> tuple[str, ...]:
-    """What U95 of slopes covers, and what only some of the slopes have in it."""
+def _covered(study: Study, found: Sequence[Table]) -> tuple[str, ...]:
+    """How slopes are found, what U95 covers of all and of some, and what an open sign means."""
     every, some = tables.covered(study)
-    whole = COVERS.format(listed([*every[1:], *every[0].split(", ")]))
-    return (whole, *(in_sentences(f"It covers the {name} only for ", places) for name, places in some.items()))
-
-
-def _topics(study: Study, found: Sequence[Table]) -> tuple[Topic, ...]:
-    """How slopes and their U95 are found, and what the columns of the tables are."""
-    heads = {name for t in found for name in t.headers}
-    parts = [PARTS, *(s for name, s in (("input", INPUT), ("slope", SLOPE)) if name in heads), DASH]
-    rows = (cell for t in found for row in t.rows for cell in row)
-    made = [
-        Topic("Slopes", (SLOPES,)),
-        Topic("Interval", _covered(study)),
-        Topic("Its parts", (" ".join(parts), SHAPE)),
-        Topic("Points", (POINTS,)),
-    ]
-    return (*made, *((Topic("Sign open", (OPEN,)),) if any(OPEN_SIGN in cell for cell in rows) else ()))
+    whole = SLOPES.format(listed([*every[1:], *every[0].split(", ")]))
+    only = (in_sentences(f"It covers the {name} only for ", places) for name, places in some.items())
+    has_open = any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row)
+    return (whole, *only, *((OPEN,) if has_open else ()))
 
 
 def coefficients_section(study: Study) -> Section:
@@ -94,25 +74,16 @@ def coefficients_section(study: Study) -> Section:
     }
     apart = {t.campaign for t in study.plan.tows if t.added is not None}
     found = tuple(t for (campaign, _), t in made.items() if campaign not in apart)
-    topics = list(_topics(study, found)) if is_swept else []
-    if any(name in SET for b in study.budgets if b.kind == "cfd" for name in b.unassessed):
-        topics.append(Topic("CFD", (CONDITIONS,)))
+    text = _covered(study, found) if is_swept else text
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
-        topics.append(
-            Topic(
-                "Without U95",
-                ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",),
-            )
-        )
+        text += (UNBOUNDED,)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
-        topics.append(Topic("Form rejected", (Status.FORM_REJECTED.advice,)))
+        text += (Status.FORM_REJECTED.advice,)
     if apart:
-        topics.append(Topic("Own tows", (OF_TOWS,)))
-    if absent := _without_value(study):
-        topics.append(Topic("No value", absent))
+        text += (OF_TOWS,)
     whole = tables.coefficients(study)
-    appendix = (Section("all-coefficients", "All columns", tables=(whole,), appendix=True),) if whole.rows else ()
-    return Section("coefficients", "Coefficients", text, found, subsections=appendix, topics=tuple(topics))
+    appendix = (Section("all-coefficients", "All columns", PARTS, (whole,), appendix=True),) if whole.rows else ()
+    return Section("coefficients", "Coefficients", text, found, subsections=appendix)
 
 
 def _table(study: Study, campaign: str, body: str) -> Table:
@@ -130,8 +101,6 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     rows = tuple(
         (
             primed(c.symbol), *noun_tables.with_status(c), f"{percent(c.u95, c.value)}{OPEN_SIGN * _is_open(c)}",
-            percent(c.parts.random, c.value), percent(c.parts.model_form, c.value),
-            *((ABSENT, percent(c.parts.input, c.value)) if c.symbol in tied else (percent(c.parts.input, c.value), ABSENT)),
             str(c.n_points) if c.n_points else ABSENT,
         )
         for c in shown
@@ -144,12 +113,9 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
-    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "slope", "n")
+    headers = ("", "value", "U95", "U95 %", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
-    whole = Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
-    return without(
-        whole, *(n for i, n in enumerate(headers) if n in ("input", "slope") and all(row[i] == ABSENT for row in rows))
-    )
+    return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
 
 
 def shorter_ranges(found: Sequence[Coefficient], tied: Collection[str]) -> str:
@@ -202,13 +168,3 @@ def _wrong(study: Study, campaign: str) -> str:
     found = [s for f in study.fits if f.campaign == campaign for s in f.sweeps if len(s.wrong)]
     each = [f"{', '.join(s.labels[i] for i in s.wrong)} ({primed(s.symbol)})" for s in found]
     return in_sentences("Left out by the fit, as they do not fit the other points: ", each) if each else ""
-
-
-def _without_value(study: Study) -> tuple[str, ...]:
-    """What is wanted and has no table, in one line a campaign."""
-    missing: dict[str, list[str]] = {}
-    for c in study.coefficients:
-        if c.status is Status.NO_TABLE:
-            missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
-    each = [f"{listed(symbols)} of {place}" for place, symbols in missing.items()]
-    return (in_sentences("No table varies the motion of ", each),) if each else ()

@@ -222,10 +222,7 @@ def _ring(axes: Axes, middle: Array, first: Array, second: Array) -> None:
 
 
 TITLE = "Conventions used"
-AXES_ROWS = (
-    "Axes: x forward, y to starboard, z down, right-handed, fixed in the body. X, Y, Z, K, M, N are the forces and "
-    "moments of the fluid on the body."
-)
+AXES_ROWS = "Axes: x forward, y to starboard, z down, in the body. X, Y, Z, K, M, N: of the fluid on the body."
 ANGLES = (
     "Angles: v' = v/U = sin(beta), positive when the body moves to starboard (ITTC's drift angle has the other sign); w' = w/U = sin(alpha) cos(beta), "
     "positive when it moves down."
@@ -235,14 +232,7 @@ CONTROLS = (
     "starboard (Ydr' = 0.005929), a positive stern plane gives Z up (Zds' = -0.005603)."
 )
 MOVED = "The rows of the tables are moved there and then fitted. Moving slopes after the fit gives slightly different values."
-POTENTIAL = (
-    "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
-    "simulator that adds -C_A(nu) nu itself must get them without these parts, or it counts the parts twice."
-)
-REST = (
-    "Each curve has a constant (force at zero angle), unless the table declares symmetry. With points on both sides of zero, the fit may "
-    "also include the part that symmetry forbids."
-)
+POTENTIAL = "Velocity derivatives include their potential parts, such as the Munk moment. A simulator that adds -C_A(nu) nu itself must get them without these."
 
 
 def conventions_section(study: Study, *, drawn: bool = True) -> Section:
@@ -255,13 +245,12 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
         With the drawings of axes and signs in the section itself; else in its appendix, where the first page has a sketch.
     """
     text = (
-        f"{AXES_ROWS} Tables in other axes are converted to these when they are read.",
-        f"{ANGLES} Input files may use other signs. Angles are in degrees, derivatives by an angle per radian.",
+        AXES_ROWS,
+        f"{ANGLES} Angles are in degrees, derivatives by an angle per radian.",
         CONTROLS if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),
         POTENTIAL,
-        REST,
     )
     figures = axes_figures("axes")
     more = (Section("axes-drawn", "Axes and signs, drawn", figures=figures, appendix=True),)

@@ -77,8 +77,7 @@ def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
             panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
         legend(figure, handles, bottom + UPPER)
         svg = svg_text(figure, anchor, title, description)
-    caption = f"At constant speed, a motion with a real part above zero grows. {locus.statement}"
-    return Figure(anchor, svg, title, caption, description, tuple(panels))
+    return Figure(anchor, svg, title, "" if locus.index == "G_h" else locus.statement, description, tuple(panels))
 
 
 def _lines(axes: Axes, locus: RootLocus, values: Array) -> list[Any]:
@@ -102,12 +101,9 @@ def _said(part: str, values: Array) -> str:
 
 
 TEXT = (
-    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], with controls fixed. "
-    "m': mass; xG': x of the centre of gravity. Positive: stable. If the interval contains zero, the sign is open.",
-    "U95 of an index comes from the U95 of its four derivatives and the covariance of those that are fitted. Errors of mass and centre of gravity are not included. The verdict uses "
-    "this linearised U95, or the Monte Carlo limits where the remark gives them.",
-    "G_v holds at high speed: it leaves out the restoring moment of weight and buoyancy (BG).",
-    "Roots are the eigenvalues of small motions about a straight course at constant speed. They follow from the force law, mass and added mass of the parameter file.",
+    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
+    "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
+    "U95 comes from that of the four derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
 )
 
 
@@ -226,12 +222,10 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
         )
         each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
         notes = [f"speed of the parameter file: {each}."] if len(speeds) > 1 else []
-        if any("BG left out" in cell for row in roots for cell in row):
-            notes.append("BG left out: these roots hold at high speed only.")
         tables.append(Table(at, heads, tuple(roots), tuple(notes), frozenset({0, 1, 2, 4})))
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
-    tables += [made_of] if made_of.rows else []
-    mass = Section("mass-used", "Mass and inertia used", tables=tuple(mass_table(study)), appendix=True)
+    used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
+    mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
     return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures), (mass,)),)
 
 
@@ -255,9 +249,7 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         remarks = [f"{', '.join(stated)} published"] if stated else []
         remarks += [d.statement] if d.result is None else []
         remarks += [d.limits] if d.limits else []
-        remarks.append(
-            f"uncertainty of m' and xG' not in U95: 1 % of m' changes {index} by {number(by_mass(parameters, d), 2)}"
-        )
+        remarks.append(f"1 % of m' changes {index} by {number(by_mass(parameters, d), 2)}")
         out.append((parameters.name, index, number(d.value), number(half, 2), sense(d), "; ".join(remarks)))
     return out
 
@@ -338,10 +330,7 @@ def _pairs(values: NDArray[np.complex128]) -> str:
     return "; ".join(out)
 
 
-SIMULATED = (
-    "Each manoeuvre uses one parameter file of this study. A result that uses motions beyond the data is marked "
-    "extrapolated. A result that the data do not determine has no value, and its reason is given.",
-)
+SIMULATED = ("Extrapolated: the motion leaves the range of the data.",)
 WITHOUT_U95 = (
     "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
 )
@@ -420,9 +409,7 @@ def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) 
 
 
 EXPORTED = (
-    "coeflab reads every written file back, computes forces and accelerations by the simulator's own equations, and compares them with "
-    "those of the parameter file. The difference is the error that the target simulator adds.",
-    "Some simulators add the Coriolis force of the added mass, -C_A(nu) nu. The files for these omit the potential part of the linear derivatives, which would count twice.",
+    "Largest difference: forces and accelerations of the written file by the simulator's own equations against those of the parameter file.",
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.finding import Severity
-from coeflab.core.wording import in_sentences, listed, spelled_out
+from coeflab.core.wording import in_sentences, listed
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors
 from coeflab.report.acceptance import on_predictions
@@ -243,14 +243,9 @@ def _wide(study: Study) -> list[str]:
             wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
     if not wide:
         return []
-    every = [primed(s) for s in study.plan.wanted]
-    whole = "both" if len(every) == 2 else f"all {spelled_out(len(every))}"
-    each = [f"{whole if s == every and len(s) > 1 else listed(s)} of {place}" for place, s in wide.items()]
-    among = f"Among {listed(every)}, U95 exceeds {100.0 * WIDE:.0f} % of the value for " if len(every) > 1 else ""
-    return [
-        f"{in_sentences(among or f'U95 exceeds {100.0 * WIDE:.0f} % of the value for ', each)} `coeflab fit TABLE --next 3` names the three runs "
-        "that narrow U95 most."
-    ]
+    each = [f"{listed(symbols)} of {place}" for place, symbols in wide.items()]
+    start = f"U95 exceeds {100.0 * WIDE:.0f} % of the value for "
+    return [f"{in_sentences(start, each)} `coeflab fit TABLE --next 3` names the three runs that narrow it most."]
 
 
 def _not_varied(symbols: Sequence[str]) -> str:

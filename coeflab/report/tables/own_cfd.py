@@ -9,8 +9,8 @@ from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
 from coeflab.report.tables.results import NO_VALUE
-from coeflab.report.tables.uncertainty import sentences_on_open
-from coeflab.study.lines import MEANING, NAME
+from coeflab.report.tables.uncertainty import SET, sentences_on_open
+from coeflab.study.lines import NAME
 from coeflab.study.towed import NO_RESULT as SHARE
 from coeflab.study.validation import AS_PRINTED, in_millions
 
@@ -56,8 +56,7 @@ def own_tow(found: Towed) -> Table:
     few = f"No result: U95 above {SHARE:.0%} of the value ({', '.join(wide)})." if wide else ""
     spread = [f"{primed(r.symbol)} {percent(r.model, r.value)}" for r in found.rows if r.model is not None]
     models = f"Model error, beside U95: another turbulence model moves {', '.join(spread)}." if spread else ""
-    lines = MEANING if any(r.line is not None for r in found.rows) else ""
-    notes = tuple(n for n in (where, few, *reasons, *found.turned, grid, *no_grid, models, lines, found.tow.note) if n)
+    notes = tuple(n for n in (where, few, *reasons, *found.turned, grid, *no_grid, models, found.tow.note) if n)
     columns = tuple(f"{name}, printed" for name in found.columns) if len(found.columns) == 1 else found.columns
     headers = ("", "CFD", "U95" if not grid else "U95 without grid", "grid", NAME, *columns)
     return Table(f"Own CFD: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
@@ -98,7 +97,7 @@ def tow_against(found: Towed) -> Table:
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
     notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
     notes += sentences_on_open(
-        (_of_some(u, judged) for v in judged for u in v.lacking), computed=True, what="From the CFD, U_V leaves out"
+        (_of_some(u, judged) for v in judged for u in v.lacking if u not in SET), what="From the CFD, U_V leaves out"
     )
     fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
     of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"

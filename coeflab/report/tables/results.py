@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -501,6 +502,18 @@ def checks(found: Sequence[Check]) -> Table:
     return Table("Checks", headers, rows, (), frozenset(range(6)))
 
 
+def warnings(found: Sequence[Check]) -> Table:
+    """Findings without rules, of their meaning the first sentence; one that several of a check share stands once."""
+    whole = without(checks(found), "rule")
+    rows: list[tuple[str, ...]] = []
+    meant: set[tuple[str, str]] = set()
+    for row in whole.rows:
+        first = row[4].partition(". ")[0].removesuffix(".")
+        rows.append((*row[:4], "as above" if (row[1], first) in meant else f"{first}." * bool(first)))
+        meant.add((row[1], first))
+    return replace(whole, title="Failures and warnings", rows=tuple(rows))
+
+
 def provenance(study: Study) -> Table:
     """Every file that went in, by its sha256."""
     rows = tuple((f.name, f.sha256) for f in study.inputs)
@@ -517,6 +530,12 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     keys += [k for made in study.manoeuvres for k in made.citations]
     keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
     return tuple((k, work(k)) for k in dict.fromkeys(keys) if k != NO_WORK)
+
+
+def sources_of_numbers(study: Study) -> frozenset[str]:
+    """Keys of the works whose numbers a study uses or is compared with."""
+    keys = {t.source.citation for t in study.tables} | {r.citation for r in study.references} | {"sname1950"}
+    return frozenset(keys | ({study.body.source.citation} if study.body else set()))
 
 
 def _of(components: Sequence[str], table: ForceTable) -> str:

@@ -76,7 +76,7 @@ def unseen_columns(study: Study) -> tuple[Finding, ...]:
     return tuple(
         Finding.of(
             "signs.column_not_seen", campaign, Severity.NOTE, columns=tuple(columns), hull="known" if campaign in with_hull else "unknown",
-            advice="" if campaign in with_hull else "hull under [[parameter_file]]",
+            advice="" if campaign in with_hull else "added_mass under [[parameter_file]]",
         )
         for campaign, columns in unseen.items()
     )  # fmt: skip

@@ -28,8 +28,9 @@ _POINT = "USER POINT,"
 
 
 # Setups in CFX's command language stand in .ccl files and at the head of every .out file.
-_SYMMETRY = re.compile(r"(?i)^\s*Boundary Type\s*=\s*SYMMETRY\b")
-_BOUNDARY = re.compile(r"(?i)^\s*BOUNDARY\s*:\s*(.+)")
+_TEXTS = (".ccl", ".out", ".txt", ".log", ".pre", ".cse", ".dat")
+_SYMMETRY = re.compile(r"(?i)^[\s|>&]*Boundary Type\s*=\s*SYMMETRY\b")
+_BOUNDARY = re.compile(r"(?i)^[\s|>&]*(?:replace\s+)?BOUNDARY\s*:\s*(.+)")
 
 
 def recognises(path: Path) -> bool:
@@ -84,7 +85,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name.removeprefix(_POINT), "", "" if j else "iteration") for j, name in enumerate(names)]
     dialect = {"format": "CFX monitor data", "delimiter": "comma", "decimal mark": "point"}
     remarks = (f"{file.name}: monitor data state no directions and no units",)
-    planes, texts = planes_beside(file, (".ccl", ".out", ".txt", ".log"), _SYMMETRY, _BOUNDARY)
+    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
     half = stated_plane(planes)
     stated = {HALF_MODEL: half} if half else {}
     table = raw_table(monitor, path, columns, (file, *texts), dialect, stated, remarks)

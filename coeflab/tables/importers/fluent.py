@@ -105,10 +105,11 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
 
 
 # Transcripts, journals, summaries of the setup and cases written as text name the type of every zone.
-_TEXTS = (".trn", ".jou", ".log", ".txt", ".cas", ".msh", ".sum", ".out")
+_TEXTS = (".trn", ".jou", ".log", ".txt", ".cas", ".msh", ".sum", ".out", ".py", ".scm")
 _SYMMETRY = re.compile(
     r"(?i)\bsymmetry faces,?\s+zone\s+(?P<name>\d+)|\((?:39|45) \(\d+ symmetry (?P<zone>[^\s()]+)"
-    r"|\bzone-type\s+(?P<typed>\S+)\s+symmetry\b|^\s*(?P<listed>[\w.:-]+)\s+\d+\s+symmetry\s*$"
+    r"|\bzone-type\s+(?P<typed>\([^()]*\)|\S+)\s+[\"']?symmetry\b|^\s*(?P<listed>[\w.:-]+)\s+\d+\s+symmetry\s*$"
+    r"|zone.type\b[^\n]*[\"']symmetry[\"']|\bBoundary Conditions\b[^\n]*\"symmetry\"|^\s*symmetry\s*\((?P<number>\d+)\)"
 )
 
 

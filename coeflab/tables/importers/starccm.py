@@ -35,7 +35,9 @@ _WITHOUT_UNIT = ("Force Coefficient", "Moment Coefficient")
 
 # Macros that Java plays back and summary reports name the kind of every boundary.
 _TEXTS = (".java", ".log", ".txt", ".html", ".htm", ".xml", ".out")
-_SYMMETRY = re.compile(r"SymmetryBoundary\b|(?i:\btype\W{1,20}symmetry(?:\s+plane)?\b)")
+_SYMMETRY = re.compile(
+    r"SymmetryBoundary\b|(?i:\btype\W{1,20}symmetry(?:\s+plane)?\b)|[:>|]\s*Symmetry(?: Plane)?\s*(?:[<|]|$)"
+)
 _BOUNDARY = re.compile(r"(?:getBoundary\(\"|(?i:\bboundary(?:\s+name)?\s*:\s*))([^\"\n<]+)")
 
 

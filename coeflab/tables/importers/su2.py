@@ -239,17 +239,21 @@ class _Config:
         return self.at(key, *(f"{key}_{axis}" for axis in "XYZ"))
 
 
-_SYMMETRY_IN_LOG = re.compile(r"(?i)^[\s|]*symmetry plane(?: boundary)?\s*[|:]\s*(?P<name>[^|]*)")
+_SYMMETRY_IN_LOG = re.compile(
+    r"(?i)^[\s|]*symmetry plane(?: boundary)?\s*[|:]\s*(?P<name>[^|]*)|^\s*MARKER_SYM\w*\s*=[\s(]*(?!NONE\b)(?P<marker>[^\s,()]+)"
+)
 
 
 def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[str], list[Path]]:
-    """Markers of symmetry planes in any config file beside a history, else in a log of the solver; and the logs."""
+    """Markers of symmetry planes in any config file beside a history, else in a log of the solver or a config of all runs; and those."""
     places = []
     for config in configs:
         for key in ("MARKER_SYM", "MARKER_SYMMETRY"):
-            names = [n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() != "NONE"]
+            names = [
+                n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() not in ("NONE", "\\")
+            ]
             places += [f"{config.at(key)}: marker {name} is a symmetry plane" for name in names]
-    return (places, []) if places else planes_beside(history, (".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
+    return (places, []) if places else planes_beside(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
 
 
 def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], list[str]]:

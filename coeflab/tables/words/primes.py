@@ -32,7 +32,7 @@ _WORDS = {
     "T": r"draughts?|drafts?|tiefgang|tirant\s+d['’]eau",
     "B": r"breadth|beam|breite|largeur|bau",
     "D": r"(?:max(?:imum)?\.?\s+|hull\s+)?diam(?:eter|[èe]tre)|(?:rumpf)?durchmesser",
-    "V": r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇",
+    "V": r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇|nabla",
     "wetted": r"wetted\s+(?:surface|area)(?:\s+area)?|benetzte\s+(?:ober)?fl(?:ä|ae)che|surface\s+mouill[ée]e",
     "frontal": r"frontal\s+area|cross[\s-]*section(?:al)?\s+area|mid(?:ship)?\s*section\s+area|stirnfl(?:ä|ae)che|spantfl(?:ä|ae)che|hauptspant\w*"
     r"|querschnittsfl(?:ä|ae)che|ma[îi]tre[\s-]couple|surface\s+frontale|section\s+transversale",
@@ -58,18 +58,26 @@ _SIZE = {
 _RAISED = r"(?:\s*(?:\^|\*\*)?\s*[({]?\s*(?P<power>2\s*/\s*3|[123])\s*[)}]?|(?P<small>[²³]))?"
 # One factor of a product: a length by its name, a size, the speed.
 _FACTOR = re.compile(
-    rf"(?:\s+x\s+|[\s*·×⋅]*)(?P<name>L(?:_?(?:pp|PP|BP|bp|oa|OA|wl|WL|os|OS|ua))?|l|T|[Dd]|B|∇|Vol(?:ume)?"
+    rf"(?:\s+x\s+|[\s*·×⋅]*)(?P<name>L(?:_?(?:pp|PP|BP|bp|oa|OA|wl|WL|os|OS|ua))?|l|T|[Dd]|B|∇|nabla|[Vv]ol(?:umen?)?"
     rf"|[UVSA](?:_?[a-z]{{1,4}}|_[A-Z][A-Za-z]{{0,3}}|_0)?)"
     rf"(?![a-z]){_RAISED}"
 )
 _HEAD = re.compile(
     r"(?:0?[.,]5|1\s*/\s*2|½)\s*[*·×⋅]?\s*(?:rho|ρ|Rho)(?![a-z])|(?:rho|ρ)\s*/\s*2(?![\d.])|(?:0?[.,]5|½)(?=\s*[*·×⋅]?\s*(?:density|dichte))"
+    r"|(?<![\d.^])2\s*[*·×⋅]?\s*(?:[XYZKMN]|F_?[xyz]?|M_?[xyz])\s*/\s*\(?\s*(?:rho|ρ|Rho)(?![a-z])"  # Y' = 2 Y / (rho U^2 L T)
 )
 _SAYS_BY = re.compile(
     r"(?i)(?:non-?dimensional\w*|dimensionless|normali[sz]ed|made\s+dimensionless|divided|based|referred|coefficients?|primes?|entdimensioniert|bezogen|dimensionslos"
     r"|normiert|adimensionn\w*|rapport[ée]\w*|coefficients?)[^.;]{0,40}?(?<![^\W_])(?:by|with|on|to|auf|mit|durch|par|à|avec|area)\s+(?:the\s+|die\s+|der\s+|la\s+|le\s+)?"
 )
-_LENGTH = ("L", "l")
+_AREA_IS = re.compile(
+    r"(?i)(?:reference\s+area|(?:referenz|bezugs)fl(?:ä|ae)che|surface\s+de\s+r[ée]f[ée]rence)\s*(?:=|:|\bis\b|\bist\b|\best\b)?\s*(?:the\s+|die\s+|la\s+)?"
+)
+# The prime system II of SNAME has L T for an area; the bis system divides by the mass.
+_SYSTEM = (
+    (re.compile(r"(?i)\bprime(?:[\s-]*system)?[\s-]*(?:II|2)\b"), "L T"),
+    (re.compile(r"(?i)\bbis[\s-]*system\b"), "mass"),
+)
 LONGEST = 60
 
 
@@ -133,14 +141,14 @@ def _of_formula(text: str) -> tuple[str, str] | None:
 
 def _of_sentence(text: str) -> tuple[str, str] | None:
     """The area in ``bezogen auf L·T`` and ``coefficients by the wetted area``."""
-    for head in _SAYS_BY.finditer(text):
+    for head in (*_SAYS_BY.finditer(text), *_AREA_IS.finditer(text)):
         for name in ("wetted", "frontal", "lateral"):
             if m := re.compile(rf"(?i)(?:{_WORDS[name]})").match(text, head.end()):
                 return name, text[head.start() : m.end()]
         factors, end = _product(text, head.end())
         if (len(factors) > 1 or any(p for _, p in factors)) and (basis := _basis(factors)):
             return basis, text[head.start() : end]
-    return None
+    return next(((basis, m[0]) for system, basis in _SYSTEM if (m := system.search(text))), None)
 
 
 def _product(text: str, at: int) -> tuple[list[tuple[str, str]], int]:
@@ -151,7 +159,7 @@ def _product(text: str, at: int) -> tuple[list[tuple[str, str]], int]:
         power = (m["power"] or {"²": "2", "³": "3"}.get(m["small"] or "", "")).replace(" ", "")
         name = m["name"]
         plain = (
-            "L" if name[0] in "Ll" else "D" if name in "Dd" else "V" if name[0] == "∇" or name.startswith("Vol")
+            "L" if name[0] in "Ll" else "D" if name in "Dd" else "V" if name[0] in "∇n" or name.lower().startswith("vol")
             else "U" if name[0] == "U" else "V" if name[0] == "V" else name
         )  # fmt: skip
         out.append((plain, power))

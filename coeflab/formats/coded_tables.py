@@ -1,0 +1,79 @@
+"""The fitted tables of a law as plain rows of numbers, for programs in MATLAB and Python, and the law back from such rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from coeflab.formats.flat_law import PLACES, RULES, flat_tables
+from coeflab.law.domain import Hull
+from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, Reading
+from coeflab.law.terms import Factor, Term
+from coeflab.vehicle.force_law import motion_law
+from coeflab.vehicle.parameter_file import ParameterFile
+
+# variables: which of u v w p q r dr ds db U alpha beta, from 1; terms: component of X Y Z K M N D S L from 1, SI value, power of U, then of each
+# variable its power and that of its absolute value.
+KEYS = ("variables", "prime", "rule", "boxed", "rests", "low", "high", "spaces", "faces", "maps", "terms")
+Rows = dict[str, Any]
+
+
+def coded_tables(parameters: ParameterFile) -> tuple[list[Rows], tuple[bool, bool, bool]]:
+    """Rows of every table in the law, and for which of X, Y, Z drag, side force and lift speak."""
+    law = motion_law(parameters)[0]
+    out: list[Rows] = []
+    for t in flat_tables(law):
+        terms = []
+        for term in t.terms:
+            powers = [0] * (2 * len(t.base))
+            for v, n, absolute in t.factors(term):
+                powers[2 * v + absolute] += n
+            terms.append([PLACES.index(term.component) + 1, float(term.coefficient), term.speed_power, *powers])
+        out.append({
+            "name": t.name, "variables": [v + 1 for v in t.base], "prime": [float(p) for p in t.prime], "rule": RULES.index(t.hull.rule),
+            "boxed": int(t.boxed), "rests": int(t.rests), "low": t.hull.low.tolist(), "high": t.hull.high.tolist(),
+            "spaces": t.hull.spaces.tolist(), "faces": t.faces.tolist(), "maps": t.maps.reshape(-1, len(t.base) + 1).tolist(), "terms": terms,
+        })  # fmt: skip
+    return out, law.wind
+
+
+def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> ForceLaw:
+    """The law of such rows alone."""
+    terms: list[ForceTerm] = []
+    for k, t in enumerate(tables):
+        names = tuple(BASE[int(v) - 1] for v in t["variables"])
+        hull = Hull(
+            names,
+            np.array(t["low"]),
+            np.array(t["high"]),
+            np.array(t["spaces"]).reshape(-1, len(names) + 1),
+            RULES[int(t["rule"])],
+        )
+        readings = tuple(
+            (v, Reading(float(p), float(low), float(high), True) if t["boxed"] else Reading(float(p), table=str(k)))
+            for v, p, low, high in zip(names, t["prime"], t["low"], t["high"], strict=True)
+        )
+        for place, value, power, *powers in t["terms"]:
+            factors = tuple(
+                Factor(v, int(n), absolute)
+                for i, v in enumerate(names)
+                for absolute, n in ((False, powers[2 * i]), (True, powers[2 * i + 1]))
+                if n
+            )
+            terms.append(
+                ForceTerm(
+                    str(k),
+                    PLACES[int(place) - 1],
+                    Term(factors),
+                    float(value),
+                    int(power),
+                    1.0,
+                    "table",
+                    readings=readings,
+                    hull=hull,
+                )
+            )
+    one, two, three = (bool(x) for x in wind)
+    return ForceLaw(tuple(terms), np.zeros((6, 6, 6)), wind=(one, two, three))
