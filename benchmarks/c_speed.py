@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 import coeflab as cf
-from coeflab.formats.c import write as c
+from coeflab.formats.c_program import program as c
 
 CALLS = 2_000_000
 MAIN = """

@@ -98,10 +98,11 @@ def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
     """Refuse a table in none of whose sweeps a force component has more points than the simplest form has parameters.
 
     Beside a sweep that has, one that has not gives coefficients of too few points, and a check that says so: of several speeds each
-    may hold a rudder swept and one run at drift.
+    may hold a rudder swept and one run at drift. Where rows combine motions a joint model has them all: every sweep counts.
     """
     odd = [s for s in fit.sweeps if s.parity == "odd"]
-    fed = {s.table for s in odd if len(s.x) >= FEWEST}
+    joint = {t.name for t in tables if _combined(t) >= FEWEST}
+    fed = {s.table for s in odd if len(s.x) >= FEWEST} - joint
     sweeps = [s for s in odd if s.variable in MOTIONS and s.table not in fed]
     for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
         points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,6 +33,8 @@ OPEN = "?"
 UNKNOWN = "no known name"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
+GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
+SETTINGS = ("angle", "velocity", "control", "radius")
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
@@ -424,19 +426,40 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
 
 
 def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
-    """Many columns that neither name nor unit says anything of are of no use, where a force and a setting are known without them."""
+    """Of many columns that neither name nor unit says anything of, those that cannot be a setting are of no use.
+
+    Nothing is left out where no force or no setting is known without them.
+    """
     strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
     roles = {read_column_map(one.text.partition(" [")[0]).role for one in out if one.text}
-    if (
-        len(strange) <= FEW_STRANGE
-        or "force" not in roles
-        or roles.isdisjoint(("angle", "velocity", "control", "radius"))
-    ):
+    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(SETTINGS):
         return out
+    settings = [
+        c.values
+        for c, one in zip(raw.columns, out, strict=True)
+        if one.text and read_column_map(one.text.partition(" [")[0]).role in SETTINGS
+    ]
+    idle = {i for i in strange if not _like_a_setting(raw.columns[i].values, settings)}
     return [
-        replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in strange else one
+        replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)
     ]
+
+
+def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
+    """Whether a column takes few levels again and again, or goes along with a setting: left out, it would bend a slope unseen."""
+    levels = np.unique(values[np.isfinite(values)]).size
+    if 1 < levels <= values.size / 2:
+        return True
+    return levels > 1 and any(_together(values, s) > GOES_ALONG for s in settings)
+
+
+def _together(one: Array, other: Array) -> float:
+    """Size of the correlation of two columns where both are known."""
+    both = np.isfinite(one) & np.isfinite(other)
+    if both.sum() < 3 or not np.ptp(one[both]) or not np.ptp(other[both]):
+        return 0.0
+    return float(abs(np.corrcoef(one[both], other[both])[0, 1]))
 
 
 def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:

@@ -13,7 +13,7 @@ import pytest
 
 from coeflab.core.finding import Severity
 from coeflab.core.texts import words
-from coeflab.formats.c import write as c
+from coeflab.formats.c_program import program as c
 from coeflab.formats.flat_law import feet, flat_law
 from coeflab.law.domain import Hull
 from coeflab.law.symbols import MOTIONS

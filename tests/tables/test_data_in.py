@@ -210,7 +210,9 @@ def test_a_row_of_units_may_hold_one_that_nobody_knows(tmp_path: Path) -> None:
 
 def test_many_strangers_are_of_no_use_and_a_position_is_no_force() -> None:
     known = (column("alpha", "deg"), column("Fz", "N"))
-    texts = [p.text for p in proposals(table(*known, *(column(n) for n in ("foo", "bar", "baz")), column("Y", "mm")))]
+    free = np.array([3.0, 1.0, 4.0, 1.5, 2.0])
+    strange = (column(n, "", free) for n in ("foo", "bar", "baz"))
+    texts = [p.text for p in proposals(table(*known, *strange, column("Y", "mm")))]
     assert texts == ["alpha [deg]", "Z [N]", "ignore", "ignore", "ignore", "ignore"]
     assert [p.text for p in proposals(table(*known, column("foo"), column("bar")))][2:] == ["", ""]
 
@@ -220,3 +222,17 @@ def test_what_stopped_the_inflow_is_said_where_no_condition_is_known() -> None:
 
     assert OF_MOTION.search("0/U: no boundary states a velocity of the inflow that is read")
     assert not OF_MOTION.search("rhoInf 1, so forces are those of a fluid of 1 kg/m^3")
+
+
+def test_a_stranger_that_may_be_a_setting_is_asked_however_many_there_are() -> None:
+    """A rudder of three levels, or one coupled to the drift, bends a slope where it is left out."""
+    beta = np.repeat([-8.0, -4.0, 0.0, 4.0, 8.0], 3)
+    levels, coupled, free = (
+        np.tile([-10.0, 0.0, 10.0], 5),
+        0.5 * beta + 0.01 * np.arange(15) % 0.03,
+        np.sin(7.0 * np.arange(15.0)),
+    )
+    names = ("beta", "Y", "RW", "qq", "zz")
+    units, values = ("deg", "N", "", "", ""), (beta, -3.0 * beta, levels, coupled, free)
+    found = proposals(table(*(column(*c) for c in zip(names, units, values, strict=True))))
+    assert [n for n, p in zip(names, found, strict=True) if p.text == "ignore"] == ["zz"]

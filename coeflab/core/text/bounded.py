@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import errno
 import io
+import os
 import zipfile
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -47,8 +48,8 @@ def leading_bytes(file: Path, most: int) -> bytes:
     OSError
         It cannot be read.
     """
-    with stream_of(file) as stream:
-        return stream.read(most)
+    with stream_of(file) as stream:  # a read of n bytes takes memory for n, however short the file is
+        return stream.read(min(most, os.fstat(stream.fileno()).st_size + 1))
 
 
 def whole_bytes(file: Path, most: int) -> bytes:

@@ -1,1 +1,1 @@
-"""C99: header and source of a vehicle, and the FMU about them."""
+"""C99: header and source of a vehicle."""

@@ -1,4 +1,4 @@
-"""FMI 2.0, model exchange and co-simulation: a unit in C about the source of `coeflab.formats.c`, sources in it.
+"""FMI 2.0, model exchange and co-simulation: a unit in C about the source of `coeflab.formats.c_program`, sources in it.
 
 Where a C compiler is found the unit holds its binary for this platform; elsewhere the importer compiles the sources. The machine
 that runs it needs neither Python nor coeflab. Coefficients and the start of the motion are parameters; angles of fins, commands of thrusters
@@ -27,7 +27,7 @@ from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.xml import sayable
 from coeflab.core.types import remembered
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.c import write as c
+from coeflab.formats.c_program import program as c
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import not_written, number, propulsion, spelt, written_changes
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions

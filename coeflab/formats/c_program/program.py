@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier
-from coeflab.formats.c.source import law_of, numbers, remark, source
-from coeflab.formats.export import covered_grid, missing_mass, missing_water, rare_states
-from coeflab.formats.exported_law import not_written, written_changes
+from coeflab.formats.c_program.source import law_of, numbers, remark, source
+from coeflab.formats.export import covered_grid, rare_states
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
 from coeflab.formats.unspoken import in_header
 from coeflab.law.rigid_body import axes_in_earth, rigid_body_force, weighed
@@ -23,14 +22,6 @@ from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
-
-summary = (
-    "C99: header and source of forces, accelerations and one step, tables, thrusters and fins in them; no allocation"
-)
-citations = ("sname1950", "fossen2011")
-adds_coriolis = False
-holds = frozenset({"hydrostatics", "thrusters", "surfaces", "tables"})
-not_held = not_written
 
 RESERVED = frozenset(
     [
@@ -284,21 +275,6 @@ def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
     """The added mass in the source."""
     found = next(v for n, v in numbers(_text(files)).items() if n.endswith("_added_mass"))
     return np.array(found).reshape(6, 6)
-
-
-def missing(parameters: ParameterFile) -> tuple[str, ...]:
-    """Mass, moments of inertia and added mass, where the file has none."""
-    held = "motions without an inertia are held"
-    return (*missing_mass(parameters, held, f"roll is held; {held}"), *missing_water(parameters))
-
-
-def changes(parameters: ParameterFile) -> tuple[str, ...]:
-    """How the law is written, in words."""
-    return (
-        *written_changes(parameters, "the source", "terms of their own", "its added mass"),
-        "values are SI: primes times 1/2 rho L^k are multiplied in",
-        "tables, thrusters and limits of fins are in it; a table that refuses gives NaN and the status 1",
-    )
 
 
 def refuse_without_mass(parameters: ParameterFile, target: str) -> None:

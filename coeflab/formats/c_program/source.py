@@ -147,7 +147,7 @@ def source(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         _array("SEGMENTS", segments),
         "",
     ]  # fmt: skip
-    kernel = own_bytes(resources("coeflab.formats.c") / "kernel.c").decode()
+    kernel = own_bytes(resources("coeflab.formats.c_program") / "kernel.c").decode()
     return "\n".join(lines) + "\n" + kernel.replace("@NAME@", name).replace("@UPPER@", name.upper())
 
 
