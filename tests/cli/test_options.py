@@ -39,7 +39,7 @@ LONG = "n" * 5000
 # Wrong values, by what stands behind an option in the help.
 NUMBER = ("x", "nan", "-inf", "1e999", "0x10")
 COUNT = ("x", "1.5", "-1", "1e3", "9" * 30)
-MEASURE = ("x", "nan", "-inf", "1e999", "0x10", "3 parsec", "3 kg s")
+MEASURE = ("x", "nan", "-inf", "1e999", "0x10", "3 nounit", "3 kg s")
 TRIPLE = ("x", "1,2", "1,2,3,4", "nan,0,0", "1e999,0,0")
 NAME = ("nope", "../../x", LONG, "<script>", "a\nb")
 PAIR = ("x", "=1", "nope=x", LONG)
