@@ -155,7 +155,7 @@ def _built(name: str) -> Any:
 
 
 def _finite(before: Any) -> Any:
-    """What an option does with its value, after a number that is none was refused."""
+    """What an option does with its value, after a number that is none, or a place where nothing can be written, was refused."""
 
     def checked(ctx: Any, param: Any, value: Any) -> Any:
         if isinstance(value, float) and not abs(value) < float("inf"):
@@ -166,6 +166,10 @@ def _finite(before: Any) -> Any:
             from coeflab.core.errors import InputError
 
             raise InputError(str(value)[:60], f"at most {MOST:,}", column=param.opts[0])
+        if isinstance(value, Path) and param.opts[0] == "--out":
+            from coeflab.core.files import placeable
+
+            placeable(value)
         return value if before is None else before(ctx, param, value)
 
     return checked

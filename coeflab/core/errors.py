@@ -17,7 +17,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-SHOWN, LONGEST, MOST_LISTED = 60, 400, 50
+SHOWN, LONGEST, MOST_LISTED, MOST_LETTERS = 60, 400, 50, 1500
 
 
 def shown(text: object, longest: int = SHOWN) -> str:
@@ -34,6 +34,11 @@ def clipped(text: object) -> str:
     """A path or the like as it stands, the middle of a very long one left out."""
     whole = str(text)
     return whole if len(whole) <= LONGEST else f"{whole[: LONGEST // 2]}...{whole[-LONGEST // 4 :]}"
+
+
+def _bounded(text: str) -> str:
+    """The text of a complaint, the middle of one left out that nobody reads to its end."""
+    return text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS // 2]}...{text[-MOST_LETTERS // 4 :]}"
 
 
 _LETTER = re.compile(r"character \d+")  # where on its line a text breaks
@@ -85,7 +90,7 @@ class InputError(CoeflabError):
         key: str | None = None,
         advice: str = "",
     ) -> None:
-        self.found, self.expected = found, expected
+        self.found, self.expected = _bounded(found), _bounded(expected)
         self.file, self.line, self.column, self.advice = file, line, column if key is None else key, advice
         self.keyed = key is not None
         self.others: tuple[InputError, ...] = ()

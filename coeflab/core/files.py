@@ -57,6 +57,21 @@ def typed(name: str | Path) -> Path:
     return path
 
 
+def placeable(path: Path) -> None:
+    """Refuse a place below something that is no folder, before anything is computed for it.
+
+    Raises
+    ------
+    InputError
+        As `typed`.
+    OutputError
+        A file is in the way.
+    """
+    above = next((p for p in typed(path).parents if p.exists()), Path())
+    if not above.is_dir():
+        raise OutputError(f"cannot write {clipped(path)}: {clipped(above)} is no folder. {OTHER_FOLDER}")
+
+
 def readable(path: Path) -> Path:
     """The path of a file or folder that can be read to its end: no pipe, no device, no link that leads to itself.
 

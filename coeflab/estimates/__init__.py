@@ -338,7 +338,8 @@ def coverage(fourth: NDArray[np.float64], square: NDArray[np.float64]) -> NDArra
     >>> coverage(np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.0, 2.0])).round(3)
     array([1.   , 0.827, 0.964])
     """
-    excess = -1.2 * np.divide(fourth, square**2, out=np.zeros_like(fourth), where=square > 0.0)
+    squared = square**2  # zero too where a tiny square is below all doubles
+    excess = -1.2 * np.divide(fourth, squared, out=np.zeros_like(fourth), where=squared > 0.0)
     return np.asarray(1.0 + OF_EXCESS[0] * excess + OF_EXCESS[1] * excess**2)
 
 

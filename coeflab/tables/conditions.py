@@ -183,7 +183,11 @@ def name_pattern(text: str) -> NamePattern:
     position = 0
 
     def fail(found: str, expected: str, advice: str = "") -> InputError:
-        return InputError(found, expected, column=f"name pattern {shown(text)}", advice=advice)
+        return InputError(
+            *(" ".join(words.split()) for words in (found, expected)),
+            column=f"name pattern {shown(text)}",
+            advice=advice,
+        )
 
     many = text.count("*") + sum(match[1].strip().endswith(TEXT) for match in _FIELD.finditer(text))
     if len(text) > _LONGEST or many > MOST_OPEN:

@@ -215,6 +215,8 @@ def read_setting(key: str, text: Any) -> Any:
     typed = typed_value(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
     try:
         return READERS.get(key, lambda said: said)(typed)
+    except OverflowError:
+        raise InputError(shown(typed), "a number that a length or speed can be", column=key) from None
     except InputError as why:
         raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
 

@@ -54,8 +54,10 @@ def is_read(parser: Parser, given: Path | str) -> bool:
     """Whether an input is read; False where it is refused as it should."""
     try:
         parser.read(given)
-    except (CoeflabError, *parser.also) as why:
+    except CoeflabError as why:
         require_short(why)
+        return False
+    except parser.also:
         return False
     return True
 

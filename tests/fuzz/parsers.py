@@ -127,7 +127,7 @@ def _imported(name: str) -> Parser:
 
 @cache
 def _vehicle() -> Any:
-    return vehicle(read_parameter_file(ROOT / "cfd_data" / "huuv" / "huuv.parameters.json"))
+    return vehicle(read_parameter_file(ROOT / "cfd_data" / "huuv" / "huuv.parameters.json"), free=("u",))
 
 
 def _motion(path: Path) -> object:

@@ -25,7 +25,7 @@ THROUGH = {
     "toml.read_text": "toml", "arm_file.read_chain": "arm", "body.read_body": "body", "campaign.read_campaign": "campaign",
     "dialect.read_head": "table", "five_dof.read_five_dof": "shipped files", "glide_polar.read_printed": "a list of SYMBOL=NUMBER",
     "huuv.read_huuv": "shipped files", "json.parse_json": "json", "law.read_fossen_link": "models", "law.read_gz_link": "models",
-    "law.read_tags": "models", "m_file.read_m_file": "models", "model.read_flyingfish": "shipped files", "model.read_huuv": "shipped files",
+    "law.read_tags": "models", "lift_drag.read_lift_drag": "models", "m_file.read_m_file": "models", "model_files.read_vehicle_file": "models", "model.read_flyingfish": "shipped files", "model.read_huuv": "shipped files",
     "monitors.read_monitor": "fluent", "openfoam_case.read_log": "openfoam", "options.parse_options": "plan", "parameters.read_parameters": "parameters",
     "parts.read_parts": "openfoam", "reading.read_groups": "campaign", "reading.read_raw": "table", "reading.read_table": "campaign",
     "records.read_record": "job", "runs.read_all": "openfoam", "runs.read_run": "openfoam", "series.read_comments": "openfoam",

@@ -9,7 +9,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coeflab.core.errors import InputError, OutputError
+from coeflab.core.files import typed
+from coeflab.core.limits import TOML_BYTES
 from coeflab.core.text.csv_rows import csv_text
+from coeflab.core.text.toml import read_text
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
 from coeflab.report.printable import CLOCK
@@ -44,6 +47,8 @@ def styled(file: str | Path | None) -> Iterator[None]:
         with mpl.rc_context():
             mpl.rcdefaults()
             plain = dict(mpl.rcParams)
+            if str(file) not in style.library:  # Matplotlib would wait at a pipe, and fetch an address
+                read_text(typed(file), TOML_BYTES)
             style.use(str(file))
             own = {k: v for k, v in mpl.rcParams.items() if plain.get(k) != v}
             cycle = [one.get("color") for one in mpl.rcParams["axes.prop_cycle"] if one.get("color")]
