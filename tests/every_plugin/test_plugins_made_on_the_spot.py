@@ -102,6 +102,7 @@ def test_new_plugins_need_no_edit_elsewhere(tmp_path: Path, write_campaign: Call
         ["inspect", str(campaign)],
         ["run", str(plan), "--out", str(out)],
         ["report", str(plan), "--to", "planted", "--out", str(out)],
+        ["report", str(plan), "--full", "--out", str(out)],
         ["inspect", str(body)],
         ["added-mass", "suboff_bare_hull", "--method", "planted:twice"],
         ["params", "check", str(model)],

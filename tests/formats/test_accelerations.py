@@ -190,17 +190,18 @@ def test_the_row_itself_says_that_accelerations_differ(target: str) -> None:
     assert not loss.lossless
     name, share = loss.furthest
     assert share > 0.06
+    percent = f"{float(f'{100 * share:.2g}'):g} %"
     assert f"{name} differs by up to" in in_short(loss)
     rows = {row[0]: row for row in forces(loss).rows}
     assert rows["dr/dt"][-1] != "0 %"
-    assert any(row[0] == name and row[-1] == f"{100 * share:.2g} %" for row in forces(loss).rows)
+    assert any(row[0] == name and row[-1] == percent for row in forces(loss).rows)
     text = next(c for n, c in made.files.items() if n.endswith(".loss.txt")).decode()
     assert "dr/dt  rad/s^2" in text
     assert "This export is not lossless" in text
     assert "Yvdot' -0.012 (fit) is not used" in text
     shown = cast(Study, SimpleNamespace(exports=(made,), refused=()))
     ((_, _, verdict, worst, chosen, _),) = export_section.summary(shown).rows
-    assert (chosen, worst) == ("computed", f"{100 * share:.2g} % ({name})")
+    assert (chosen, worst) == ("computed", f"{percent} ({name})")
     assert verdict.startswith("accepted")
 
 

@@ -16,6 +16,8 @@ from typing import IO, BinaryIO, TextIO
 from coeflab.core.errors import InputError
 from coeflab.core.limits import LOG_BYTES
 
+PIECE = 1 << 20
+
 
 def stream_of(path: Path) -> BinaryIO:
     """The bytes of a regular file, to be read piece by piece or with a limit.
@@ -48,8 +50,9 @@ def leading_bytes(file: Path, most: int) -> bytes:
     OSError
         It cannot be read.
     """
-    with stream_of(file) as stream:  # a read of n bytes takes memory for n, however short the file is
-        return stream.read(min(most, os.fstat(stream.fileno()).st_size + 1))
+    with stream_of(file) as stream:
+        size = os.fstat(stream.fileno()).st_size  # a read of n bytes takes memory for n, however short the file is
+        return stream.read(min(most, size + 1 if size else PIECE))  # files of /proc state no size
 
 
 def whole_bytes(file: Path, most: int) -> bytes:

@@ -9,7 +9,7 @@ A propeller's Thruster takes newtons, between what the file's curve gives at its
 from __future__ import annotations
 
 from collections.abc import Mapping
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Comment, Element, SubElement
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import number
 from coeflab.formats.gazebo.assembly import HERE, STAND_IN, assembly
 from coeflab.formats.gazebo.lift_drag import at_hull, read_lift_drag
+from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterSurface
 from coeflab.vehicle.second_order import FLU
@@ -72,6 +73,8 @@ def drive(model: Element, parameters: ParameterFile, hull: str, length: float, r
         Of the displaced volume, m, for what is seen.
     """
     limits: dict[str, ParameterSurface] = {s.control: s for s in parameters.surfaces}
+    for words in control_signs(parameters):
+        model.append(Comment(f" {words} "))
     for control, (area, place) in driven_fins(parameters).items():
         _, _, _, _, _, hinge, upward = FINS[control]
         surface = limits.get(control)

@@ -1,0 +1,1 @@
+"""A vehicle as C: what the exports `c` and `fmi` share."""
