@@ -424,7 +424,7 @@ class Suboff:
 
     def _run(self, plan: Any, anew: bool) -> Study:
         """Fits of tables that are as before, what the gate finds in them, and the added mass of the hulls are not made anew."""
-        fitted, hulls_of, gate = vars(workbench)["fitted"], vars(workbench)["hulls_of"], data_gate.findings
+        fitted, hulls_of, gate = vars(workbench)["fitted"], vars(workbench)["_hulls"], data_gate.findings
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
