@@ -18,7 +18,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.matching import by_plain_names, spelled_as
+from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
@@ -111,7 +111,8 @@ def merged(
             "give the body.toml of the shape the datum of the tables, and the vehicle again."
         )
     theirs, first = by_plain_names(theirs.to_length(ours.scaling))
-    theirs = spelled_as(theirs.about(ours.reference_point), first, ours.symbols)
+    slopes_of_ours = [s for s in ours.symbols if plain_name(s) != "X0"]  # drag by u|u| is another law in drift
+    theirs = spelled_as(theirs.about(ours.reference_point), first, slopes_of_ours)
     taken = {
         c.symbol: i
         for i, c in enumerate(theirs.coefficients)

@@ -8,13 +8,15 @@ from __future__ import annotations
 import errno
 import io
 import os
-import zipfile
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import IO, BinaryIO, TextIO
+from typing import IO, TYPE_CHECKING, BinaryIO, TextIO
 
 from coeflab.core.errors import InputError
 from coeflab.core.limits import LOG_BYTES
+
+if TYPE_CHECKING:
+    import zipfile
 
 PIECE = 1 << 20
 
