@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from coeflab.core.table import Check
     from coeflab.motion.identify.identification import Identified
 
 
@@ -101,14 +103,17 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     from json import dumps
 
     from coeflab.api.parameters import read_parameters
+    from coeflab.cli.as_json import findings
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
     from coeflab.core.wording import file_stem
     from coeflab.motion.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
+    from coeflab.vehicle.plausibility import plausibility
 
     within = quantity(window, "time", key="--window") if window else WINDOW
+    checks: Sequence[Check] = ()
     found = bench_test(series, read_parameters(params), thruster, within)
     content = {
         f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
@@ -117,15 +122,19 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     if out is not None:
         made = with_curves(read_parameters(params), found)
         content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
+        checks = plausibility(made)
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)
     if json:
-        show.json_object({**found.as_json(), "files": [str(p) for p in written]})
-        return
-    show.table(found.table())
-    for path in written:
-        show.path(path)
+        show.json_object({**found.as_json(), "findings": findings(checks), "files": [str(p) for p in written]})
+    else:
+        show.table(found.table())
+        for path in written:
+            show.path(path)
+        show.file_findings(params.stem, checks)
+    if show.failed(checks):
+        raise typer.Exit(1)
 
 
 def as_json(found: Identified) -> dict[str, Any]:
