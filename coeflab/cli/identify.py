@@ -103,6 +103,7 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     from json import dumps
 
     from coeflab.api.parameters import read_parameters
+    from coeflab.api.vehicle import Vehicle
     from coeflab.cli.as_json import findings
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
@@ -110,7 +111,6 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     from coeflab.motion.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.figures.identified import bench_figure
     from coeflab.report.figures.svg import sheet
-    from coeflab.vehicle.plausibility import plausibility
 
     within = quantity(window, "time", key="--window") if window else WINDOW
     checks: Sequence[Check] = ()
@@ -122,7 +122,7 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     if out is not None:
         made = with_curves(read_parameters(params), found)
         content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
-        checks = plausibility(made)
+        checks = Vehicle(made).checks()
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)
