@@ -193,8 +193,8 @@ def test_inspect_of_a_mesh_shows_its_checks(coeflab: Run, tmp_path: Path) -> Non
     assert found["projected_areas"] == pytest.approx([0.02, 0.2, 0.4], rel=1e-6)
     assert found["displaced_inertia"][0][0] == pytest.approx(20.0 * (0.04 + 0.01) / 12.0, rel=1e-6)
     bare = coeflab("inspect", tmp_path / "bar.stl")
-    assert bare.returncode == 2
-    assert "--unit" in bare.stderr
+    assert bare.returncode == 0
+    assert "--unit mm --axes FLU" in flat(bare.stdout)
 
 
 def test_inspect_of_a_mesh_that_is_not_closed(coeflab: Run, tmp_path: Path) -> None:
