@@ -22,7 +22,7 @@ from typing import TypeVar
 
 from coeflab.core.finding import Severity
 from coeflab.core.machine import cores, end_with_parent
-from coeflab.core.table import ABSENT, Table
+from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS
@@ -57,6 +57,7 @@ from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
 from coeflab.study.validation import validations
 from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.law_at_points import LawAtPoints
 
 Part = TypeVar("Part")
 MOST = 4
@@ -330,34 +331,36 @@ def _models(study: Study) -> tuple[Section, ...]:
 
 
 def _laws(study: Study) -> tuple[Section, ...]:
-    each = filled(
-        *(format_tables.at_points(points_of(p), f"Force law of {name}") for name, p in study.parameter_files.items())
-    )
+    found = {name: points_of(p) for name, p in study.parameter_files.items()}
+    each = {name: format_tables.at_points(laws, f"Force law of {name}") for name, laws in found.items() if laws}
     if not each:
         return ()
     text: tuple[str, ...] = (
         "Allowed difference of a law and its points: three times the scatter of repeated runs plus 5 % of the largest force. Where a law misses a point by "
         "more, its range ends before that point.",
-        *(_held(name, table) for name, table in zip(study.parameter_files, each, strict=False)),
+        *(_held(name, found[name], table) for name, table in each.items()),
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (_not_in_a_file(none),)
-    whole = Section("all-laws", "Force laws at their points", (format_tables.IN_PERCENT,), each, appendix=True)
+    whole = Section(
+        "all-laws", "Force laws at their points", (format_tables.IN_PERCENT,), tuple(each.values()), appendix=True
+    )
     return (Section("law-at-points", "Force law at its points", text, subsections=(whole,)),)
 
 
-def _held(name: str, table: Table) -> str:
+def _held(name: str, found: Sequence[LawAtPoints], table: Table) -> str:
     """How the law of a file agrees with its points: how many components of tables hold, and the largest difference in its range."""
-    i, of = table.headers.index("largest"), table.headers.index("allowed")
-    shares = [(float(row[i].rstrip(" %")), row) for row in table.rows if row[i] != ABSENT]
-    holding = sum(row[-1].startswith("holds") for row in table.rows)
-    if not shares:
+    judged = [f for f in found if not f.small and len(f.beyond) < f.n_points]
+    if not judged:
         return f"{name}: too small to judge."
-    largest, row = max(shares, key=lambda pair: pair[0])
-    said = f"{name}: {holding} of {len(shares)} components of tables hold; the largest difference is {largest:g} % ({row[0]} of {row[1]}, allowed {row[of]})."
-    outside = [n for n in table.notes if "outside the range" in n]
-    return " ".join((said, *outside))
+    worst = max(judged, key=lambda f: f.share)
+    holding = sum(not f.missed for f in judged)
+    apart, allowed = (
+        format_tables.percent(x) for x in (worst.share, worst.allowed / worst.largest if worst.largest else 0.0)
+    )
+    said = f"{name}: {holding} of {len(judged)} components of tables hold; the largest difference is {apart} ({worst.component} of {worst.table}, allowed {allowed})."
+    return " ".join((said, *(n for n in table.notes if n != format_tables.IN_PERCENT)))
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:
