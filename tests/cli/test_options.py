@@ -34,7 +34,7 @@ SET = [
     "conditions.density=1000",
     "conditions.speed=2",
 ]
-SLOWEST = 2.0  # s of processor until a wrong value is refused
+SLOWEST = 3.0  # s of processor until a wrong value is refused
 LONG = "n" * 5000
 # Wrong values, by what stands behind an option in the help.
 NUMBER = ("x", "nan", "-inf", "1e999", "0x10")
