@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import fcntl
+import io
 import os
 import pickle
 import shutil
@@ -14,10 +15,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
 from coeflab.core.files import shipped
+from coeflab.core.types import locked
 from coeflab.published import validation
 from coeflab.report.content import document
 from coeflab.report.document import Document
@@ -138,6 +141,21 @@ copyreg.pickle(MappingProxyType, lambda found: (_read_only, (dict(found),)))
 copyreg.pickle(type(cache(dict)), _cached)
 
 
+class _Pickler(pickle.Pickler):
+    """What is read-only stays so: arrays of a study are."""
+
+    def reducer_override(self, found: Any) -> Any:
+        if type(found) is np.ndarray and not found.flags.writeable and not found.dtype.hasobject:
+            return locked, (found.copy(), found.dtype)
+        return NotImplemented
+
+
+def _pickled(found: Any) -> bytes:
+    out = io.BytesIO()
+    _Pickler(out).dump(found)
+    return out.getvalue()
+
+
 def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
     """What the first worker of a run makes; the others load it."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
@@ -147,7 +165,7 @@ def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not file.exists():
             made = make()
-            file.write_bytes(pickle.dumps(made))
+            file.write_bytes(_pickled(made))
             return made
     return pickle.loads(file.read_bytes())
 
