@@ -122,7 +122,7 @@ def test_a_missing_solver_says_what_to_install(tmp_path: Path, environment: dict
 
 @pytest.mark.slow
 def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, environment: dict[str, str]) -> None:
-    tank_file(tmp_path, pace=0.03)
+    tank_file(tmp_path, pace=0.08)
     out = tmp_path / "runs" / "x"
     two = ("tow_spheroid", "--matrix", "tank.toml", "--out", "runs/x", "--cores", "2")
     with begun(tmp_path, environment, *two) as process:
