@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.types import Array
 from coeflab.core.units import SI, factor, quantity
@@ -350,7 +351,9 @@ def _whole_degrees(values: Array) -> bool:
     return bool(known.size) and float(np.abs(known).max()) >= 1.0 and bool(np.all(known * 2.0 == np.round(known * 2.0)))
 
 
-def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple[Proposal, ...]:
+def proposals(
+    raw: RawTable, known: Mapping[str, object] | None = None, frame: Axes | None = None
+) -> tuple[Proposal, ...]:
     """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it.
 
     Parameters
@@ -358,6 +361,8 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     raw : RawTable
     known : mapping, optional
         What a person says of coefficients and of units that are not stated; see `proposed`.
+    frame : Axes, optional
+        Of the file, where they are known.
     """
     stated = {key: None if s.contradicted else s.value for key, s in raw.stated.items()} | dict(known or {})
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
@@ -365,7 +370,7 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     taken: dict[str, str] = {}
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
     for column in raw.columns:
-        one = by_said_area(_of_company(proposed(column, stated), column, pure), known or {})
+        one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
@@ -396,7 +401,9 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     return tuple(out)
 
 
-def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
+def _of_company(
+    one: Proposal, column: RawColumn, pure: Set[str], frame: Axes | None, stated: Mapping[str, object]
+) -> Proposal:
     """A column that the coefficients beside it make another thing than its name: M a Mach number, N a count, CN a normal force.
 
     Parameters
@@ -405,6 +412,10 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
     column : RawColumn
     pure : set of str
         Folded names of the coefficients of the table.
+    frame : Axes or None
+        Of the file, where they are known.
+    stated : mapping
+        As for `proposed`.
     """
     known = column.values[np.isfinite(column.values)]
     if "cd" in pure and one.text in (f"M [{OPEN}]", f"N [{OPEN}]") and known.size:
@@ -414,13 +425,15 @@ def _of_company(one: Proposal, column: RawColumn, pure: Set[str]) -> Proposal:
             note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
             return Proposal("ignore", note, note=note)
     if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
-        body = "X" if folded(column.name) == "ca" else "Z"
-        sign = "-" if known.size and float(np.median(known)) > 0.0 and body == "X" else ""
-        unit = f"{sign}{body} [coefficient A={OPEN}]"
+        axial = folded(column.name) == "ca"
+        body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
+        along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
+        if not along:
+            return Proposal("", f"its name beside {beside}: positive {way}, whatever the axes")
+        # x forward and z down are +1: an axial force is positive aft, a normal force positive up.
+        plain = proposed(replace(column, name=f"C{body.casefold()}"), stated)
         return replace(
-            proposed(replace(column, name=f"c{body}")),
-            text=unit,
-            why=f"its name beside {'CN' if body == 'X' else 'CA'}",
+            plain, text=f"{'-' * (along > 0.0)}{plain.text}", why=f"its name beside {beside}: positive {way}"
         )
     return one
 

@@ -126,9 +126,12 @@ def understood(
     judged : collection of str, optional
         Columns whose sign a person has settled, by default all of ``said``.
     """
-    offers = proposals(raw, {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings})
+    in_frame = frame_of(_with_frame(raw, settings))
+    offers = proposals(
+        raw, {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}, in_frame
+    )
     cut = _cut_of(settings)
-    offers = tuple(_of_half(one, cut, frame_of(_with_frame(raw, settings))) for one in offers) if cut else offers
+    offers = tuple(_of_half(one, cut, in_frame) for one in offers) if cut else offers
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.parts import read_parts
@@ -92,11 +93,16 @@ def test_m_beside_coefficients_is_a_mach_number_and_n_a_count() -> None:
     assert next(p.text for p in proposals(table(column("M", "N m"), *beside[:3]))) == "M [N m]"
 
 
-def test_cn_beside_ca_is_a_normal_force() -> None:
-    texts = [
-        p.text for p in proposals(table(column("alpha"), column("CA", "", np.full(5, 0.3)), column("CN"), column("Cm")))
-    ]
-    assert texts[1:3] == ["-X [coefficient A=?]", "Z [coefficient A=?]"]
+@pytest.mark.parametrize(
+    ("axes", "signs"),
+    [("FRD", ("-", "-")), ("FLU", ("-", "")), ("CFD", ("", "")), ("aft,port,down", ("", "-"))],
+)
+def test_ca_is_positive_aft_and_cn_up_whatever_the_axes(axes: str, signs: tuple[str, str]) -> None:
+    """By the axes alone, never by the values: a sign taken from one of the two turned Mw' with it."""
+    given = table(column("alpha"), column("CA", "", np.full(5, 0.3)), column("CN"), column("Cm"))
+    texts = [p.text for p in proposals(given, None, parse_axes(axes.split(",") if "," in axes else axes))]
+    assert texts[1:3] == [f"{signs[0]}X [coefficient A=?]", f"{signs[1]}Z [coefficient A=?]"]
+    assert [p.text for p in proposals(given)][1:3] == ["", ""]
 
 
 def test_zeros_ask_no_unit_and_no_sign(tmp_path: Path) -> None:
