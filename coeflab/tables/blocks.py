@@ -10,14 +10,13 @@ import numpy as np
 
 from coeflab.core.errors import UnitsError
 from coeflab.core.units import factor
-from coeflab.tables.column_map import DIMENSIONS, ROLES, read_column_map
+from coeflab.tables.column_map import DIMENSIONS, ROLES, SETTINGS, read_column_map
 from coeflab.tables.dialect import Marks, one_reading
 from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.vocabulary import vocabulary
 
 BLOCK = "block"
-SETTING = ("angle", "velocity", "speed", "control", "radius")
 _SETTING = re.compile(
     r"(?P<name>[^\W\d_][^\d=:;,()\[\]]{0,40}?)?\s*(?:[(\[](?P<before>[^()\[\]]{1,8})[)\]])?\s*[=:]?\s*(?P<number>[-+\u2212]?\d+(?:[.,]\d+)?)"
     r"\s*[(\[]?(?P<unit>m/s|km/h|kn|kts|knots|deg/s|rad/s|deg(?:rees?)?|\xb0|rad|mm|m)?(?![^\W_])"
@@ -51,7 +50,7 @@ def settings_in(text: str, marks: Marks) -> Iterator[tuple[str, float, str]]:
         names = [" ".join(words), *words[-1:]] if words else []
         found = next((f for n in names if (f := "U" if n.casefold() in _SPEEDS else named_as(n))), "")
         found = found or ("U" if unit in ("m/s", "kn", "km/h") else "")
-        if not found or ROLES[read_column_map(found).name] not in SETTING:
+        if not found or ROLES[read_column_map(found).name] not in SETTINGS:
             continue
         number = one_reading(m["number"].replace("\u2212", "-"), marks)
         try:

@@ -16,6 +16,7 @@ WORDS = ("label", "point", "cells", "uncertain", "ignore")
 WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
 FORCES = (*COMPONENTS, *WIND)
 ANGLES = ("alpha", "beta")
+SETTINGS = ("angle", "velocity", "speed", "control", "radius")  # roles of what a run is made at
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
     "U": "speed",

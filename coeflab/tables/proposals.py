@@ -18,6 +18,7 @@ from coeflab.tables.column_map import (
     EXAMPLES,
     FORCES,
     ROLES,
+    SETTINGS,
     WIND,
     WORDS,
     ColumnMap,
@@ -35,7 +36,7 @@ UNKNOWN = "no known name"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
-SETTINGS = ("angle", "velocity", "control", "radius")
+VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
@@ -445,12 +446,12 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
     """
     strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
     roles = {read_column_map(one.text.partition(" [")[0]).role for one in out if one.text}
-    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(SETTINGS):
+    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED):
         return out
     settings = [
         c.values
         for c, one in zip(raw.columns, out, strict=True)
-        if one.text and read_column_map(one.text.partition(" [")[0]).role in SETTINGS
+        if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
     ]
     idle = {i for i in strange if not _like_a_setting(raw.columns[i].values, settings)}
     return [

@@ -6,12 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.tables.column_map import ROLES, read_column_map
+from coeflab.tables.column_map import ROLES, SETTINGS, read_column_map
 from coeflab.tables.dialect import is_unit, name_and_unit, unit_in_words
 from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable
-
-SETTING = ("angle", "velocity", "speed", "control", "radius")
 
 
 def upright(raw: RawTable) -> RawTable:
@@ -29,7 +27,7 @@ def upright(raw: RawTable) -> RawTable:
         return raw
     names = [" ".join(t.split()) for t in first.texts]
     found = _roles([name_and_unit(n)[0] for n in names])
-    if "force" not in found or found.isdisjoint(SETTING):
+    if "force" not in found or found.isdisjoint(SETTINGS):
         return raw
     rest = list(raw.columns[1:])
     units = [c for c in rest if c.is_text and not np.any(np.isfinite(c.values)) and any(map(_unit, c.texts))][:1]
