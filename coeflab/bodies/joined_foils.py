@@ -49,6 +49,7 @@ def joined(clusters: Sequence[list[Bit]], way_of: Way, one_foil: Callable[[list[
             if one_foil(whole):
                 out = [c for i, c in enumerate(out) if i not in (j, k)]
                 out.append(whole)
+                known.clear()  # by id, which a list that went leaves to another
                 k = -1
                 break
         k += 1
