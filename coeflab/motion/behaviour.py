@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import listed
+from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import force_transfer, velocity_transfer
 from coeflab.motion.dynamics import modes
@@ -211,32 +214,46 @@ def _figures(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour
     return out
 
 
-def _law_at(parameters: ParameterFile, point: Array | None) -> Callable[[Array], tuple[Array, Array]]:
-    """Forces (n, 6) and their U95 about a point of the file's datum."""
+def _law_at(
+    parameters: ParameterFile, point: Array | None
+) -> Callable[[Array], tuple[Array, Array, dict[str, NDArray[np.bool_]]]]:
+    """Forces (n, 6), their U95 about a point of the file's datum, and where what has no U95 is part of them: there is none there."""
     law, _ = motion_law(parameters)
     shift = np.zeros(3) if point is None else point - np.array(parameters.reference_point.point)
     back, on = velocity_transfer(-shift), force_transfer(shift)
-    listed = list(parameters.covariance.symbols)
+    symbols = list(parameters.covariance.symbols)
     matrix = np.array([[np.nan if v is None else v for v in row] for row in parameters.covariance.matrix]).reshape(
-        len(listed), len(listed)
+        len(symbols), len(symbols)
     )
 
-    def force(nu: Array) -> tuple[Array, Array]:
+    known = {c.symbol for c in parameters.coefficients if c.u95 is not None and c.symbol in symbols}
+    known -= {s for s, half in zip(symbols, np.diag(matrix), strict=True) if np.isnan(half)}
+    still = np.zeros((6, 6, 6))
+    open_terms = dict.fromkeys(t.in_file for t in law.terms if t.in_file not in known)
+    parts = {
+        n: ForceLaw(tuple(t for t in law.terms if t.in_file == n), still, wind=law.wind) for n in open_terms
+    } | {"products of the ideal fluid": ForceLaw((), law.ideal)}  # fmt: skip
+
+    def force(nu: Array) -> tuple[Array, Array, dict[str, NDArray[np.bool_]]]:
         own = nu @ back.T
         value = law.force(own) @ on.T
         columns = {}
         for c in parameters.coefficients:
-            if c.u95 and c.symbol in listed and c.value is not None:
+            if c.u95 and c.symbol in known and c.value is not None:
                 more = parameters.model_copy(update={"coefficients": tuple(
                     replace(x, value=x.value + x.u95, value_si=None, potential=None) if x is c and x.value is not None and x.u95 else x
                     for x in parameters.coefficients)})  # fmt: skip
                 columns[c.symbol] = (motion_law(more)[0].force(own) @ on.T - value) / c.u95
+        size = EQUAL * float(np.max(np.abs(value)))
+        without = {name: np.abs(part.force(own) @ on.T) > size for name, part in parts.items()}
         if not columns:
-            return value, np.full(value.shape, np.nan)
-        at = [listed.index(s) for s in columns]
+            return value, np.full(value.shape, np.nan), without
+        at = [symbols.index(s) for s in columns]
         gradient = np.stack(list(columns.values()), axis=-1)
         spread = np.einsum("nij,jk,nik->ni", gradient, np.nan_to_num(matrix[np.ix_(at, at)]), gradient)
-        return value, 2.0 * np.sqrt(np.maximum(spread, 0.0))
+        half = 2.0 * np.sqrt(np.maximum(spread, 0.0))
+        half[np.any(list(without.values()), axis=0)] = np.nan
+        return value, half, without
 
     return force
 
@@ -250,7 +267,7 @@ def _curves(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]
         nu = np.zeros((POINTS, 6))
         nu[:, 0] = speed
         nu[:, column] = np.linspace(-reach, reach, POINTS) * (speed if column < 3 else speed / a.scaling.length)
-        (one, half), (other, other_half) = (law(nu) for law in laws)
+        (one, half, lacks), (other, other_half, other_lacks) = (law(nu) for law in laws)
         largest = float(np.max(np.abs(one)))
         for i, component in enumerate(COMPONENTS):
             difference = other[:, i] - one[:, i]
@@ -262,6 +279,8 @@ def _curves(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]
             where = f"largest at {name} = {np.linspace(-reach, reach, POINTS)[at]:.3g}" + (
                 "" if same else "; points of other datums"
             )
+            if lost := list(dict.fromkeys(n for d in (lacks, other_lacks) for n, moved in d.items() if moved[at, i])):
+                where += f"; no U95 of {listed(lost)}"
             out.append(Behaviour(f"{component} over {name}", "N m" if component in "KMN" else "N", float(one[at, i]), float(other[at, i]),
                                  size, None if np.isnan(combined) or combined == 0.0 else combined, where))  # fmt: skip
     return out

@@ -1,0 +1,40 @@
+"""Two vehicles side by side: what has no U95, no datum in common or no plane gets none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coeflab.motion.behaviour import Behaviour, behaviour
+from coeflab.vehicle.own_numbers import typed_file
+from coeflab.vehicle.parameter_file import ParameterFile
+
+SPEED = 1.5
+HORIZONTAL = ("Yv'=-.05 +- .004", "Nv'=-.01 +- .002", "Yr'=.01 +- .001", "Nr'=-.006 +- .001")
+
+
+def file(*numbers: str, about: str = "cg") -> ParameterFile:
+    at = {"cg": "0,0,0"} if about != "cg" else {}
+    return typed_file(
+        "auv", numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, mass="46 kg",
+        inertia="1,10,10", **at,
+    )  # fmt: skip
+
+
+def figures(a: ParameterFile, b: ParameterFile) -> dict[str, Behaviour]:
+    return {r.name: r for r in behaviour(a, b, SPEED)}
+
+
+def test_no_u95_where_a_coefficient_without_one_moves_the_force() -> None:
+    a, b = (file("Yv'=-.03 +- .003", f"Yv|v|'={y}", "Nv'=-.01 +- .001") for y in (-0.2, -0.3))
+    found = figures(a, b)
+    side = found["Y over v/U"]
+    assert side.combined is None
+    assert side.ratio is None
+    assert "no U95 of Yv|v|'" in side.reason
+    turned = found["N over v/U"]
+    # Both curves are alike: the first point stands, v = -U/4 at V = U sqrt(1 + 1/16).
+    speed, drift = SPEED * np.sqrt(17.0 / 16.0), 0.25 * SPEED
+    half = 0.5 * 1025.0 * 2.0**3 * 0.001 * speed * drift
+    assert turned.combined == pytest.approx(np.hypot(half, half))
+    assert "no U95" not in turned.reason
