@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import CoeflabError
+from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import listed
 from coeflab.law.force_law import ForceLaw
@@ -34,6 +34,10 @@ MANOEUVRES: tuple[tuple[str, Mapping[str, float], tuple[str, ...]], ...] = (
     ),
     ("zigzag", {"rudder": float(np.radians(10.0))}, ("first overshoot", "second overshoot")),
 )
+PLANES = {
+    ("v", "r"): ("YNS", "beta"),
+    ("w", "q"): ("ZML", "alpha"),
+}  # components, those along the flow too, and incidence
 EQUAL = 1e-9
 
 
@@ -112,18 +116,20 @@ def _indices(a: ParameterFile, b: ParameterFile) -> list[Behaviour]:
         halves = [None if d is None or d.result is None else d.result.monte_carlo for d in (one, other)]
         combined = float(np.hypot(*halves)) if all(h is not None for h in halves) else None  # type: ignore[arg-type]
         why = "" if one and other else "mass or a slope is missing in one file"
-        out.append(
-            _pair(
-                name, "1", (None if one is None else one.value, None if other is None else other.value), why, combined
-            )
+        found = _pair(
+            name, "1", (None if one is None else one.value, None if other is None else other.value), why, combined
         )
+        if not why and a.reference_point.origin != b.reference_point.origin:
+            why = f"each about its own point, whose datums differ: {a.reference_point.datum}, {b.reference_point.datum}"
+            found = replace(found, difference=None, combined=None, reason=why)
+        out.append(found)
     return out
 
 
 def _beside(b: ParameterFile, a: ParameterFile) -> ParameterFile:
     """A file by the length and about the point of another, coefficients and mass; as it is where their datums differ.
 
-    The index is a ratio whose parts depend on the point.
+    The index is a ratio whose parts depend on the point: two of other datums are no difference.
     """
     if a.reference_point.origin != b.reference_point.origin:
         return b
@@ -172,10 +178,25 @@ def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Ar
     return np.asarray(modes(jacobian))
 
 
+def _known(parameters: ParameterFile, free: tuple[str, ...]) -> None:
+    """Raise where a file states no force in the plane by one of its motions: a zero would be no slope but one that nobody knows."""
+    components, angle = PLANES[free]
+    terms = [t for t in motion_law(parameters)[0].terms if t.component in components]
+    for motion in free:
+        if not any({motion, *((angle,) if motion == free[0] else ())} & set(t.variables) for t in terms):
+            names = [f"{c}{motion}'" for c in components[:2]]
+            raise InputError(f"no force by {motion}", f"{names[0]} and {names[1]}, or terms or a table in {motion}")
+
+
 def _eigenvalues(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]:
     out = []
     for plane, free in (("horizontal", ("v", "r")), ("vertical, no weight", ("w", "q"))):
-        found, why = _both(lambda p, free=free: np.sort_complex(_rates(p, speed, free))[::-1], a, b)  # type: ignore[misc]
+
+        def rates(p: ParameterFile, free: tuple[str, ...] = free) -> Array:
+            _known(p, free)
+            return np.asarray(np.sort_complex(_rates(p, speed, free))[::-1])
+
+        found, why = _both(rates, a, b)
         for k in range(2):
             values = tuple(None if f is None else float(np.real(f[k])) for f in found)
             out.append(

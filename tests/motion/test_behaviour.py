@@ -38,3 +38,27 @@ def test_no_u95_where_a_coefficient_without_one_moves_the_force() -> None:
     half = 0.5 * 1025.0 * 2.0**3 * 0.001 * speed * drift
     assert turned.combined == pytest.approx(np.hypot(half, half))
     assert "no U95" not in turned.reason
+
+
+def test_indices_about_points_of_other_datums_have_no_difference() -> None:
+    a, b = file(*HORIZONTAL), file(*HORIZONTAL, about="nose")
+    found = figures(a, b)["G_h"]
+    assert found.a is not None
+    assert found.b is not None
+    assert (found.difference, found.combined) == (None, None)
+    assert "datums" in found.reason
+    alike = figures(a, a)["G_h"]
+    assert alike.difference == 0.0
+    assert alike.combined is not None
+
+
+def test_a_plane_that_a_file_knows_nothing_of_has_no_eigenvalues() -> None:
+    found = figures(file(*HORIZONTAL), file(*HORIZONTAL[:2]))
+    for k in (1, 2):
+        one = found[f"eigenvalue {k}, horizontal"]
+        assert one.a is not None
+        assert (one.b, one.difference) == (None, None)
+        assert "no force by r" in one.reason
+        other = found[f"eigenvalue {k}, vertical, no weight"]
+        assert (other.a, other.b, other.difference) == (None, None, None)
+        assert "no force by w" in other.reason
