@@ -82,6 +82,8 @@ def bollard_squares(
     """
     back = ahead if astern is None else astern
     made = [Squares(-rate, -dead_zone, -back / rate**2)] if back > 0.0 else []
+    if not made and dead_zone > 0.0:
+        made = [Squares(0.0, dead_zone, 0.0)]  # a curve holds the end of its first segment below it
     return (*made, Squares(dead_zone, rate, ahead / rate**2))
 
 
@@ -245,11 +247,11 @@ class ThrusterKeys(takes.Declaration):
     rate : float
         The highest command, in ``unit``.
     bollard_astern : float
-        Pull at ``-rate``; 0: no reverse. As ahead unless given.
+        Pull at ``-rate``; 0: no reverse. As ahead unless given. The torque astern is in the same ratio to that ahead.
     dead_zone : float
         Commands below it give nothing.
     torque : float
-        Of the water on the rotor at ``rate``, N m.
+        Of the water on the rotor at ``rate``, N m; astern below zero, by the ratio of the pulls.
     handedness : int
         1 or -1: sign of the reaction about the axis.
     tilt_axis : (3,) tuple
@@ -347,7 +349,9 @@ class ThrusterKeys(takes.Declaration):
         torque: tuple[Squares, ...] = ()
         if self.bollard is not None and self.rate is not None:
             squares = bollard_squares(self.bollard, self.rate, self.dead_zone or 0.0, self.bollard_astern)
-            torque = () if not self.torque else bollard_squares(self.torque, self.rate, self.dead_zone or 0.0)
+            share = 1.0 if self.bollard_astern is None else self.bollard_astern / self.bollard
+            if self.torque:
+                torque = bollard_squares(self.torque, self.rate, self.dead_zone or 0.0, share * self.torque)
         tilting = None if self.tilt_axis is None else np.asarray(self.tilt_axis) / np.linalg.norm(self.tilt_axis)
         limit = self.tilt_limit or 0.0
         return Thruster(

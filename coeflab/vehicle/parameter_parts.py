@@ -222,7 +222,9 @@ class ParameterThruster(Strict):
     position: Annotated[Triple, Means("from the reference point, x y z, FRD", "m")]
     direction: Annotated[Triple, Means("of positive thrust at no tilt, of length one, FRD", "1")]
     curve: Annotated[ParameterCurve, Means("thrust over the command; must not fall", "N")]
-    torque_curve: Annotated[ParameterCurve | None, Means("torque of the water on the rotor, positive", "N m")] = None
+    torque_curve: Annotated[
+        ParameterCurve | None, Means("torque of the water on the rotor, below zero where it turns astern", "N m")
+    ] = None
     handedness: Annotated[
         Literal[-1, 1], Means("reaction torque on the vehicle: handedness times torque, about `direction`")
     ] = 1

@@ -59,8 +59,23 @@ def test_all_keys() -> None:
     assert t.tilt_high == -t.tilt_low == pytest.approx(np.radians(20.0))
 
 
+def test_torque_astern_is_in_the_ratio_of_the_pulls() -> None:
+    due = {"": -2.0, "; bollard_astern=30 N": -1.0, "; bollard_astern=0 N": 0.0}
+    for astern, torque in due.items():
+        curve = typed_thruster(f"main; bollard=60 N; rate=700; torque=2 N*m{astern}", WATER).torque_curve
+        assert curve is not None
+        assert curve.at(-700.0) == pytest.approx(torque), astern
+        assert curve.at(700.0) == pytest.approx(2.0)
+
+
 def test_no_reverse() -> None:
     assert [s.low for s in bollard_squares(60.0, 720.0, astern=0.0)] == [0.0]
+
+
+def test_no_reverse_beside_a_dead_zone_is_no_thrust_at_rest() -> None:
+    curve = typed_thruster("main; bollard=60 N; rate=700; bollard_astern=0 N; dead_zone=350", WATER).curve
+    assert [curve.at(n) for n in (-700.0, 0.0, 340.0)] == [0.0, 0.0, 0.0]
+    assert curve.at(351.0) == pytest.approx(60.0 * (351.0 / 700.0) ** 2)
 
 
 @pytest.mark.parametrize(
