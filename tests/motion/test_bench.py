@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.identify.thruster import bench_test
+from coeflab.motion.identify.thruster import bench_test, with_curves
+from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 
 THRUST, TORQUE = (3.0e-5, 1.2e-7), (2.0e-6, 1.5e-9)
@@ -82,3 +83,35 @@ def test_a_speed_that_never_stands_is_refused(tmp_path: Path, air: ParameterFile
     path.write_text("\n".join(["t [s],speed [rpm],T [N],Q [N*m]", *rows]) + "\n")
     with pytest.raises(InputError, match="0 steady stretches"):
         bench_test([path], air, "rotor1")
+
+
+def both_ways(folder: Path, torque_astern: float = -1.0) -> ParameterFile:
+    """60 N and 2 N m at 720 rpm, 30 N and 2 N m at -720, with the square of the command on each side."""
+    base = typed_file(
+        "auv", ["Xuu=-10 N/(m/s)^2"], length="2 m", length_name="LOA", speed="2 m/s", density="1000", about="cg",
+        mass="50", thrusters=["main; bollard = 60 N; rate = 720"],
+    )  # fmt: skip
+    commands = np.repeat((-720.0, -500.0, -300.0, 300.0, 500.0, 720.0), 60)
+    shares = (commands / 720.0) ** 2
+    thrust, torque = (
+        shares * np.where(commands < 0.0, -30.0, 60.0),
+        shares * np.where(commands < 0.0, 2.0 * torque_astern, 2.0),
+    )
+    rows = [f"{0.05 * k:.3f},{n},{a},{b}" for k, (n, a, b) in enumerate(zip(commands, thrust, torque, strict=True))]
+    path = folder / "bench.csv"
+    path.write_text("\n".join(["t [s],speed [rpm],T [N],Q [N*m]", *rows]) + "\n")
+    return with_curves(base, bench_test([path], base, "main"))
+
+
+def test_each_side_of_zero_has_its_own_thrust(tmp_path: Path) -> None:
+    made = both_ways(tmp_path)
+    main = made.thrusters[0]
+    assert [main.curve.at(n) for n in (-720.0, -360.0, 0.0, 360.0, 720.0)] == pytest.approx([-30, -7.5, 0, 15, 60])
+    assert main.torque_curve is not None
+    assert [main.torque_curve.at(n) for n in (-720.0, -360.0, 720.0)] == pytest.approx([-2.0, -0.5, 2.0])
+    assert sum("scatter" in n for n in made.provenance.notes) == 2
+
+
+def test_torque_astern_has_the_sign_of_the_command(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="sign of its command"):
+        both_ways(tmp_path, torque_astern=1.0)

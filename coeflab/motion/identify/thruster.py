@@ -141,7 +141,7 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
     ----------
     files : sequence of Path
         Columns ``t``, the command by the thruster's name or its command (``speed [rpm]``), ``T [N]`` and, where it was measured,
-        ``Q [N*m]``.
+        ``Q [N*m]``; of a rotor that turns astern below zero, all three.
     parameters : ParameterFile
     name : str
         Of its thruster.
@@ -201,7 +201,8 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
     """The file with the curves of a bench test in the place of its thruster's, over the commands that were tested.
 
     Where a n + b n^2 falls somewhere, which no thruster's curve may, and where the test goes through zero to both sides, the curve is
-    b n|n| of least squares alone, and a note says so.
+    b n|n| of least squares alone, on each side of zero by its own stretches, and a note says so with their scatter about it. Thrust
+    and torque have the sign of the command.
 
     Parameters
     ----------
@@ -211,7 +212,7 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
     Raises
     ------
     InputError
-        Thrust that falls with the square of the command.
+        A load that has not the sign of its command.
     """
     thruster = next(t for t in parameters.thrusters if t.name == found.thruster)
     curves, said = {}, []
@@ -223,22 +224,11 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
         plain = CurveSegment(low=ends[0], high=ends[1], coefficients=(0.0, a, b))
         curve = ParameterCurve(command=old.command, unit=old.unit, segments=(plain,))
         if low < 0.0 < high or (load == "thrust" and curve.falls_at() is not None):
-            n, values = found.command, found.loads[load]
-            odd = n * np.abs(n) if load == "thrust" else n**2
-            square = float(odd @ values / (odd @ odd))
-            if square <= 0.0:
-                raise InputError(
-                    f"a {load} of {square:.3g} n^2", "one that rises with the command", column="--thruster"
-                )
-            back = -square if load == "thrust" else square
-            pieces = [
-                CurveSegment(low=lo, high=hi, coefficients=(0.0, 0.0, c))
-                for lo, hi, c in ((ends[0], 0.0, back), (0.0, ends[1], square))
-                if lo < hi
-            ]
-            curve = ParameterCurve(command=old.command, unit=old.unit, segments=tuple(pieces))
+            sides = [_side(load, found, sign) for sign in (-1.0, 1.0) if np.any(sign * found.command > 0.0)]
+            curve = ParameterCurve(command=old.command, unit=old.unit, segments=tuple(piece for piece, _ in sides))
             said.append(
-                f"{load} of {found.thruster} as {square:.5g} n^2: a n + b n^2 falls or the test goes through zero"
+                f"{load} of {found.thruster} by n^2 on each side of zero: a n + b n^2 falls or the test goes through zero; "
+                + "; ".join(text for _, text in sides)
             )
         curves["curve" if load == "thrust" else "torque_curve"] = curve
     made = thruster.model_copy(update=curves)
@@ -253,6 +243,26 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
             "provenance": parameters.provenance.model_copy(update={"notes": notes}),
         }
     )
+
+
+def _side(load: str, found: BenchTest, sign: float) -> tuple[CurveSegment, str]:
+    """The curve of the square of the command alone for the commands of one sign, and its scatter, a sentence."""
+    at = sign * found.command > 0.0
+    squares, values = found.command[at] ** 2, found.loads[load][at]
+    slope = float(squares @ values / (squares @ squares))
+    side = "ahead" if sign > 0.0 else "astern"
+    if sign * slope <= 0.0:
+        raise InputError(
+            f"a {load} {side} of {slope:.3g} n^2", "one with the sign of its command", column="--thruster",
+            advice="Give command, thrust and torque of a rotor that turns astern below zero.",
+        )  # fmt: skip
+    end = float(np.max(np.abs(found.command[at])))
+    low, high = (0.0, end) if sign > 0.0 else (-end, 0.0)
+    stretches, unit = int(np.count_nonzero(at)), LOADS[load][3].replace("*", " ")
+    left = values - slope * squares
+    scatter = f"scatter {np.sqrt(left @ left / (stretches - 1)):.2g} {unit} of {stretches} stretches"
+    text = f"{side} {slope:.5g} n^2, {scatter if stretches > 1 else 'one stretch, no scatter'}"
+    return CurveSegment(low=low, high=high, coefficients=(0.0, 0.0, slope)), text
 
 
 def _law(load: str, thruster: ParameterThruster, design: Array, values: Array) -> LoadLaw:
