@@ -216,6 +216,7 @@ def _written(
     base: ParameterFile, other: ParameterFile, chosen: Sequence[Coefficient], covariance: np.ndarray,
     replaced: Sequence[Replaced], name: str,
 ) -> ParameterFile:  # fmt: skip
+    other, lost = _about(other, base)
     at, hull = base.conditions, base.added_mass or other.added_mass
     rows = []
     for c in chosen:
@@ -228,6 +229,7 @@ def _written(
     gone = [r.symbol for r in replaced if r.after is None]
     notes = [f"from {other.name}: {', '.join(taken)}"]
     notes += [f"estimates left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    notes += [lost] if lost and base.mass is None else []
     same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
         other.conditions.density, at.density
     )
@@ -262,6 +264,38 @@ def _written(
         ),
     }
     return ParameterFile(**content)
+
+
+def _about(other: ParameterFile, base: ParameterFile) -> tuple[ParameterFile, str]:
+    """What a merge takes whole of a file, about the base's point and primed as the base is; what cannot be moved, in words.
+
+    The file keeps its reference point, by which its measured points are judged.
+    """
+    shift = np.array(base.reference_point.point) - np.array(other.reference_point.point)
+    mass = None if other.mass is None else other.mass.moved(shift) if np.any(shift) else other.mass
+    afloat = other.hydrostatics
+    if afloat is not None:
+        centre = _from(afloat.centre_of_buoyancy, shift)
+        afloat = afloat.model_copy(update={"centre_of_buoyancy": centre})
+    update = {
+        "added_mass": None
+        if other.added_mass is None
+        else other.added_mass.about(np.array(base.reference_point.point)),
+        "mass": None if mass is None else mass.primed(base.scaling, base.conditions.density),
+        "hydrostatics": afloat,
+        "thrusters": tuple(t.model_copy(update={"position": _from(t.position, shift)}) for t in other.thrusters),
+    }
+    lost = (
+        f"mass properties of {other.name} left out: about a point off its x axis they take cg and the inertia matrix"
+        if mass is None and other.mass is not None
+        else ""
+    )
+    return other.model_copy(update=update), lost
+
+
+def _from(point: Sequence[float], shift: np.ndarray) -> tuple[float, ...]:
+    """A point from a reference point that is ``shift`` away."""
+    return tuple(float(x) for x in np.array(point) - shift)
 
 
 def findings_of_merged(found: Sequence[Finding], name: str) -> tuple[Finding, ...]:

@@ -1,0 +1,105 @@
+"""A merge moves what it takes whole, counts a slope once under whatever names, and says what went."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import ScalingMismatchError
+from coeflab.law.added_mass import AddedMass
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.own_numbers import typed_file
+from coeflab.vehicle.parameter_file import ParameterFile
+
+DENSITY = 1000.0  # of the added mass; the files' is another
+
+
+def file(name: str, *numbers: str, about: str = "cg", **more: Any) -> ParameterFile:
+    """Two metres, 1.5 m/s; all made up."""
+    return typed_file(
+        name, numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, **more
+    )
+
+
+def at(made: ParameterFile, *point: float) -> ParameterFile:
+    """With its reference point elsewhere and all else as it is."""
+    return made.model_copy(update={"reference_point": made.reference_point.model_copy(update={"point": tuple(point)})})
+
+
+def whole(*point: float) -> ParameterFile:
+    """A file about a point, with all that a merge takes whole."""
+    made = at(
+        file(
+            "other", "Yv'=-0.05 +- 0.004", about="nose", mass="46", cg="0,0,0.02", inertia="1,10,11", volume="0.045",
+            cb="0.01,0,0", thrusters=["main; bollard=60 N; rate=720; place=-0.9,0.3,0"],
+        ),
+        *point,
+    )  # fmt: skip
+    hull = AddedMass(
+        np.diag([3.0, 50.0, 55.0, 0.5, 12.0, 13.0]), np.array(point), made.reference_point.origin, "b", "panel",
+        density=DENSITY, u95=np.diag([0.0, 5.0, 0.0, 0.0, 0.0, 1.0]),
+    )  # fmt: skip
+    return made.model_copy(update={"added_mass": hull})
+
+
+def test_what_is_taken_whole_is_about_the_point_of_the_base() -> None:
+    """From x = -1 to the nose, by hand: levers of -1 m."""
+    done = merged(file("base", "Yv'=-0.05", "Nv'=-0.01", "Nr'=-0.01", about="nose"), whole(-1.0, 0.0, 0.0)).parameters
+    hull, mass, afloat = done.added_mass, done.mass, done.hydrostatics
+    assert hull is not None
+    assert mass is not None
+    assert afloat is not None
+    assert mass.inertia_matrix is not None
+    assert hull.density == DENSITY
+    assert hull.u95 is not None
+    assert (hull.matrix[5, 5], hull.matrix[1, 5], hull.matrix[4, 4], hull.matrix[2, 4]) == pytest.approx(
+        (13.0 + 50.0, -50.0, 12.0 + 55.0, 55.0)
+    )
+    assert (hull.u95[5, 5], hull.u95[1, 5]) == pytest.approx((1.0 + 5.0, 5.0))
+    assert mass.centre == pytest.approx(np.array([-1.0, 0.0, 0.02]))
+    assert mass.mass_moment == pytest.approx(-46.0)
+    assert mass.mass_moment_prime == pytest.approx(-46.0 / (0.5 * 1025.0 * 2.0**4))
+    # I about the point: I_cg + m (d^2 1 - d d^T); inertia was typed about cg
+    assert np.diag(mass.inertia_matrix) == pytest.approx([1.0 + 46 * 0.02**2, 10.0 + 46 * (1 + 0.02**2), 11.0 + 46])
+    assert mass.inertia_matrix[0, 2] == pytest.approx(46 * 0.02)
+    assert afloat.centre_of_buoyancy == pytest.approx((-0.99, 0.0, 0.0))
+    assert done.thrusters[0].position == pytest.approx((-1.9, 0.3, 0.0))
+    nv, nr = done.coefficient("Nv"), done.coefficient("Nr")
+    assert nv is not None
+    assert nr is not None
+    # Munk: N = -(m22 - m11) u v; and N by r takes m26 u r
+    assert nv.potential == pytest.approx(-(50.0 - 3.0) / (0.5 * DENSITY * 2.0**3))
+    assert nr.potential == pytest.approx(50.0 / (0.5 * DENSITY * 2.0**4))
+    assert ParameterFile.model_validate_json(done.to_json()) == done
+
+
+def test_what_the_base_has_stays() -> None:
+    base = whole(0.0, 0.0, 0.0)
+    done = merged(base, whole(-1.0, 0.0, 0.0)).parameters
+    parts = {"mass", "thrusters", "hydrostatics", "added_mass"}
+    assert done.model_dump(include=parts) == base.model_dump(include=parts)
+
+
+def test_a_mass_off_its_axis_moves_with_its_centre_or_is_left_out_by_name() -> None:
+    base, other = file("base", "Yv'=-0.05", about="nose"), whole(0.0, 0.0, -0.1)
+    mass = merged(base, other).parameters.mass
+    assert mass is not None
+    assert mass.inertia_matrix is not None
+    assert mass.centre == pytest.approx(np.array([0.0, 0.0, -0.08]))
+    assert np.diag(mass.inertia_matrix) == pytest.approx([1.0 + 46 * 0.08**2, 10.0 + 46 * 0.08**2, 11.0])
+    assert other.mass is not None
+    bare = replace(other.mass, inertia=10.0, inertia_matrix=None, centre=None)
+    done = merged(base, other.model_copy(update={"mass": bare})).parameters
+    assert done.mass is None
+    assert [n for n in done.provenance.notes if "mass properties of other" in n]
+
+
+def test_points_from_another_datum_are_refused() -> None:
+    other = whole(-1.0, 0.0, 0.0)
+    with pytest.raises(ScalingMismatchError):
+        merged(file("base", "Yv'=-0.05"), other)
+    assert other.reference_point.origin == Datum.named("nose")
