@@ -41,7 +41,7 @@ class Replaced:
     before : Coefficient or None
         What the base had.
     after : Coefficient or None
-        None where the base's term was left out, as a law of the other file takes its place.
+        None where the base's term was left out: a law of the other file takes its place, or the same slope under another name.
     """
 
     symbol: str
@@ -84,7 +84,8 @@ def merged(
 
     A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
     terms of second or higher degree in these motions are left out; so are estimates of such terms that take the law away from
-    the other's measured points. Covariance between both is zero.
+    the other's measured points. A slope that the other gives is one number: Yv' and Yuv' of the base go for it, save damping
+    about a state of rest. Covariance between both is zero.
 
     Parameters
     ----------
@@ -94,8 +95,8 @@ def merged(
     own : Scaling, optional
         What the other's data were primed by, where its file has them by another length already.
     alone : bool
-        The other has single numbers and no law: one that the base has is replaced in its place, and no other goes with it. One
-        that is new takes the place of the base's terms in its motions all the same.
+        The other has single numbers and no law: one that the base has is replaced in its place, and no other goes with it but
+        the same slope under another name. One that is new takes the place of the base's terms in its motions all the same.
 
     Raises
     ------
@@ -111,7 +112,10 @@ def merged(
             "give the body.toml of the shape the datum of the tables, and the vehicle again."
         )
     theirs, first = by_plain_names(theirs.to_length(ours.scaling))
-    slopes_of_ours = [s for s in ours.symbols if plain_name(s) != "X0"]  # drag by u|u| is another law in drift
+    resting = {c.symbol for c in ours.coefficients if c.law == "rest"}  # no other spelling of a slope
+    slopes_of_ours = [
+        s for s in ours.symbols if plain_name(s) != "X0" and s not in resting
+    ]  # u|u|: another law in drift
     theirs = spelled_as(theirs.about(ours.reference_point), first, slopes_of_ours)
     taken = {
         c.symbol: i
@@ -124,6 +128,7 @@ def merged(
             f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
             advice="Give a campaign, or a parameter file, of measured or computed tables.",
         )  # fmt: skip
+    slopes = {plain_name(s) for s, i in taken.items() if theirs.coefficients[i].law != "rest"} - {"X0"}
     curved = {_place(s) for s in taken if not (alone and s in ours)} - {None}
     entries: list[Entry] = []
     replaced = []
@@ -132,7 +137,7 @@ def merged(
             j = taken[c.symbol]
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(c.symbol), c, theirs.coefficients[j]))
-        elif _place(c.symbol) in curved:
+        elif _place(c.symbol) in curved or (c.law != "rest" and plain_name(c.symbol) in slopes):
             replaced.append(Replaced(primed(c.symbol), c, None))
         else:
             entries.append((c, 0, i))

@@ -103,3 +103,25 @@ def test_points_from_another_datum_are_refused() -> None:
     with pytest.raises(ScalingMismatchError):
         merged(file("base", "Yv'=-0.05"), other)
     assert other.reference_point.origin == Datum.named("nose")
+
+
+def numbers(made: ParameterFile) -> dict[str, float | None]:
+    """Values by symbol."""
+    return {c.symbol: c.value for c in made.coefficients}
+
+
+@pytest.mark.parametrize("alone", [False, True])
+@pytest.mark.parametrize("spelling", ["Yv'", "Yuv'", "Yv|u|'"])
+def test_a_slope_of_the_base_under_two_names_gives_way_to_one_number(spelling: str, alone: bool) -> None:
+    base = file("base", "Yv'=-0.03", "Yuv'=-0.02", "Nv'=-0.01", "Ydr'=0.01", "Yuudr'=0.002")
+    done = merged(base, file("other", f"{spelling}=-0.05"), alone=alone)
+    assert numbers(done.parameters) == {"Yv'": -0.05, "Nv'": -0.01, "Ydr'": 0.01, "Yuudr'": 0.002}
+    assert [(r.symbol, r.after is None) for r in done.replaced] == [("Yv'", False), ("Yuv'", True)]
+
+
+def test_damping_about_rest_is_no_other_name_of_a_slope() -> None:
+    base = file("base", "Yv'=-0.03", "Yuv'=-0.02")
+    rest = tuple(replace(c, law="rest") if c.symbol == "Yv'" else c for c in base.coefficients)
+    done = merged(base.model_copy(update={"coefficients": rest}), file("other", "Yv'=-0.05"))
+    assert numbers(done.parameters) == {"Yv'": -0.03, "Yuv'": -0.05}
+    assert [(r.symbol, r.before and r.before.value) for r in done.replaced] == [("Yuv'", -0.02)]
