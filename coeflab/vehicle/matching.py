@@ -75,7 +75,7 @@ def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str
 
 
 def with_matrix(found: CoefficientSet, parameters: ParameterFile) -> tuple[CoefficientSet, frozenset[str]]:
-    """The primed set with the entries of the file's added mass that it does not state one by one, and their names."""
+    """The primed set with the entries of the file's added mass, zeros too, that it does not state one by one, and their names."""
     hull = parameters.added_mass
     if hull is None:
         return found, frozenset()
@@ -83,7 +83,7 @@ def with_matrix(found: CoefficientSet, parameters: ParameterFile) -> tuple[Coeff
     for i, c in enumerate(COMPONENTS):
         for j, m in enumerate(MOTIONS):
             symbol = f"{c}{m}dot"
-            if symbol in found or not (hull.matrix[i, j] or i == j):
+            if symbol in found:
                 continue
             unit = found.scaling.unit(symbol, hull.density)
             half = None if hull.u95 is None else float(hull.u95[i, j]) / unit
