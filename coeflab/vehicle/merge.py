@@ -18,7 +18,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as
+from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
@@ -151,7 +151,8 @@ def merged(
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
         made = _joined(base, other, (ours, theirs), entries, replaced, name)
     said = _lengths(base, other, own or other.scaling)
-    notes = (*made.provenance.notes, *([said] if said else []))
+    sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
+    notes = (*made.provenance.notes, *sums, *([said] if said else []))
     update = {"law_at_points": points_of(made), "provenance": made.provenance.model_copy(update={"notes": notes})}
     return Merged(made.model_copy(update=update), tuple(replaced), said)
 
@@ -231,9 +232,14 @@ def _written(
         potential = potential_part(c.symbol, hull, base.scaling, hull.density) if booked and hull is not None else None
         rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
     taken = [r.symbol for r in replaced if r.after is not None]
-    gone = [r.symbol for r in replaced if r.after is None]
     notes = [f"from {other.name}: {', '.join(taken)}"]
-    notes += [f"estimates left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    for what, estimated in (("estimates", True), ("numbers that are no estimates", False)):
+        gone = [
+            r.symbol
+            for r in replaced
+            if r.after is None and r.before and (r.before.status is Status.ESTIMATE) is estimated
+        ]
+        notes += [f"{what} left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
     notes += [lost] if lost and base.mass is None else []
     same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
         other.conditions.density, at.density

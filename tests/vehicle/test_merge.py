@@ -11,6 +11,9 @@ import pytest
 from coeflab.core.axes import Datum
 from coeflab.core.errors import ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
+from coeflab.law.coefficient import Status
+from coeflab.vehicle.comparison import coefficient_set, compare
+from coeflab.vehicle.matching import by_plain_names
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -117,6 +120,52 @@ def test_a_slope_of_the_base_under_two_names_gives_way_to_one_number(spelling: s
     done = merged(base, file("other", f"{spelling}=-0.05"), alone=alone)
     assert numbers(done.parameters) == {"Yv'": -0.05, "Nv'": -0.01, "Ydr'": 0.01, "Yuudr'": 0.002}
     assert [(r.symbol, r.after is None) for r in done.replaced] == [("Yv'", False), ("Yuv'", True)]
+
+
+def but(made: ParameterFile, symbol: str, **other: Any) -> ParameterFile:
+    """With one coefficient changed."""
+    rows = tuple(replace(c, **other) if c.symbol == symbol else c for c in made.coefficients)
+    return made.model_copy(update={"coefficients": rows})
+
+
+@pytest.mark.parametrize("symbol", ["Yv'", "Yuv'"])
+def test_a_sum_is_an_estimate_if_any_part_is_one(symbol: str) -> None:
+    both = file("both", "Yv'=-0.03 +- 0.003", "Yuv'=-0.02 +- 0.004", "Nv'=-0.02")
+    found, _ = by_plain_names(coefficient_set(but(both, symbol, status=Status.ESTIMATE, origin="estimate")))
+    total = found["Yv"]
+    assert (total.status, total.origin, total.value) == (Status.ESTIMATE, "estimate", pytest.approx(-0.05))
+    assert total.u95 == pytest.approx(0.005)
+    done = merged(file("base", "Yv'=-0.06"), but(both, symbol, status=Status.ESTIMATE, origin="estimate"))
+    assert numbers(done.parameters) == {"Yv'": -0.06, "Nv'": -0.02}
+
+
+def test_a_sum_of_fits_names_the_tables_of_all_and_has_no_value_where_a_part_has_none() -> None:
+    both = file("both", "Yv'=-0.03 +- 0.003", "Yuv'=-0.02 +- 0.004")
+    fitted = {"status": Status.OK, "origin": "fit"}
+    one = but(
+        but(both, "Yv'", table="a/drift.csv", campaign="a", **fitted), "Yuv'", table="b/d.csv", campaign="b", **fitted
+    )
+    total = by_plain_names(coefficient_set(one))[0]["Yv"]
+    assert (total.table, total.campaign, total.origin) == ("a/drift.csv, b/d.csv", "a, b", "fit")
+    open_one = but(one, "Yuv'", value=None, u95=None, status=Status.NO_TABLE, origin="none")
+    total = by_plain_names(coefficient_set(open_one))[0]["Yv"]
+    assert (total.value, total.status) == (None, Status.NO_TABLE)
+
+
+def test_a_sum_is_stated_as_one() -> None:
+    both, one = file("both", "Yv'=-0.03", "Yuv'=-0.02"), file("one", "Yv'=-0.06")
+    for found in (compare(one, both).statements, merged(one, both).parameters.provenance.notes):
+        assert [s for s in found if "Yv' of both" in s and "Yuv'" in s and "sum" in s]
+    assert not [s for s in compare(one, one).statements if "sum" in s]
+
+
+def test_what_is_left_out_is_called_an_estimate_only_where_it_is_one() -> None:
+    base = but(
+        file("base", "Yv|v|'=-0.1", "Yvvv'=-0.2", "Nv'=-0.01"), "Yvvv'", status=Status.ESTIMATE, origin="estimate"
+    )
+    notes = merged(base, file("other", "Yvv|v|'=-0.3")).parameters.provenance.notes
+    gone = {s: n.startswith("estimates") for n in notes if "left out" in n for s in n.rpartition(": ")[2].split(", ")}
+    assert gone == {"Yv|v|'": False, "Yvvv'": True}
 
 
 def test_damping_about_rest_is_no_other_name_of_a_slope() -> None:
