@@ -101,7 +101,7 @@ def _finding(
     severity = Severity.NOTE if axes.spelled and code != "orientation.across" else Severity.WARN
     return Finding.of(
         code, body.name, severity, statistic=statistic, threshold=threshold,
-        advice=f"--axes {better.typed}{other}", stated=axes.name, own=axes.typed, **facts,
+        advice=f"--axes {better.typed}{other}", stated=axes.name, own=axes.typed, better=better.typed, **facts,
     )  # fmt: skip
 
 

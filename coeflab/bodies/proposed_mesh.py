@@ -94,7 +94,7 @@ def proposed(path: Path, unit: str = "", axes: str = "") -> Proposal:
         )  # fmt: skip
         contradicted = doubt(body)
         if contradicted is not None:
-            axes = contradicted.advice.removeprefix("--axes ")
+            axes = contradicted["better"]
             found.append(contradicted)
     if not stated and mesh is None:
         axes = _by_extents(shape.extents) or axes

@@ -7,7 +7,7 @@ What a simulator loses of a parameter file beside terms of its force law, each w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import product
@@ -499,7 +499,9 @@ def accelerations_apart(
     return found, f"{', '.join(held)}: not compared, the file does not state the inertia" if held else ""
 
 
-def unheld(law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool) -> tuple[str, ...]:
+def unheld(
+    law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool, driven: Collection[str] = ()
+) -> tuple[str, ...]:
     """What of a law a target does not take, in words, in the order of the file.
 
     Parameters
@@ -509,6 +511,8 @@ def unheld(law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool) -> 
         Whether the target takes a term.
     ideal : bool
         Whether it has the ideal fluid's products that no measured term speaks of.
+    driven : collection of str
+        Derivatives by controls that it has in fins of its own.
     """
     terms = tuple(t.symbol for t in law.terms if t.coefficient != 0.0 and not held(t))
     names = [
@@ -517,7 +521,9 @@ def unheld(law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool) -> 
         if j <= k and law.ideal[i, j, k] != 0.0
     ]
     products = (f"the ideal fluid's {', '.join(names)}",) if names else ()
-    controls = tuple(f"{s} (control or acceleration)" for s in law.left_out if not s.endswith("dot"))
+    controls = tuple(
+        f"{s} (control or acceleration)" for s in law.left_out if not s.endswith("dot") and s not in driven
+    )
     return (*terms, *(() if ideal else products), *controls)
 
 

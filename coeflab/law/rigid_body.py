@@ -26,6 +26,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import skew
 
 ROUNDING = 1e-9
+ON_AXIS = 1e-6  # m
 
 
 def parallel_axis(mass: float, centre: Array) -> Array:
@@ -101,6 +102,23 @@ class MassProperties:
         """With m' and x_G' m'."""
         unit = scaling.unit("m", density)
         return replace(self, mass_prime=self.mass / unit, mass_moment_prime=self.mass_moment / (unit * scaling.length))
+
+    def moved(self, shift: Array) -> MassProperties | None:
+        """About a point ``shift`` (3,) m away, without primes; None where what is known does not lead there.
+
+        Off the x axis that takes the centre of gravity and, of an inertia, the matrix: Iy and Iz part there.
+        """
+        dx, along = float(shift[0]), not np.any(np.abs(shift[1:]) > ON_AXIS)
+        if not along and (self.centre is None or (self.inertia is not None and self.inertia_matrix is None)):
+            return None
+        inertia = None
+        if self.inertia is not None and along:
+            inertia = self.inertia - 2.0 * self.mass_moment * dx + self.mass * dx**2
+        centre = None if self.centre is None else self.centre - shift
+        matrix = None
+        if centre is not None and self.centre is not None and self.inertia_matrix is not None:
+            matrix = about_another(self.inertia_matrix, self.mass, self.centre, centre)
+        return MassProperties(self.mass, self.mass_moment - self.mass * dx, inertia, centre, matrix)
 
     @property
     def centre_of_gravity(self) -> Array:

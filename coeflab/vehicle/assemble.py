@@ -22,7 +22,7 @@ from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.rigid_body import MassProperties, about_another
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
 from coeflab.vehicle.drag_reynolds import drag_elsewhere
@@ -307,14 +307,7 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
         return None, ["mass properties left out: the body states them about a point that differs in more than x"]
     if abs(shift[0]) <= 1e-6:
         return mass, []
-    dx = float(shift[0])
-    inertia = None if mass.inertia is None else mass.inertia - 2.0 * mass.mass_moment * dx + mass.mass * dx**2
-    centre = None if mass.centre is None else mass.centre - shift
-    matrix = None
-    if centre is not None and mass.centre is not None and mass.inertia_matrix is not None:
-        matrix = about_another(mass.inertia_matrix, mass.mass, mass.centre, centre)
-    moved = MassProperties(mass.mass, mass.mass_moment - mass.mass * dx, inertia, centre, matrix)
-    return moved, [f"mass properties moved by {dx:+.6g} m along x to the reference point"]
+    return mass.moved(shift), [f"mass properties moved by {shift[0]:+.6g} m along x to the reference point"]
 
 
 def assemble(

@@ -19,7 +19,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.domain import clamped, inside
 from coeflab.law.symbols import ANGULAR, primed
-from coeflab.vehicle.matching import by_plain_names, with_matrix
+from coeflab.vehicle.matching import by_plain_names, sums_in_words, with_matrix
 from coeflab.vehicle.parameter_file import ParameterFile, Provenance
 from coeflab.vehicle.parameter_model import ParameterModel
 
@@ -365,10 +365,12 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         What the comparison calls them; their own names by default.
     """
     name_a, name_b = names or (a.name, b.name)
-    (ours, own), (theirs, spelled) = (by_plain_names(coefficient_set(f)) for f in (a, b))
+    both = (coefficient_set(a), coefficient_set(b))
+    (ours, own), (theirs, spelled) = (by_plain_names(s) for s in both)
     stated = list(dict.fromkeys((*ours.symbols, *theirs.symbols)))
     (ours, of_ours), (theirs, of_theirs) = with_matrix(ours, a), with_matrix(theirs, b)
     said = _matched(ours, theirs, (own, spelled), (of_ours, of_theirs), stated, (name_a, name_b))
+    said += [w for s, name in zip(both, (name_a, name_b), strict=True) for w in sums_in_words(s, name, stated)]
     if a.body != b.body:
         said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:

@@ -6,13 +6,14 @@ and Xu|u| u|u|, and Ydr U^2 and Yuudr u^2. Added masses are M_A = -Xudot ... abo
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, primed
 from coeflab.law.terms import parse_suffix
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -47,11 +48,10 @@ def plain_name(symbol: str) -> str:
 def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str]]:
     """The set with every slope under its plain name, sums where several are one, and which name each had first.
 
-    Damping about a state of rest, which does not go with the speed, keeps its name and is no part of a sum.
+    Damping about a state of rest, which does not go with the speed, keeps its name and is no part of a sum. A sum is worth what
+    its weakest part is: no value, an estimate, no U95; its tables are those of all parts.
     """
-    names = [c.symbol if c.law == "rest" else plain_name(c.symbol) for c in found.coefficients]
-    resting = {c.symbol for c in found.coefficients if c.law == "rest"}
-    names = [c.symbol if n in resting else n for n, c in zip(names, found.coefficients, strict=True)]
+    names = _plain_names(found)
     order = list(dict.fromkeys(names))
     if order == list(found.symbols):
         return found, {n: n for n in order}
@@ -70,12 +70,38 @@ def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str
         values = [c.value for c in mine]
         value = None if any(v is None for v in values) else float(sum(v for v in values if v is not None))
         u95 = None if lost[i] or value is None else float(2.0 * np.sqrt(max(covariance[i, i], 0.0)))
-        out.append(replace(mine[0], symbol=wanted, value=value, u95=u95, parts=Parts()))
+        weakest = min(mine, key=lambda c: (c.value is not None, c.status is not Status.ESTIMATE, c.u95 is not None))
+        table, campaign = (_together(c.table for c in mine), _together(c.campaign for c in mine))
+        out.append(replace(weakest, symbol=wanted, value=value, u95=u95, parts=Parts(), table=table, campaign=campaign))
     return replace(found, coefficients=tuple(out), covariance=covariance), first
 
 
+def sums_in_words(found: CoefficientSet, name: str, among: Container[str]) -> list[str]:
+    """Which plain names of a file's set, before it is brought to these, are sums of several; one statement each."""
+    parts: dict[str, list[str]] = {}
+    for plain, symbol in zip(_plain_names(found), found.symbols, strict=True):
+        parts.setdefault(plain, []).append(primed(symbol))
+    return [
+        f"{primed(plain)} of {name} is the sum of its {listed(of)}"
+        for plain, of in parts.items()
+        if len(of) > 1 and plain in among
+    ]
+
+
+def _plain_names(found: CoefficientSet) -> list[str]:
+    """Of each coefficient, by which those that are one slope go together."""
+    resting = {c.symbol for c in found.coefficients if c.law == "rest"}
+    plain = [c.symbol if c.law == "rest" else plain_name(c.symbol) for c in found.coefficients]
+    return [c.symbol if n in resting else n for n, c in zip(plain, found.coefficients, strict=True)]
+
+
+def _together(names: Iterable[str | None]) -> str | None:
+    """A comma list of those that are stated, each once; None of none."""
+    return ", ".join(dict.fromkeys(n for n in names if n)) or None
+
+
 def with_matrix(found: CoefficientSet, parameters: ParameterFile) -> tuple[CoefficientSet, frozenset[str]]:
-    """The primed set with the entries of the file's added mass that it does not state one by one, and their names."""
+    """The primed set with the entries of the file's added mass, zeros too, that it does not state one by one, and their names."""
     hull = parameters.added_mass
     if hull is None:
         return found, frozenset()
@@ -83,7 +109,7 @@ def with_matrix(found: CoefficientSet, parameters: ParameterFile) -> tuple[Coeff
     for i, c in enumerate(COMPONENTS):
         for j, m in enumerate(MOTIONS):
             symbol = f"{c}{m}dot"
-            if symbol in found or not (hull.matrix[i, j] or i == j):
+            if symbol in found:
                 continue
             unit = found.scaling.unit(symbol, hull.density)
             half = None if hull.u95 is None else float(hull.u95[i, j]) / unit

@@ -18,7 +18,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as
+from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
@@ -41,7 +41,7 @@ class Replaced:
     before : Coefficient or None
         What the base had.
     after : Coefficient or None
-        None where the base's term was left out, as a law of the other file takes its place.
+        None where the base's term was left out: a law of the other file takes its place, or the same slope under another name.
     """
 
     symbol: str
@@ -84,7 +84,8 @@ def merged(
 
     A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
     terms of second or higher degree in these motions are left out; so are estimates of such terms that take the law away from
-    the other's measured points. Covariance between both is zero.
+    the other's measured points. A slope that the other gives is one number: Yv' and Yuv' of the base go for it, save damping
+    about a state of rest. Covariance between both is zero.
 
     Parameters
     ----------
@@ -94,8 +95,8 @@ def merged(
     own : Scaling, optional
         What the other's data were primed by, where its file has them by another length already.
     alone : bool
-        The other has single numbers and no law: one that the base has is replaced in its place, and no other goes with it. One
-        that is new takes the place of the base's terms in its motions all the same.
+        The other has single numbers and no law: one that the base has is replaced in its place, and no other goes with it but
+        the same slope under another name. One that is new takes the place of the base's terms in its motions all the same.
 
     Raises
     ------
@@ -111,7 +112,10 @@ def merged(
             "give the body.toml of the shape the datum of the tables, and the vehicle again."
         )
     theirs, first = by_plain_names(theirs.to_length(ours.scaling))
-    slopes_of_ours = [s for s in ours.symbols if plain_name(s) != "X0"]  # drag by u|u| is another law in drift
+    resting = {c.symbol for c in ours.coefficients if c.law == "rest"}  # no other spelling of a slope
+    slopes_of_ours = [
+        s for s in ours.symbols if plain_name(s) != "X0" and s not in resting
+    ]  # u|u|: another law in drift
     theirs = spelled_as(theirs.about(ours.reference_point), first, slopes_of_ours)
     taken = {
         c.symbol: i
@@ -124,6 +128,7 @@ def merged(
             f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
             advice="Give a campaign, or a parameter file, of measured or computed tables.",
         )  # fmt: skip
+    slopes = {plain_name(s) for s, i in taken.items() if theirs.coefficients[i].law != "rest"} - {"X0"}
     curved = {_place(s) for s in taken if not (alone and s in ours)} - {None}
     entries: list[Entry] = []
     replaced = []
@@ -132,7 +137,7 @@ def merged(
             j = taken[c.symbol]
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(c.symbol), c, theirs.coefficients[j]))
-        elif _place(c.symbol) in curved:
+        elif _place(c.symbol) in curved or (c.law != "rest" and plain_name(c.symbol) in slopes):
             replaced.append(Replaced(primed(c.symbol), c, None))
         else:
             entries.append((c, 0, i))
@@ -146,7 +151,8 @@ def merged(
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
         made = _joined(base, other, (ours, theirs), entries, replaced, name)
     said = _lengths(base, other, own or other.scaling)
-    notes = (*made.provenance.notes, *([said] if said else []))
+    sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
+    notes = (*made.provenance.notes, *sums, *([said] if said else []))
     update = {"law_at_points": points_of(made), "provenance": made.provenance.model_copy(update={"notes": notes})}
     return Merged(made.model_copy(update=update), tuple(replaced), said)
 
@@ -216,6 +222,7 @@ def _written(
     base: ParameterFile, other: ParameterFile, chosen: Sequence[Coefficient], covariance: np.ndarray,
     replaced: Sequence[Replaced], name: str,
 ) -> ParameterFile:  # fmt: skip
+    other, lost = _about(other, base)
     at, hull = base.conditions, base.added_mass or other.added_mass
     rows = []
     for c in chosen:
@@ -225,9 +232,15 @@ def _written(
         potential = potential_part(c.symbol, hull, base.scaling, hull.density) if booked and hull is not None else None
         rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
     taken = [r.symbol for r in replaced if r.after is not None]
-    gone = [r.symbol for r in replaced if r.after is None]
     notes = [f"from {other.name}: {', '.join(taken)}"]
-    notes += [f"estimates left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    for what, estimated in (("estimates", True), ("numbers that are no estimates", False)):
+        gone = [
+            r.symbol
+            for r in replaced
+            if r.after is None and r.before and (r.before.status is Status.ESTIMATE) is estimated
+        ]
+        notes += [f"{what} left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    notes += [lost] if lost and base.mass is None else []
     same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
         other.conditions.density, at.density
     )
@@ -262,6 +275,38 @@ def _written(
         ),
     }
     return ParameterFile(**content)
+
+
+def _about(other: ParameterFile, base: ParameterFile) -> tuple[ParameterFile, str]:
+    """What a merge takes whole of a file, about the base's point and primed as the base is; what cannot be moved, in words.
+
+    The file keeps its reference point, by which its measured points are judged.
+    """
+    shift = np.array(base.reference_point.point) - np.array(other.reference_point.point)
+    mass = None if other.mass is None else other.mass.moved(shift) if np.any(shift) else other.mass
+    afloat = other.hydrostatics
+    if afloat is not None:
+        centre = _from(afloat.centre_of_buoyancy, shift)
+        afloat = afloat.model_copy(update={"centre_of_buoyancy": centre})
+    update = {
+        "added_mass": None
+        if other.added_mass is None
+        else other.added_mass.about(np.array(base.reference_point.point)),
+        "mass": None if mass is None else mass.primed(base.scaling, base.conditions.density),
+        "hydrostatics": afloat,
+        "thrusters": tuple(t.model_copy(update={"position": _from(t.position, shift)}) for t in other.thrusters),
+    }
+    lost = (
+        f"mass properties of {other.name} left out: about a point off its x axis they take cg and the inertia matrix"
+        if mass is None and other.mass is not None
+        else ""
+    )
+    return other.model_copy(update=update), lost
+
+
+def _from(point: Sequence[float], shift: np.ndarray) -> tuple[float, ...]:
+    """A point from a reference point that is ``shift`` away."""
+    return tuple(float(x) for x in np.array(point) - shift)
 
 
 def findings_of_merged(found: Sequence[Finding], name: str) -> tuple[Finding, ...]:

@@ -91,3 +91,14 @@ def test_faces_that_cross_within_single_precision_do_not_count() -> None:
         faces = np.vstack([one.faces, np.asarray(other.faces) + 8])
         assert bool(crossing_faces(vertices, faces, 1e-6)) == counts
     assert crossing_faces(vertices, faces)
+
+
+@pytest.mark.parametrize("axis", [1, 2])
+def test_a_hull_across_whose_bow_does_not_show_is_proposed_both_ways(tmp_path: Path, axis: int) -> None:
+    hull = trimesh.creation.icosphere(subdivisions=3)
+    sizes = np.full(3, 0.15)
+    sizes[axis] = 1.0
+    hull.apply_scale(sizes)
+    hull.export(tmp_path / "hull.stl")
+    found = proposed(tmp_path / "hull.stl", "m")
+    assert found.sizes == pytest.approx((2.0, 0.3, 0.3), rel=0.02)

@@ -12,13 +12,14 @@ import pytest
 
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.gazebo import write as gazebo
+from coeflab.formats.gazebo.assembly import LINK
 from coeflab.formats.gazebo.drive import driven_force, named
-from coeflab.formats.gazebo.sdf import LINK
 from coeflab.formats.gazebo_plugin import write as gazebo_plugin
 from coeflab.formats.model_files import read_model_file
 from coeflab.vehicle.own_numbers import typed_file
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_parts import ParameterSurface
+from coeflab.workbench.exports import export
 
 HOSTILE = ("../../x", "a b", "<plugin/>", "dr", "'; rm -rf ~", "$(x)", "</model>", "thruster\n", "--", "__model__", "\u202eevil", "a::b", "&amp;", "con", "x" * 150)  # fmt: skip
 
@@ -89,6 +90,9 @@ def test_it_is_read_back(target: ModuleType, tmp_path: Path) -> None:
     back = read_model_file(tmp_path / name).parameters
     for symbol in ("Ydr", "Ndr", "Kdr", "Zds", "Mds"):
         assert back.coefficient(symbol).value == pytest.approx(p.coefficient(symbol).value, rel=1e-6), symbol
+    topics = [e.text for e in parse_xml(text.decode()).iter("sub_topic")]
+    assert topics == ["joint/dr", "joint/ds"]
+    assert not [f for f in back.findings if "joints" in str(f.facts) and "dr" in str(f.facts)]
     assert {s.control: s.limit for s in back.surfaces} == {"dr": 0.35, "ds": 0.3}
     assert back.mass.mass == 46.0
     assert back.hydrostatics.volume == pytest.approx(0.0449)
@@ -98,7 +102,7 @@ def test_it_is_read_back(target: ModuleType, tmp_path: Path) -> None:
     assert (thruster.curve.at(-99.0), thruster.curve.at(99.0)) == (-40.0, 60.0)
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", [*HOSTILE, "base_link", "coeflab_dr"])
 def test_hostile_names_of_thrusters_are_inert(name: str) -> None:
     p = vehicle("main").model_copy(update={"thrusters": (vehicle().thrusters[0].model_copy(update={"name": name}),)})
     (safe,) = named(p)
@@ -108,6 +112,19 @@ def test_hostile_names_of_thrusters_are_inert(name: str) -> None:
         root = parse_xml(text.decode())
         assert [j.get("name") for j in root.iter("joint")] == ["dr", "ds", safe]
         assert len(list(root.iter("model"))) == 1
+        siblings = [e.get("name") for m in root.iter("model") for e in m if e.tag in ("link", "joint")]
+        assert len(siblings) == len(set(siblings))
+
+
+@pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin"])
+def test_what_the_fins_hold_is_not_called_lost(target: str) -> None:
+    """REMUS 100 states no limits: the one that is written is said, and where a command goes."""
+    loss = export(read_parameter_file(Path("remus100")), target).loss
+    assert loss is not None
+    assert [n for n in loss.not_held if n.startswith(("Ydr", "Ndr", "Zds", "Mds"))] == []
+    said = " ".join(loss.changes)
+    assert "0.6 rad" in said
+    assert "/model/NAME/joint/CONTROL" in said
 
 
 def test_the_real_parser_takes_it(tmp_path: Path) -> None:

@@ -106,3 +106,18 @@ def test_merge_takes_the_number_under_the_name_of_the_base() -> None:
     assert nuv is not None
     assert yuv.value == pytest.approx(-0.04)
     assert nuv.value == pytest.approx(-0.02 - 0.3 * -0.04)
+
+
+def test_zeros_of_a_matrix_are_numbers_that_a_move_needs() -> None:
+    """A diagonal matrix at x = -1 m has Mqdot of Iyy + m33 x^2 and Mwdot of m33 x about the nose."""
+    about = {"length": "2 m", "length_name": "LOA", "speed": "1.5 m/s", "density": "1025", "about": "nose"}
+    diagonal = {"Zwdot": 55.0, "Mqdot": 12.0 + 55.0, "Mwdot": 55.0, "Zqdot": 55.0, "Xqdot": 0.0, "Mudot": 0.0}
+    bare = typed_file("one", ["Yv'=-0.05"], **about)
+    stated = [f"{s}'={0.0 - m / bare.scaling.unit(s, 1025.0)!r}" for s, m in diagonal.items()]
+    point = bare.reference_point.model_copy(update={"point": (-1.0, 0.0, 0.0)})
+    hull = AddedMass(np.diag([3.0, 50.0, 55.0, 0.5, 12.0, 13.0]), np.array(point.point), point.origin, "one", "stated",
+                     density=1025.0)  # fmt: skip
+    there = bare.model_copy(update={"reference_point": point, "added_mass": hull})
+    rows = {r.symbol: r for r in compare(typed_file("one", ["Yv'=-0.05", *stated], **about), there).rows}
+    for symbol in diagonal:
+        assert rows[f"{symbol}'"].difference == pytest.approx(0.0, abs=1e-12), symbol

@@ -26,6 +26,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 RESERVED = frozenset(
     [
         "auto",
+        "unit",  # unit.c of an FMU
         "break",
         "case",
         "char",

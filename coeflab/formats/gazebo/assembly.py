@@ -20,6 +20,8 @@ from coeflab.law.rigid_body import about_another
 from coeflab.law.transforms import rotation
 
 MOST_JOINTS = 400
+MODEL = "__model__"
+LINK = "base_link"  # the hull, in what coeflab writes
 STAND_IN = "coeflab_"  # links that coeflab writes for fins and propellers hold no mass of the vehicle's
 MOVING = (
     "revolute",
@@ -161,10 +163,14 @@ def assembly(root: Element, hull: str, file: Path | str | None = None) -> Assemb
                     held.add(other)
                     waiting.append(other)
     urdf = root.tag == "robot"
-    placed = _by_joints(hull, joints, ends, file) if urdf else _by_poses(hull, held, elements, joints, ends, file)
+    placed = (
+        _by_joints(hull, joints, ends, file)
+        if urdf
+        else _by_poses(hull, held, elements, joints, ends, _nested(root, file), file)
+    )
     links = {n: p for n, p in placed.items() if n in held}
     massive = [n for n, e in elements.items() if n not in links and e.find("inertial/mass") is not None]
-    found = tuple(_joint(j, ends[id(j)][1], links, file) for j in joints if ends[id(j)][1] in links)
+    found = tuple(_joint(j, ends[id(j)][1], links, placed, file) for j in joints if ends[id(j)][1] in links)
     return Assembly(hull, links, elements, found, tuple(massive))
 
 
@@ -194,10 +200,13 @@ def _by_joints(
 
 def _by_poses(
     hull: str, held: set[str], elements: dict[str, Element], joints: list[Element], ends: dict[int, tuple[str, str]],
-    file: Path | str | None,
+    nested: dict[str, Pose], file: Path | str | None,
 ) -> dict[str, Pose]:  # fmt: skip
-    """SDF: every link in its model; ``relative_to`` another link or joint that is placed is followed, anything else is not."""
-    of_joints = {j.get("name", ""): (ends[id(j)][1], pose_of(j, file)) for j in joints}
+    """SDF: every link in its model; ``relative_to`` another link or joint that is placed is followed, anything else is not.
+
+    The frame of the model stands among them as `MODEL`.
+    """
+    of_joints = {j.get("name", ""): (ends[id(j)][1], pose_of(j, file)) for j in joints if not _relative(j.find("pose"))}
     out: dict[str, Pose] = {}
 
     def resolved(name: str, deep: int) -> Pose | None:
@@ -206,11 +215,10 @@ def _by_poses(
         element = elements.get(name)
         if element is None or deep > len(elements):
             return None
-        pose = element.find("pose")
-        to = "" if pose is None else (pose.get("relative_to") or "").strip()
+        to = _relative(element.find("pose"))
         own = pose_of(element, file)
-        if to in ("", "__model__"):
-            base: Pose | None = HERE
+        if to in ("", MODEL):
+            base: Pose | None = nested.get(name, HERE)
         elif to in of_joints and of_joints[to][0] != name:
             child, at = of_joints[to]
             outer = resolved(child, deep + 1)
@@ -226,10 +234,32 @@ def _by_poses(
     if centre is None:
         return {hull: HERE}
     found = {name: resolved(name, 0) for name in held}
-    return {name: centre.inverse.then(p) for name, p in found.items() if p is not None}
+    return {MODEL: centre.inverse} | {name: centre.inverse.then(p) for name, p in found.items() if p is not None}
 
 
-def _joint(joint: Element, child: str, links: dict[str, Pose], file: Path | str | None) -> Joint:
+def _relative(pose: Element | None) -> str:
+    return "" if pose is None else (pose.get("relative_to") or "").strip()
+
+
+def _nested(root: Element, file: Path | str | None) -> dict[str, Pose]:
+    """Where the models stand that links are in, in the outermost one."""
+    out: dict[str, Pose] = {}
+    waiting: list[tuple[Element, Pose | None]] = [(root, HERE if root.tag == "model" else None)]
+    while waiting:
+        at, frame = waiting.pop()
+        for child in at:
+            if child.tag == "model":
+                waiting.append((child, HERE if frame is None else frame.then(pose_of(child, file))))
+            elif child.tag == "link":
+                out.setdefault(child.get("name", ""), frame or HERE)
+            elif frame is None:
+                waiting.append((child, None))
+    return out
+
+
+def _joint(
+    joint: Element, child: str, links: dict[str, Pose], placed: dict[str, Pose], file: Path | str | None
+) -> Joint:
     link = links[child]
     axis = joint.find("axis")
     own = np.zeros(3)
@@ -242,13 +272,14 @@ def _joint(joint: Element, child: str, links: dict[str, Pose], file: Path | str 
         own = np.array(numbers(text, (3,), "axis xyz", file))
         xyz = axis.find("xyz")
         frame = "" if xyz is None else (xyz.get("expressed_in") or "").strip()
+        pose = joint.find("pose")
         base = (
-            link if joint.find("origin") is not None or joint.find("pose") is None else link.then(pose_of(joint, file))
+            link
+            if joint.find("origin") is not None or pose is None
+            else placed.get(_relative(pose), link).then(pose_of(joint, file))
         )
-        if frame == "__model__":
-            base = Pose(links.get(frame, HERE).turn, link.place)
-        elif frame in links:
-            base = links[frame]
+        of_model = (axis.findtext("use_parent_model_frame") or "").strip().lower() in ("true", "1")
+        base = placed.get(MODEL if of_model else frame, base)
         own = base.turn @ own
         size = float(np.linalg.norm(own))
         own = own / size if size > 0.0 else np.zeros(3)

@@ -16,7 +16,7 @@ import numpy as np
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import number
-from coeflab.formats.gazebo.assembly import HERE, STAND_IN, assembly
+from coeflab.formats.gazebo.assembly import HERE, LINK, STAND_IN, assembly
 from coeflab.formats.gazebo.lift_drag import at_hull, read_lift_drag
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -100,7 +100,11 @@ def drive(model: Element, parameters: ParameterFile, hull: str, length: float, r
         ):  # fmt: skip
             SubElement(lift, tag).text = text
         controller = SubElement(model, "plugin", CONTROLLER)
-        for tag, text in (("joint_name", control), ("topic", control), ("use_velocity_commands", "true")):
+        for tag, text in (
+            ("joint_name", control),
+            ("sub_topic", f"joint/{control}"),
+            ("use_velocity_commands", "true"),
+        ):
             SubElement(controller, tag).text = text
         if surface is not None and surface.rate is not None:
             SubElement(controller, "cmd_max").text = number(surface.rate)
@@ -124,8 +128,8 @@ def named(parameters: ParameterFile) -> dict[str, int]:
     out: dict[str, int] = {}
     for k, t in enumerate(parameters.thrusters):
         name = identifier(t.name) or f"thruster_{k + 1}"
-        while name in out or name in FINS:
-            name = f"{name}_{k + 1}"
+        while name in out or name in FINS or name == LINK or name.startswith(STAND_IN):
+            name = f"thruster_{name}_{k + 1}"
         out[name] = k
     return out
 
@@ -206,13 +210,15 @@ def in_words(parameters: ParameterFile) -> tuple[str, ...]:
         places = "; ".join(f"{c} c A {abs(a):.4g} m^2 at x {x[0]:+.4g} m" for c, (a, x) in fins.items())
         out.append(
             f"fins: {places}. Joint, LiftDrag and JointPositionController each; forces by the angle alone, across the stream, none astern; "
-            f"command: gz topic -t /model/NAME/joint/CONTROL -m gz.msgs.Double -p 'data: 0.1', by <topic> {', '.join(fins)}"
+            f"command: gz topic -t /model/NAME/joint/CONTROL -m gz.msgs.Double -p 'data: 0.1', CONTROL: {', '.join(fins)}"
         )
         other = [
             c.symbol for c in parameters.coefficients
             if c.value and any(k in c.symbol for k in FINS) and c.symbol.removesuffix("'") not in fin_symbols(parameters)
         ]  # fmt: skip
         out += [f"not in the fins: {', '.join(other)}"] if other else []
+        free = [c for c in fins if c not in {s.control for s in parameters.surfaces}]
+        out += [f"limit of {', '.join(free)}: the file states none; {LIMIT:g} rad is written"] if free else []
     if thrusters:
         names = ", ".join(f"{n} ({one_line(parameters.thrusters[k].name)})" for n, k in thrusters.items())
         out.append(

@@ -183,7 +183,7 @@ def _left_out(root: Element, link: GzLink, held: Assembly, read_too: Sequence[El
     name = link.model or link.link
     currents = ("default_current", "namespace", "lookup_current_x", "lookup_current_y", "lookup_current_z")
     unread = unread_tags(plugin, (*read_tags(system), *currents))
-    turned = {p.findtext("joint_name") for p in read_too} | {
+    turned = {p.findtext(tag) for p in read_too for tag in ("joint_name", "control_joint_name")} | {
         j.name for p in read_too for j in held.joints if j.child == (p.findtext("link_name") or "").strip()
     }
     joints = [j.get("name", "") for j in root.iter("joint") if j.get("type") in MOVING and j.get("name") not in turned]

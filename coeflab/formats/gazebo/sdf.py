@@ -17,6 +17,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
+from coeflab.formats.gazebo.assembly import LINK
 from coeflab.formats.gazebo.drive import drive, driven_force, fin_symbols, in_words, not_driven
 from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.formats.unspoken import in_header
@@ -25,7 +26,6 @@ from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, SecondOrder, slot
 
-LINK = "base_link"
 INERTIA = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 AXES = "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not"
 DEFAULT_MASS = 1.0  # kg, of SDFormat
@@ -220,7 +220,9 @@ def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
 def not_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:
     """Terms that are no product of one or two velocities, controls that no fin has, and what Thruster has no place for."""
     steered = fin_symbols(parameters)
-    terms = unheld(exported_law(parameters).law, lambda t: slot(t) is not None or t.symbol in steered, ideal=True)
+    terms = unheld(
+        exported_law(parameters).law, lambda t: slot(t) is not None or t.symbol in steered, ideal=True, driven=steered
+    )
     return (*terms, *not_driven(parameters))
 
 

@@ -36,6 +36,9 @@ _NAMED = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*", re.ASCII)
 _OPENING, _CLOSING = "([{", ")]}"
 
 
+TABLED = "\nfunction F = tabled("  # where an export writes tables as code
+
+
 @dataclass(frozen=True, slots=True)
 class Assignment:
     """``target = expression``, with the line that it begins on; ``target`` may have dots."""
@@ -147,6 +150,8 @@ class MFile:
         Calls of `imlay61` and `spheroid`, of which mass, inertia and added mass are computed.
     vectors : mapping of last name to three numbers
         Such as r_bG.
+    tabled : bool
+        Whether look-up tables follow, which are not read.
     """
 
     numbers: dict[str, float]
@@ -158,6 +163,7 @@ class MFile:
     unread: dict[str, int]
     calls: tuple[str, ...] = ()
     vectors: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    tabled: bool = False
 
     def needed(self, names: Iterable[str]) -> set[str]:
         """These names and all that their expressions name."""
@@ -187,10 +193,10 @@ def read_m_file(path: Path) -> MFile:
     InputError
         No derivative, or one that is no plain arithmetic or has two values; NaN or Inf in any place.
     """
-    text = read_text(path, M_FILE_BYTES)
+    text, tabled, _ = read_text(path, M_FILE_BYTES).partition(TABLED)
     lines = assignments(text)
     adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines) or "imlay61" in text
-    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {})
+    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {}, tabled=bool(tabled))
     names: dict[str, float] = {"pi": math.pi}
     for a in lines:
         group, _, last = a.target.rpartition(".")

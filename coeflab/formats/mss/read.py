@@ -185,7 +185,10 @@ def _own(found: MFile, path: Path) -> Stated:
         matrix_method=method or "stated",
         mass=_own_mass(n),
         notes=doubts,
-        findings=left_behind(found, path.stem, OWN_NUMBERS),
+        findings=(
+            *left_behind(found, path.stem, OWN_NUMBERS),
+            *left_out(path.stem, "terms", ["look-up tables of the function tabled"] * found.tabled),
+        ),
     )
 
 
@@ -264,6 +267,7 @@ MEANS = (
 ABOUT = ("xG", "x_G", "xg", "yG", "y_G", "yg", "zG", "z_G", "zg")
 AXES_OF_INERTIA = ("Iy", "Iyy", "Iz", "Izz")
 INERTIAS = ("Ix", "Ixx", "Iy", "Iyy", "Iz", "Izz", "Ixy", "Ixz", "Iyz")
+APART = (0.2, 5.0)  # B over m g of what may be a buoyancy; beyond, B is a breadth
 BUOYANCIES = ("B", "Buoyancy", "nabla", "Vol", "V_disp")
 CENTRES_B = ("xB", "x_B", "xb", "yB", "y_B", "yb", "zB", "z_B", "zb")
 EQUATIONS = re.compile(r"tau\w*|D|Dmtrx|g|X_\w+|Y_\w+|Z_\w+|K_\w+|M_\w+|N_\w+")
@@ -359,9 +363,16 @@ def _hydrostatics(found: MFile, v: MValues) -> ParameterHydrostatics | None:
     g = STANDARD_GRAVITY if strength is None else strength * length_unit
     if centre is None or not g > 0.0:
         return None
+    mass = found.first(*MASSES)
+    is_breadth = (
+        not v.primed
+        and mass is not None
+        and mass > 0.0
+        and not APART[0] < (buoyancy or ("", 0.0))[1] * length_unit / (mass * g) < APART[1]
+    )
     if volume is not None:
         displaced = volume[1] * length_unit**3
-    elif buoyancy is not None:
+    elif buoyancy is not None and not is_breadth:
         displaced = buoyancy[1] * mass_unit * length_unit / (v.conditions.density * g)
     else:
         return None

@@ -33,7 +33,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.mss.m_file import assignments
+from coeflab.formats.mss.m_file import TABLED, assignments
 from coeflab.formats.unspoken import in_header, unstated
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
@@ -50,7 +50,6 @@ not_held, missing = not_written, missing_water
 OWN = frozenset(
     {"nu", "delta", "tau", "tabled", "held", "tables", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS}
 )
-TABLED = "\nfunction F = tabled("
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",

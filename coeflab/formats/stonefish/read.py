@@ -111,7 +111,12 @@ def _frame(element: Element | None, path: Path) -> tuple[Array, Array]:
 
 def _placed(part: Element, path: Path) -> tuple[Array, Array]:
     """Frame of a part's shape in the robot."""
-    (outer, at), (inner, own) = _frame(part.find("compound_transform"), path), _frame(part.find("origin"), path)
+    return _composed(part, "origin", path)
+
+
+def _composed(part: Element, tag: str, path: Path) -> tuple[Array, Array]:
+    """Frame of a part's ``origin``, its shape, or ``cg``, its principal axes of inertia: both stand in the part's own frame."""
+    (outer, at), (inner, own) = _frame(part.find("compound_transform"), path), _frame(part.find(tag), path)
     return outer @ inner, at + outer @ own
 
 
@@ -122,11 +127,11 @@ def _mass(parts: list[Element], name: str, findings: list[Finding], path: Path) 
         return None
     bodies = []
     for part in parts:
-        turn, at = _placed(part, path)
+        turn, at = _placed(part, path) if part.find("cg") is None else _composed(part, "cg", path)
         mass = _one(part.find("mass"), "value", path)  # type: ignore[arg-type]
-        cg, own = _frame(part.find("cg"), path)[1], part.find("inertia")
+        own = part.find("inertia")
         moments = None if own is None else turn @ np.diag(numbers(own.get("xyz"), (3,), "inertia xyz", path)) @ turn.T
-        bodies.append((mass, at + turn @ cg, moments))
+        bodies.append((mass, at, moments))
     total = math.fsum(b[0] for b in bodies)
     if not total > 0.0:
         findings.append(Finding.of("model.no_inertia", name, Severity.FAIL, why=f"a mass of {total:g} kg"))
@@ -188,7 +193,15 @@ def _thrusters(robot: Element, density: float, path: Path) -> tuple[tuple[Parame
         elif model is not None and model.find("thrust_coeff") is not None:
             value = model.find("thrust_coeff").get("value")  # type: ignore[union-attr]
         fastest = None if specs is None else specs.get("max_rpm")
-        if actuator.get("type") != "thruster" or propeller is None or value is None or fastest is None:
+        reversible = any(
+            e is not None and e.get(key, plain).strip().lower() != plain
+            for e, key, plain in (
+                (specs, "inverted", "false"),
+                (propeller, "right", "true"),
+                (specs, "thrust_coeff_backward", ""),
+            )
+        )
+        if actuator.get("type") != "thruster" or propeller is None or value is None or fastest is None or reversible:
             unread.append(f"{actuator.get('type', 'actuator')} {name}")
             continue
         per = numbers(value, (1,), "thrust_coeff", path)[0] * density * _one(propeller, "diameter", path) ** 4 / 3600.0
