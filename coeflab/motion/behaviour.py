@@ -178,7 +178,7 @@ def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Ar
     return np.asarray(modes(jacobian))
 
 
-def _known(parameters: ParameterFile, free: tuple[str, ...]) -> None:
+def _known(parameters: ParameterFile, free: tuple[str, str]) -> None:
     """Raise where a file states no force in the plane by one of its motions: a zero would be no slope but one that nobody knows."""
     components, angle = PLANES[free]
     terms = [t for t in motion_law(parameters)[0].terms if t.component in components]
@@ -192,7 +192,7 @@ def _eigenvalues(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behav
     out = []
     for plane, free in (("horizontal", ("v", "r")), ("vertical, no weight", ("w", "q"))):
 
-        def rates(p: ParameterFile, free: tuple[str, ...] = free) -> Array:
+        def rates(p: ParameterFile, free: tuple[str, str] = free) -> Array:
             _known(p, free)
             return np.asarray(np.sort_complex(_rates(p, speed, free))[::-1])
 
