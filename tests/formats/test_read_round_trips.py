@@ -33,8 +33,8 @@ EVERYTHING = ("mss", "xdyn")
 NAMES = [*FACTS, "suboff_fully_appended", "suboff_bare_hull", "suboff_bare_hull_cfd"]
 # All coefficients but accelerations and controls.
 SECOND_ORDER = {
-    "bluerov2_heavy": 9, "lauv": 20, "nps_auv2": 67 - 14 - 4, "torpedo_imperial": 5,
-    "suboff_fully_appended": 17 - 5, "suboff_bare_hull": 7, "suboff_bare_hull_cfd": 9,
+    "bluerov2_heavy": 9, "lauv": 20, "nps_auv2": 67 - 14, "torpedo_imperial": 5,
+    "suboff_fully_appended": 17, "suboff_bare_hull": 7, "suboff_bare_hull_cfd": 9,
 }  # fmt: skip
 
 
