@@ -261,3 +261,10 @@ def test_a_sheet_reads_back_equal(
     table = raw(path, {})
     assert [(c.name, c.unit) for c in table.columns] == [("r", "rad/s"), ("Y", "N")]
     np.testing.assert_array_equal(np.column_stack([c.values for c in table.columns]), values)
+
+
+def test_a_message_names_the_first_twenty_of_many_sheets(tmp_path: Path) -> None:
+    """3,000 sheets were one line of 46,000 letters."""
+    said = refusal(workbook(tmp_path / "many.xlsx", **{f"s{i}": "" for i in range(300)}))
+    assert '20 "s19" and 280 more' in said
+    assert len(said) < 700

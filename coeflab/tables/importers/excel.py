@@ -309,6 +309,9 @@ def _cells_of(sheet: Any, name: str, path: Path) -> list[list[Value]]:
     return list(sheet.to_python(skip_empty_area=False))
 
 
+MOST_NAMED = 20  # sheets in one message
+
+
 def _sheets(path: Path, only: str = "") -> dict[str, list[list[Value]]]:
     """Every sheet as rows of cells from A1 on; where one is named, the others are empty: a workbook may be read once a sheet."""
     import python_calamine
@@ -385,7 +388,9 @@ def _place(row: int, column: int) -> str:
 
 def _chosen(sheets: Mapping[str, list[list[Value]]], options: Options, path: Path) -> str:
     """The sheet that is meant."""
-    known = listed([f"{i} {shown(n)}" for i, n in enumerate(sheets, start=1)]) if sheets else "none"
+    named = [f"{i} {shown(n)}" for i, n in enumerate(sheets, start=1)]
+    rest = [f"{len(named) - MOST_NAMED} more"] * (len(named) > MOST_NAMED)
+    known = listed([*named[:MOST_NAMED], *rest]) if named else "none"
     if options.sheet:
         if options.sheet in sheets:
             return options.sheet
