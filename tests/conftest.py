@@ -156,7 +156,7 @@ def _pickled(found: Any) -> bytes:
     return out.getvalue()
 
 
-def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
+def once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
     """What the first worker of a run makes; the others load it."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         return make()
@@ -174,14 +174,14 @@ def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -
 def suboff(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """The SUBOFF study, run once for all workers."""
     plan = shipped("cfd_data") / "suboff" / "plan.toml"
-    found: Study = _once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
+    found: Study = once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
     return found
 
 
 @pytest.fixture(scope="session")
 def suboff_document(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Document:
     """Its report, whole, drawn once for all workers; those that only look at it need no study."""
-    found: Document = _once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
+    found: Document = once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
     return found
 
 
