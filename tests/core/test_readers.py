@@ -75,8 +75,8 @@ def found(package: Path) -> dict[str, list[str]]:
         name = file.relative_to(package).as_posix()
         if not name.startswith(READER):
             text = file.read_text(encoding="utf-8")
-            tree = trees().get(file) or ast.parse(text) if MAY_READ.search(text) else None
-            calls = [f"{at}: {call}" for at, call in foreign(tree)] if tree else []
+            tree = trees()[file] if package == PACKAGE else ast.parse(text)
+            calls = [f"{at}: {call}" for at, call in foreign(tree)] if MAY_READ.search(text) else []
             if calls:
                 out[name] = calls
     return out
