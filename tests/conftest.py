@@ -102,6 +102,13 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
     shutil.rmtree(folder)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whatever opens a browser is slow."""
+    for item in items:
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """With COEFLAB_FORBID_SKIPS a skipped test is a failed one; an expected failure is none."""
