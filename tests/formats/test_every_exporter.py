@@ -13,11 +13,11 @@ from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
 from coeflab.formats import export as of_export
 from coeflab.formats.export import DEFLECTED, rare_states
+from coeflab.formats.exporting import export
 from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law, steered_terms
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.files import HOSTILE, slopes_alone
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
