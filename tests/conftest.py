@@ -19,9 +19,9 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from coeflab.api.validations import validation
 from coeflab.core.files import shipped
 from coeflab.core.types import locked
-from coeflab.published import validation
 from coeflab.report.content import document
 from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS

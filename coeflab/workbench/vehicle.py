@@ -29,6 +29,7 @@ from coeflab.formats.export import PlannedExport
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import CONTROLS
+from coeflab.law.water import FRESH_WATER
 from coeflab.motion.approach import along, mirrored, yaw_acceleration
 from coeflab.motion.manoeuvre import UPRIGHT, Simulation
 from coeflab.motion.simulation import manoeuvres_of, moved, simulate
@@ -38,7 +39,6 @@ from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertaint
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tables.reading import table_at
-from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from coeflab.core.files import shipped, write_atomically
-from coeflab.published.documents import report_of, studied, written
+from coeflab.api.documents import report_of, studied, written
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
 from coeflab.report.figures.estimator import estimator_figure

@@ -71,8 +71,8 @@ def test_every_command_that_writes_a_parameter_file_is_here() -> None:
     }  # fmt: skip
     assert writers == {
         "workbench/exports.py",
-        "workbench/tune.py",
+        "identify/tune.py",
         "cli/params.py",
-        "cli/identify.py",
+        "identify/commands/identify.py",
         "api/vehicle.py",
     }

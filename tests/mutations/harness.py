@@ -31,10 +31,11 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.formats.stated_file import Stated, stated_file
+from coeflab.glider.flight import Flown
+from coeflab.glider.glide import GlideRun
+from coeflab.glider.glider import Glider, gliders_at, read_glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.glider.glide import GlideRun
-from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.published.estimates import acceptance as from_shape
 from coeflab.published.flyingfish import acceptance as flyingfish
@@ -58,7 +59,6 @@ from coeflab.study.study import Study
 from coeflab.study.validation import printed_indices
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
-from coeflab.workbench.glide import Flown
 
 GRAVE = {Severity.WARN: "warns", Severity.FAIL: "fails"}
 REFUSED = "refused"

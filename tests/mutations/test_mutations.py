@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.finding import Severity
-from coeflab.motion.glider import motion
+from coeflab.glider import motion
 from coeflab.study.study import Study
 from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, validate_huuv
 from tests.mutations.mutations import NR, UNDETECTABLE, YR, every_constant, mutations, of_huuv, published, unchanged
