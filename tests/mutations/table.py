@@ -1,4 +1,4 @@
-"""The mutation table of docs/validation.md: ``python -m tests.mutations.table`` writes it anew."""
+"""The table of docs/mutations.md: ``python -m tests.mutations.table`` writes it anew."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from tests.mutations.harness import REFUSED, Outcome, Suboff, compare
 from tests.mutations.mutations import Mutation, mutations, unchanged
 
-PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
+PAGE = Path(__file__).parents[2] / "docs" / "mutations.md"
 BEGIN, END = "<!-- mutation table: made by tests/mutations/table.py -->", "<!-- end of the mutation table -->"
 HEAD = "| validation | mutation | noticed | first by |\n|---|---|---|---|\n"
 
