@@ -101,11 +101,10 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Whatever opens a browser is slow; real simulators and solvers begin, so that no worker waits for the longest at the end."""
+    """Whatever opens a browser is slow."""
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.slow)
-    items.sort(key=lambda item: "consumers" not in item.path.parts)
 
 
 @pytest.hookimpl(wrapper=True)
