@@ -136,6 +136,12 @@ def only(document: Document, names: Sequence[str]) -> Document:
     ------
     InputError
         A name belongs to no section.
+
+    Examples
+    --------
+    >>> page = Document("T", "s", (Section("one", "One"), Section("two", "Two")))
+    >>> [s.title for s in only(page, ["two"]).sections]
+    ['Two']
     """
     if not names:
         return document

@@ -137,7 +137,7 @@ def _made(
 
 def _print_loss(made: Export, parameters: ParameterFile) -> None:
     from coeflab.api.exporting import without_law
-    from coeflab.formats import loss_tables
+    from coeflab.formats.loss_tables import at_points, forces, in_short, parts
 
     loss = made.loss
     if loss is None:
@@ -147,15 +147,15 @@ def _print_loss(made: Export, parameters: ParameterFile) -> None:
         if made.lossless
         else f"{made.target} does not hold all of {parameters.name}:"
     )
-    show.text(whole + ("" if made.lossless else f" {loss_tables.in_short(loss)}."))
+    show.text(whole + ("" if made.lossless else f" {in_short(loss)}."))
     for said in without_law(parameters):
         show.sentence(f"The file has {said}.")
     show.text()
-    show.table(loss_tables.forces(loss))
-    show.table(loss_tables.at_points(loss.at_points, f"Force law of {made.target}", controls=False))
+    show.table(forces(loss))
+    show.table(at_points(loss.at_points, f"Force law of {made.target}", controls=False))
     if not parameters.measured:
         show.text("The parameter file has no measured points to compare the law with.")
-    show.table(loss_tables.parts(parameters, loss.water))
+    show.table(parts(parameters, loss.water))
 
 
 def _refusal(made: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:

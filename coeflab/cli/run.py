@@ -189,7 +189,7 @@ def _tows(study: Study) -> None:
 
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
-    from coeflab.formats import loss_tables
+    from coeflab.formats.loss_tables import at_points
     from coeflab.report.acceptance import headline_of_study
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
@@ -211,7 +211,7 @@ def _every_table(study: Study) -> None:
         show.table(each)
     show.table(model_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
-        show.table(loss_tables.at_points(points_of(parameters), f"Force law of {name}"))
+        show.table(at_points(points_of(parameters), f"Force law of {name}"))
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from coeflab.cli import complete, show
+from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
-from coeflab.core.registry import declared, of_application
+from coeflab.core.registry import of_application
 
 if TYPE_CHECKING:
     from coeflab.motion.manoeuvre import Simulation

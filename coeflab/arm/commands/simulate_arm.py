@@ -70,11 +70,11 @@ def simulate(
     options : mapping of str to value
         Further ones, of the manoeuvre and of its motion.
     to : str
-        Format of the table.
-    out : Path or None
-        Folder of the files; None to print alone.
+        Format of the motion: csv or parquet.
+    out : Path, optional
+        Folder for motion and pictures; without it nothing is written.
     json : bool
-        Print one JSON object.
+        Whether one JSON object is printed.
 
     Raises
     ------
