@@ -17,10 +17,10 @@ import pinocchio as pin
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from coeflab.core.files import shipped
 from coeflab.arm import compiled, kane
 from coeflab.arm.arm_file import read_chain
 from coeflab.arm.chain import Chain
+from coeflab.core.files import shipped
 from tests.arm.chains import pinocchio_model
 
 REPEATS = 7

@@ -26,13 +26,13 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from coeflab.core.files import shipped  # noqa: E402
 from coeflab.arm import compiled, kane  # noqa: E402
 from coeflab.arm.arm_file import read_chain  # noqa: E402
 from coeflab.arm.chain import Chain, Joint  # noqa: E402
 from coeflab.arm.closed_form import derive  # noqa: E402
 from coeflab.arm.languages import Origin, written  # noqa: E402
 from coeflab.arm.tape import ClosedForm  # noqa: E402
+from coeflab.core.files import shipped  # noqa: E402
 
 REPEATS, CALLS = 5, 1_000_000
 C_LOOP = """

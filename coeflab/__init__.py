@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.motion.trim.linear_model import LinearModel
+    from coeflab.report.rendered import rendered
     from coeflab.study.plan import read_plan
     from coeflab.study.study import Plan
     from coeflab.tables.campaign import read_campaign
@@ -53,7 +54,6 @@ if TYPE_CHECKING:
     from coeflab.tables.importers import PlannedTable
     from coeflab.tank.front_door import Tow, tow
     from coeflab.vehicle.parameter_file import ParameterFile
-    from coeflab.workbench import rendered
 
 
 __version__ = VERSION
@@ -124,7 +124,7 @@ _HOMES = {
     "study.plan": ("read_plan",),
     "study.study": ("Plan",),
     "api.validations": ("validation",),
-    "workbench": ("rendered",),
+    "report.rendered": ("rendered",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

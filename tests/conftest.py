@@ -26,10 +26,11 @@ from coeflab.report.content import document
 from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables, run
+from coeflab.tables.reading import read_tables
 from tests.cli.forked import Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
 

@@ -13,9 +13,9 @@ import coeflab
 ROOT = Path(coeflab.__file__).parent
 FEW = 2  # parameters that a summary line can explain
 EXPLAINED = (
-    r"api/", r"core/", r"workbench/", r"tables/importers/", r"bodies/(readers|simplify|added_mass)/", r"fits/\w+\.py", r"formats/\w+/(read|write)\.py",
+    r"api/", r"core/", r"study/(run|estimated_vehicle)\.py", r"tables/importers/", r"bodies/(readers|simplify|added_mass)/", r"fits/\w+\.py", r"formats/\w+/(read|write)\.py",
     r"formats/model_files\.py", r"vehicle/comparison\.py", r"motion/(manoeuvres|simulators|trim)/", r"identify/identify\.py",
-    r"motion/uncertainty/(uncertainty|batches)\.py", r"study/checks/", r"report/(formats|gallery)/", r"published/documents\.py",
+    r"motion/uncertainty/(uncertainty|batches)\.py", r"study/checks/", r"report/(formats|gallery)/",
 )  # fmt: skip
 SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=\n\n[A-Z]\w*\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
 Function = tuple[Path, str, tuple[str, ...], str]

@@ -49,7 +49,7 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
     InputError
         There is no such study; or its input cannot be used.
     """
-    from coeflab.workbench import run
+    from coeflab.study.run import run
 
     found = _meant(study)
     if isinstance(found, Plan):

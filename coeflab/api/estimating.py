@@ -12,8 +12,8 @@ from coeflab.core.files import stem
 from coeflab.core.machine import one_thread
 from coeflab.law.scaling import Conditions
 from coeflab.law.water import FRESH_WATER
+from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
-from coeflab.workbench.vehicle import estimated
 
 
 @one_thread()

@@ -12,8 +12,8 @@ from coeflab.api.vehicle import Vehicle
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.study import study as plain
+from coeflab.study.run import run as carried_out
 from coeflab.study.study import Plan
-from coeflab.workbench import run as carried_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

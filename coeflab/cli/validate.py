@@ -50,8 +50,8 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
     from coeflab.api.documents import report_of
     from coeflab.api.documents import written as rendered
     from coeflab.core.files import write_all
+    from coeflab.formats.exporting import parameter_files_rendered
     from coeflab.report import acceptance as acceptance_tables
-    from coeflab.workbench.exports import parameter_files_rendered
 
     files = parameter_files_rendered(found.parameter_files) | dict(rendered(report_of(found).document, ["html"]))
     files |= {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}

@@ -23,7 +23,9 @@ from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
+from coeflab.report.rendered import rendered
 from coeflab.study.plan import DEFAULT_FITS
+from coeflab.study.run import run
 from coeflab.study.secants import secant
 from coeflab.study.study import Plan, PlannedTow, Study
 from coeflab.study.towed import NOT_RUN, OPEN, SECANT, TowedRow, runs_used
@@ -65,7 +67,6 @@ from coeflab.tank.tank_file import declared_body, default_tank, default_text, re
 from coeflab.tank.tank_keys import TankFile
 from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
-from coeflab.workbench import rendered, run
 
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
 GOES_ON, BEGINS, ANEW = "goes on from what it wrote last", "begins anew, as it had written nothing", "run anew"

@@ -15,8 +15,8 @@ from coeflab.bodies.simplify.source import mesh_body
 from coeflab.core.axes import DIRECTIONS, Axes, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.estimates import Water, estimated
+from coeflab.study.estimated_vehicle import asked, from_shape, subject
 from coeflab.tank.tank_file import read_tank
-from coeflab.workbench.vehicle import asked, from_shape, subject
 from tests.bodies.four import FOUR
 from tests.bodies.twelve import TWELVE
 

@@ -63,14 +63,14 @@ def test_what_params_check_fails_is_said_by_slower_writers(coeflab: Run, tmp_pat
 
 
 def test_every_command_that_writes_a_parameter_file_is_here() -> None:
-    """Places of the source that make its bytes: two in the workbench, which run, validate, vehicle, merge and tune share, params new, identify."""
+    """Places of the source that make its bytes: those of exports and tunings, which run, validate, vehicle, merge and tune share, params new, identify."""
     package = Path(__file__).parents[2] / "coeflab"
     writers = {
         str(f.relative_to(package)) for f in package.rglob("*.py")
         if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
     }  # fmt: skip
     assert writers == {
-        "workbench/exports.py",
+        "formats/exporting.py",
         "identify/tune.py",
         "cli/params.py",
         "identify/commands/identify.py",

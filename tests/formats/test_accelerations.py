@@ -14,7 +14,9 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, InertialExporter
 from coeflab.formats.export import LOSSLESS, Export
+from coeflab.formats.exporting import export
 from coeflab.formats.gazebo.law import read_gz_link
+from coeflab.formats.loss_tables import forces, in_short, parts
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
 from coeflab.law.added_mass import potential_part
@@ -23,11 +25,9 @@ from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.sections import parameter_file as export_section
-from coeflab.report.tables.formats import forces, in_short, parts
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.massed import with_mass
 from tests.vehicle.test_inertia import accelerating
 

@@ -12,11 +12,11 @@ import pytest
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import DEFLECTED, covered_grid, rare_states
+from coeflab.formats.exporting import export
 from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law, steered_terms
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.files import HOSTILE, slopes_alone
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]

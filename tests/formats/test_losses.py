@@ -15,14 +15,14 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import LOSSLESS, Kind, covered_grid, loss_of, missing_mass, missing_water
+from coeflab.formats.exporting import export
+from coeflab.formats.loss_tables import in_short
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
-from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import ADDED, VALUES, torpedo, with_mass
 from tests.vehicle.test_force_law import HULL, LENGTH, parameters

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-import coeflab.workbench as workbench
+import coeflab.study.run as carried_out
 from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
@@ -424,7 +424,7 @@ class Suboff:
 
     def _run(self, plan: Any, anew: bool) -> Study:
         """Fits of tables that are as before, what the gate finds in them, and the added mass of the hulls are not made anew."""
-        fitted, hulls_of, gate = vars(workbench)["fitted"], vars(workbench)["_hulls"], data_gate.findings
+        fitted, hulls_of, gate = vars(carried_out)["fitted"], vars(carried_out)["_hulls"], data_gate.findings
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
@@ -461,7 +461,7 @@ class Suboff:
 
         hulls = self.study.hulls
         with exchanged(fitted, memo), exchanged(hulls_of, lambda *_: hulls), exchanged(gate, through_gate):
-            return workbench.run(plan)
+            return carried_out.run(plan)
 
 
 # ---- REMUS ---------------------------------------------------------------------------------------------------------

@@ -50,13 +50,13 @@ def _cell(text: str) -> str:
 
 def main() -> None:
     """Run every mutation and write the table into the page."""
-    import coeflab.workbench as workbench
     from coeflab.core.files import shipped
     from coeflab.study.plan import read_plan
+    from coeflab.study.run import run
 
     plan = replace(read_plan(Path(str(shipped("cfd_data"))) / "suboff" / "plan.toml"), exports=(), manoeuvres=())
     with TemporaryDirectory() as folder:
-        study = Suboff(workbench.run(plan), Path(folder))
+        study = Suboff(run(plan), Path(folder))
         base = {name: unchanged(name, study) for name in dict.fromkeys(m.study for m in mutations())}
         outcomes = {m: compare(base[m.study], m.run(study)) for m in mutations()}
     text = PAGE.read_text(encoding="utf-8")

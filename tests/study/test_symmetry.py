@@ -12,7 +12,7 @@ from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.study.checks import symmetry
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 
 CAMPAIGN = """
 [campaign]

@@ -9,9 +9,9 @@ from coeflab.core.files import shipped
 from coeflab.report.sections.campaign import campaign_section
 from coeflab.report.tables import oscillations as tables
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.tables.reading import table_at
-from coeflab.workbench import run
 
 HERE = shipped("cfd_data") / "pmm_synthetic"
 

@@ -95,8 +95,6 @@ def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
     return read
 
 
-__all__ = ["checked", "fitted", "read_tables", "rendered", "run"]
-
 Progress = Callable[[str], None]
 
 
@@ -124,7 +122,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     if not isinstance(plan, Plan):
         return _of_file(plan, progress)
     if plan.exports:
-        from coeflab.workbench.exports import refuse_unknown
+        from coeflab.formats.exporting import refuse_unknown
 
         refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
@@ -201,13 +199,36 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     return checked(study, progress)
 
 
-def _hulls(groups: Sequence[PlannedParameterFile], density: float, progress: Progress) -> dict[str, Triangulation]:
-    """Added mass by file, of those that name a hull."""
+def _hulls(
+    groups: Sequence[PlannedParameterFile], density: float, progress: Callable[[str], None]
+) -> dict[str, Triangulation]:
+    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once.
+
+    Parameters
+    ----------
+    groups : sequence of PlannedParameterFile
+    density : float
+        kg/m^3.
+    progress : callable
+        Takes what is being done, in words.
+    """
     if all(g.hull is None for g in groups):
         return {}
-    from coeflab.workbench.hulls import hulls_of
+    from coeflab.bodies.added_masses import added_masses
+    from coeflab.bodies.readers import read_body
 
-    return hulls_of(groups, density, progress)
+    known: dict[tuple[Path, str], Triangulation] = {}
+    out = {}
+    for group in groups:
+        if group.hull is None:
+            continue
+        key = (group.hull, group.method)
+        if key not in known:
+            body = read_body(group.hull / "body.toml" if group.hull.is_dir() else group.hull)
+            progress(f"added mass of {body.name}")
+            known[key] = added_masses(body, density, group.method, reproducible=True)
+        out[group.name] = known[key]
+    return out
 
 
 def _used(
@@ -218,7 +239,7 @@ def _used(
     refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
     if plan.exports:
-        from coeflab.workbench.exports import exports_of
+        from coeflab.formats.exporting import exports_of
 
         exports, refused = exports_of(plan.exports, files.values(), progress)
     if plan.manoeuvres:
@@ -248,7 +269,7 @@ def _of_file(place: str | Path, progress: Progress) -> Study:
 
 def _of_shape(plan: Plan, progress: Progress) -> Study:
     """The study of a body alone."""
-    from coeflab.workbench.vehicle import from_shape
+    from coeflab.study.estimated_vehicle import from_shape
 
     body = _body(plan)
     if body is None:
@@ -317,23 +338,3 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
     files += [f for b in bodies for f in b.files]
     files += [InputFile(p.name, sha256_of(p)) for p in plan.references]
     return tuple(dict.fromkeys(files))
-
-
-@one_thread()
-def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
-    """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
-    from coeflab.report.content import document
-    from coeflab.report.formats import REPORTERS
-    from coeflab.workbench.exports import parameter_files_rendered
-
-    files: dict[str, bytes] = {}
-    report = document(study, full=False)
-    for name in formats:
-        with REPORTERS.guarded(name):
-            files.update(REPORTERS.load(name).render(report))
-    files.update(parameter_files_rendered(study.parameter_files.values()))
-    for made in study.exports:
-        files.update(
-            {f"{made.folder}/{name}" if made.folder else name: content for name, content in made.files.items()}
-        )
-    return files

@@ -20,11 +20,11 @@ from coeflab.report.sections.conventions import conventions_section
 from coeflab.study.checks import data_gate, sizes, symmetry
 from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.importers import PlannedTable
 from coeflab.vehicle.inertia import water_inertia
-from coeflab.workbench import run
 
 
 def study(campaign: str, fit: str, **options: object) -> Study:

@@ -10,11 +10,11 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.formats.exporting import exports_of
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.sections.parameter_file import manoeuvre_sections
 from coeflab.study.plan import read_plan
-from coeflab.workbench.exports import exports_of
 from tests.motion.vehicles import made, rudder_covered
 from tests.report.studies import FULL, small_study
 from tests.vehicle.test_inertia import accelerating

@@ -17,8 +17,8 @@ from coeflab.formats import (
     SteeredExporter,
 )
 from coeflab.formats.export import Export, Kind, Lost, Refused, loss_of, lost_by_all
+from coeflab.formats.loss_tables import as_text, in_short
 from coeflab.formats.unspoken import found_in, lacking_tables, without_law
-from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
 if TYPE_CHECKING:

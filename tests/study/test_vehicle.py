@@ -25,6 +25,7 @@ from coeflab.core.finding import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
 from coeflab.formats.export import Loss
+from coeflab.formats.exporting import export, parameter_files_rendered
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative
@@ -39,17 +40,16 @@ from coeflab.report.sections.estimates import (
     replaced_section,
     shares_figure,
 )
+from coeflab.study import estimated_vehicle as workbench_vehicle
 from coeflab.study.checks import buoyancy, export_loss, longest_axis
+from coeflab.study.estimated_vehicle import asked, from_shape, subject
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
-from coeflab.workbench import run
-from coeflab.workbench import vehicle as workbench_vehicle
-from coeflab.workbench.exports import export, parameter_files_rendered
-from coeflab.workbench.vehicle import asked, from_shape, subject
 
 VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
 RUDDER = {"Ydr": 0.008, "Ndr": -0.0035}

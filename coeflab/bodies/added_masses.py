@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
-from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Agreement, Parts
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
@@ -23,7 +21,6 @@ if TYPE_CHECKING:
     from coeflab.bodies.body import Body
     from coeflab.bodies.simplify.simplified import Simplification
     from coeflab.law.added_mass import AddedMass
-    from coeflab.vehicle.assemble import PlannedParameterFile
 
 DENSEST = 1e5
 SHARE = 3  # digits
@@ -37,33 +34,6 @@ def methods() -> tuple[str, ...]:
     for name in ADDED_MASS.usable():
         out += [name, *(f"{name}:{preset}" for preset in ADDED_MASS.load(name).presets)]
     return tuple(out)
-
-
-def hulls_of(
-    groups: Sequence[PlannedParameterFile], density: float, progress: Callable[[str], None]
-) -> dict[str, Triangulation]:
-    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once.
-
-    Parameters
-    ----------
-    groups : sequence of PlannedParameterFile
-    density : float
-        kg/m^3.
-    progress : callable
-        Takes what is being done, in words.
-    """
-    known: dict[tuple[Path, str], Triangulation] = {}
-    out = {}
-    for group in groups:
-        if group.hull is None:
-            continue
-        key = (group.hull, group.method)
-        if key not in known:
-            body = read_body(group.hull / FILE if group.hull.is_dir() else group.hull)
-            progress(f"added mass of {body.name}")
-            known[key] = added_masses(body, density, group.method, reproducible=True)
-        out[group.name] = known[key]
-    return out
 
 
 @one_thread()

@@ -14,10 +14,10 @@ from coeflab.core.finding import Severity
 from coeflab.estimates import STEERED, _derived, _steered
 from coeflab.estimates.fins import FoilForce
 from coeflab.report.sections.parameter_file import without_u95
+from coeflab.study.estimated_vehicle import asked, compared, from_shape, subject
 from coeflab.study.study import Study
 from coeflab.vehicle.held_to_model import law_u95
 from coeflab.vehicle.merge import findings_of_merged
-from coeflab.workbench.vehicle import asked, compared, from_shape, subject
 
 ANGLE = -np.radians(15.0)
 

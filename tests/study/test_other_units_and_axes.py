@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.report.rendered import rendered
 from coeflab.study.plan import read_plan
-from coeflab.workbench import rendered, run
+from coeflab.study.run import run
 
 FOOT, POUND = 0.3048, 4.4482216152605
 TEMPLATE = files("coeflab.cli") / "template"

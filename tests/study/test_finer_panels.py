@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.bodies.finer_panels import finer_panels
 from coeflab.core.axes import Datum
 from coeflab.law.added_mass import AddedMass
-from coeflab.workbench.finer_panels import finer_panels
 
 
 def matrix(share: float, method: str = "panel") -> AddedMass:

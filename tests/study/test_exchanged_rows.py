@@ -13,7 +13,7 @@ from coeflab.fits.statistics.data_gate import Parity, prepare
 from coeflab.fits.statistics.exchanged_rows import exchanged, gains
 from coeflab.study.checks.data_gate import findings
 from tests.coverage.exchanged_rows import TABLE, campaigns, names_both, pairs, swapped, warned
-from tests.workbench.test_data_gate import demo
+from tests.study.test_data_gate import demo
 
 
 def test_every_pair_of_neighbours_of_the_shipped_one_sided_sweeps_is_named() -> None:

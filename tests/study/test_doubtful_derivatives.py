@@ -15,9 +15,9 @@ from coeflab.core.table import Check
 from coeflab.study.checks.signs import check as signs
 from coeflab.study.checks.viscous_centre import check as centres
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench import run
 
 DENSITY, LBP, MASS_PRIME = 998.0, 4.26086, 0.018078
 MASS = MASS_PRIME * 0.5 * DENSITY * LBP**3

@@ -12,9 +12,9 @@ from coeflab.core.finding import Severity
 from coeflab.study.checks.signs import check as signs
 from coeflab.study.checks.signs import unseen_columns
 from coeflab.study.plan import ParameterFileKeys
+from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.tables.reading import table_at
-from coeflab.workbench import run
 
 CAMPAIGN = """[campaign]
 name = "t"

@@ -15,11 +15,11 @@ from coeflab.report.sections.campaign import tow_sections
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.report.tables.results import by_campaign
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.secants import OF_SECANT
 from coeflab.study.study import Study
 from coeflab.study.towed import NOT_RUN, NOT_TOWED, OPEN, SECANT, Towed, towed
 from coeflab.study.validation import validations
-from coeflab.workbench import run
 
 HEAD = """
 [study]

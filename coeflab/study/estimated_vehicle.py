@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from coeflab import estimates as methods
+from coeflab.bodies.added_masses import added_masses, beside_walls
 from coeflab.bodies.body import Body
 from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.file import SELF_DESCRIBED
@@ -26,6 +27,7 @@ from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.formats.export import PlannedExport
+from coeflab.formats.exporting import exports_of
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import CONTROLS
@@ -45,8 +47,6 @@ from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_ser
 from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
-from coeflab.workbench.exports import exports_of, parameter_files_rendered
-from coeflab.workbench.hulls import added_masses, beside_walls
 
 NOTHING = Stated()
 Progress = Callable[[str], None]
@@ -461,7 +461,7 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
     name : str
     base : ParameterFile
     run : callable
-        `coeflab.workbench.run`.
+        `coeflab.study.run.run`.
 
     Raises
     ------
@@ -479,28 +479,3 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
     )  # fmt: skip
     study = run(plan)
     return next(iter(study.parameter_files.values())), study.tables[0].scaling
-
-
-@one_thread()
-def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
-    """The merged parameter file with its tables, and a report of it, by name.
-
-    Parameters
-    ----------
-    made : Merged
-    moves : sequence of Simulation
-    carried : sequence of Carried
-        Of `replaced`.
-    """
-    from coeflab.report.document import Document, Section, digest_of
-    from coeflab.report.formats import REPORTERS
-    from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
-
-    p = made.parameters
-    moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
-    page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,
-                    digest_of(p.provenance.inputs), answer=answer_of_merge(made, moves, carried))  # fmt: skip
-    files = parameter_files_rendered([p])
-    with REPORTERS.guarded("html"):
-        files.update(REPORTERS.load("html").render(page))
-    return files

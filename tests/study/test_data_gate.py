@@ -1,6 +1,6 @@
 """The gate for data: one corrupted cell is a warning, a clean campaign is none.
 
-``python tests/workbench/test_data_gate.py COUNT SEED`` prints how many of COUNT clean campaigns get a warning, and which.
+``python tests/study/test_data_gate.py COUNT SEED`` prints how many of COUNT clean campaigns get a warning, and which.
 """
 
 from __future__ import annotations

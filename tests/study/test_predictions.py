@@ -14,11 +14,11 @@ from coeflab.report.acceptance import Basis, headline_of_study, held_of_study
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.report.tables.uncertainty import predictions
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.study.validation import Validation, by_measured_number, validation, validations
-from coeflab.workbench import run
-from tests.workbench.test_own_tows import HEAD, tow_of_the_bare_hull
+from tests.study.test_own_tows import HEAD, tow_of_the_bare_hull
 
 SAME_WATER = (14e6, 14e6)
 

@@ -1,6 +1,6 @@
 """A longer sweep that moves a slope beyond the U95 of a shorter one, and widens it, is said at the coefficient.
 
-``python tests/workbench/test_fitted_range.py COUNT SEED`` prints how many of COUNT simulated campaigns get the warning.
+``python tests/study/test_fitted_range.py COUNT SEED`` prints how many of COUNT simulated campaigns get the warning.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.study.checks import coverage
 from coeflab.study.checks.fitted_range import check, moved_by_the_rest
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
-from coeflab.workbench import run
 from tests.coverage.slope_campaigns import FAMILIES
 from tests.report.studies import FULL, small_study
-from tests.workbench.test_own_tows import HEAD
+from tests.study.test_own_tows import HEAD
 
 WHOLE, U95 = -0.030, 0.0030
 CAP = float(np.sin(np.radians(10.0)))

@@ -17,10 +17,10 @@ from coeflab.law import transforms
 from coeflab.law.scaling import Scaling
 from coeflab.study.checks.conversion import WITHIN, differences
 from coeflab.study.plan import read_plan
+from coeflab.study.run import conversions, settled
 from coeflab.study.study import Conversion, PlannedConversion
 from coeflab.tables import force_table, reading
 from coeflab.tables.reading import table_at
-from coeflab.workbench import conversions, settled
 
 PLAN = read_plan(shipped("cfd_data") / "suboff" / "plan.toml")
 

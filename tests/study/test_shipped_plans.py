@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
+from coeflab.formats.exporting import export
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.first_page import answer
+from coeflab.report.rendered import rendered
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.tables.models import qualities
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.workbench import rendered, run
-from coeflab.workbench.exports import export
 
 DATA = shipped("cfd_data")
 NAMES = ("flyingfish_air_synthetic", "flyingfish_water_synthetic", "huuv_synthetic", "thauv_synthetic")

@@ -10,9 +10,9 @@ import trimesh
 
 from coeflab.core.finding import Severity
 from coeflab.study.checks import ideal_fluid
+from coeflab.study.estimated_vehicle import asked, from_shape, subject
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.vehicle import asked, from_shape, subject
 
 SIZE = (0.6, 0.45, 0.35)
 

@@ -12,12 +12,13 @@ import pytest
 from coeflab.core.errors import InputError, PluginError
 from coeflab.core.finding import Severity
 from coeflab.formats.export import PlannedExport
+from coeflab.formats.exporting import export
 from coeflab.report.content import document
+from coeflab.report.rendered import rendered
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
-from coeflab.workbench import rendered, run
-from coeflab.workbench.exports import export
-from tests.workbench.test_other_units_and_axes import write_template
+from tests.study.test_other_units_and_axes import write_template
 
 
 def planned(folder: Path, *tables: str) -> Plan:
