@@ -31,6 +31,8 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from tests.formats.massed import with_mass
 from tests.vehicle.test_inertia import accelerating
 
+few_states = pytest.mark.usefixtures("few_states")
+
 Array = np.ndarray
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 TARGETS = ["fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"]
@@ -103,6 +105,7 @@ def own(made: Export) -> dict[str, bytes]:
     return {n: c for n, c in made.files.items() if not n.endswith(".loss.txt")}
 
 
+@few_states
 @both
 @pytest.mark.parametrize("target", READERS)
 def test_the_first_acceleration_is_that_of_simulate(target: str, accelerations: str) -> None:
@@ -116,6 +119,7 @@ def test_the_first_acceleration_is_that_of_simulate(target: str, accelerations: 
     assert np.max(np.abs(found - other)) > 0.01
 
 
+@few_states
 @both
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin"])
 def test_the_flagship_too(suboff: Study, target: str, accelerations: str) -> None:
@@ -127,6 +131,7 @@ def test_the_flagship_too(suboff: Study, target: str, accelerations: str) -> Non
     np.testing.assert_allclose(found[at], wanted[at], rtol=1e-9, atol=1e-12)
 
 
+@few_states
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin", "uuv_simulator", "xdyn"])
 def test_a_flipped_sign_shows(target: str) -> None:
     """The sway-yaw entry of the written added mass, with the other sign."""
@@ -215,7 +220,7 @@ def test_motions_without_a_known_inertia_have_no_number(suboff: Study) -> None:
     assert written(nothing, "mss", "measured").loss.accelerations is None
 
 
-@pytest.mark.slow
+@few_states
 def test_the_choice_is_named_in_every_file() -> None:
     file = accelerating()
     for target in (*TARGETS, "stonefish"):

@@ -116,6 +116,7 @@ def test_hostile_names_of_thrusters_are_inert(name: str) -> None:
         assert len(siblings) == len(set(siblings))
 
 
+@pytest.mark.usefixtures("few_states")
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin"])
 def test_what_the_fins_hold_is_not_called_lost(target: str) -> None:
     """REMUS 100 states no limits: the one that is written is said, and where a command goes."""

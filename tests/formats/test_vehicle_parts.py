@@ -23,6 +23,8 @@ from tests.formats.massed import CENTRE, MASS, torpedo
 from tests.formats.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floating, quaternion, restoring
 from tests.rigid_motion import rotation
 
+pytestmark = pytest.mark.usefixtures("few_states")
+
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
 DRIVES = {"gazebo", "gazebo_plugin", "c", "fmi"}  # thrusters and limits of fins are in it
 HOLD = {"c", "fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}

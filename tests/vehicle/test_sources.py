@@ -246,7 +246,7 @@ def test_a_motion_ends_where_a_table_has_no_value(rule: str) -> None:
     found = trim(vehicle(file, free=("u", "v", "r")), {}, orders)
     assert [f.code for f in found.refused] == (["law.refused_point"] if rule == "refuse" else [])
     body = vehicle(file, free=("u", "v", "r"))
-    plan = straight_then(orders, 20.0)
+    plan = straight_then(orders, 3.0)
     for how in (
         {},
         {"integrator": "rk4", "step": 0.02, "kernel": "numpy"},
