@@ -5,10 +5,7 @@ from __future__ import annotations
 import pytest
 
 from coeflab.tank.solvers import SOLVERS
-from tests.cli.conftest import coeflab, fresh
 from tests.tank import slow_solver
-
-__all__ = ["coeflab", "fresh"]
 
 
 @pytest.fixture(scope="session")
