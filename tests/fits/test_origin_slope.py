@@ -52,7 +52,7 @@ def contains(s: OriginSlope, slope: float = SLOPE) -> bool:
 def test_a_clean_sweep_has_a_value_that_contains_the_truth_and_no_remark(clean: OriginSlope) -> None:
     assert clean.status is Status.OK
     assert contains(clean)
-    assert clean.u95 < 0.25 * abs(SLOPE)
+    assert clean.u95 < 0.36 * abs(SLOPE)
     assert not clean.notes
     assert clean.used.all()
     assert clean.noise == pytest.approx(NOISE, rel=0.5)
@@ -232,7 +232,7 @@ def test_value_and_u95_have_the_probability_of_the_interval(second: float) -> No
 
 
 def test_a_sign_is_open_where_what_is_printed_contains_zero() -> None:
-    slopes = [estimate(X, k * 1e-4 * X + 4e-5 * SHOCKS) for k in range(0, 10, 2)]
+    slopes = [estimate(X, k * 1e-4 * X + 4e-5 * SHOCKS) for k in range(0, 20, 4)]
     assert [s.status is Status.OPEN for s in slopes] == [abs(s.value) <= s.u95 for s in slopes]
     assert len({s.status for s in slopes}) == 2
 
@@ -354,7 +354,7 @@ def test_a_power_that_is_no_member_is_covered_when_the_noise_is_small(power: flo
 
 def test_more_noise_leaves_a_smaller_tail_out() -> None:
     y = SLOPE * X + np.abs(SLOPE) * X[-1] * np.array([[1e-4], [3e-2]]) * SHOCKS
-    s = estimate_many(prepare(X), y, deletions=False)
+    s = estimate_many(replace(prepare(X), shapes=()), y, deletions=False)
     assert np.all(np.diff(s.u95 / s.sd) > 0.0)
 
 

@@ -27,6 +27,7 @@ import numpy as np
 from scipy import special
 
 from coeflab.core.types import Array, locked, remembered
+from coeflab.fits.statistics import one_signed
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.many_rows import Strips
 from coeflab.fits.statistics.prior_grid import Rotations, rotated
@@ -122,6 +123,8 @@ class Design:
     members : tuple of Members
     strips : Strips or None
         Of what the rows are means.
+    shapes : tuple of Shapes
+        One-signed sums, rows weighed by their variance; none in a what-if.
     """
 
     x: Array
@@ -132,7 +135,8 @@ class Design:
     terms: Array
     order: tuple[int, ...]
     members: tuple[Members, ...]
-    strips: Strips | None = None
+    strips: Strips | None
+    shapes: tuple[one_signed.Shapes, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,9 +146,10 @@ class Slopes:
     Attributes
     ----------
     value, lower, upper, sd, noise : (b,) array
-        Median, ends with the same tail beyond each, standard deviation, standard deviation of one reading.
+        Median, ends with the same tail beyond each or as far as one-signed curves reach, standard deviation, that of one reading.
     u95 : (b,) array
-        What is printed: value +- u95 has the probability of [lower, upper], 1 - 2 tail, also where the mixture is skewed.
+        What is printed: value +- u95 has the probability 1 - 2 tail, also where the mixture is skewed, and holds every slope that a
+        one-signed curve allows.
     mean : (b,) array
         Mean if no row is wrong, the like of ``without``.
     wrong : (b, n) array
@@ -284,8 +289,13 @@ def prepare(
     labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
     even = not symmetric and not one_sided and not odd and "even" not in without
-    terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
-    p = terms.shape[1]
+    nodes = t if strips is None else strips.nodes.ravel()
+    terms, bent = _terms(nodes, even), one_signed.curved(nodes)
+    if strips is not None:
+        terms, bent = strips.mean(terms, 0), strips.mean(bent, 0)
+    p, root_weights = terms.shape[1], 1.0 / np.sqrt(ratios)[:, None]
+    free = terms[:, [] if odd else [0, 2] if even else [0]]
+    shapes = () if without else one_signed.prepare(*(root_weights * z for z in (free, terms[:, 1:2], bent)))
     specifications = _specifications(t, even, labels, variance is not None, strips)
     if "remainder" in without:
         specifications = [s for s in specifications if s[0] not in ODD and s[0] not in SIDES]
@@ -319,7 +329,7 @@ def prepare(
                 precision, _log_prior(kinds, nuisance, curved), log_det + rotations.log_det().reshape(log_det.shape),
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, order, tuple(members), strips)
+    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, order, tuple(members), strips, shapes)
 
 
 def _log_density(freedom: float) -> float:
@@ -442,6 +452,11 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
     ends, half, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
+    if design.shapes:
+        weighed = y / size[:, None] / np.sqrt(design.variance)
+        low, high = one_signed.ends(design.shapes, weighed, 0.0 if stated is None else STATED_FREEDOM, noise, floor, least)
+        half = np.max([half, high - ends[:, 1], ends[:, 1] - low], axis=0)
+        ends[:, 0], ends[:, 2] = np.minimum(ends[:, 0], low), np.maximum(ends[:, 2], high)
     low, value, high = ends.T * unit
     return Slopes(value, low, high, half * unit, sd * unit, noise * size, middle * unit, wrong, without, weights)
 
