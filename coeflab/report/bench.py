@@ -19,7 +19,7 @@ from coeflab.core.types import brief
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.slope_at_origin import NODES
-from coeflab.fits.statistics import origin_slope, slope_mixture, slopes, student_mixture
+from coeflab.fits.statistics import one_signed, origin_slope, slope_mixture, slopes, student_mixture
 from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
@@ -41,6 +41,7 @@ CONSTANTS = (
     "QUADRATIC_ODDS", "ALIKE", "GROWING", "SETTING", "COMMON", "LOOSE", "POWER", "TAIL", "TAIL_PER_DECADE", "TAILS", "WRONG",
     "PINNED", "ROUNDING", "WEIGHTLESS", "DECAY", "ORDERS", "STATED_FREEDOM", "MOST_LIKELY",
 )  # fmt: skip
+ONE_SIGNED = ("POWERS", "SATURATING", "TERMS", "SINGULAR", "TAILS", "RULED_OUT")
 COMPONENTS = "YNZMK"
 RUDDERS = (10.0, 20.0)  # deg: the zigzags of IMO MSC.137(76)
 PUBLISHED = 4  # values drawn beside ours
@@ -74,6 +75,7 @@ class BenchData:
         constants = {name: _plain(getattr(slope_mixture, name)) for name in CONSTANTS}
         constants |= {"REMOVE": origin_slope.REMOVE, "FEWEST": origin_slope.FEWEST}
         constants |= {"ODD": list(slope_mixture.ODD.items()), "SIDES": list(slope_mixture.SIDES.items())}
+        constants |= {"ONE_SIGNED": {name: _plain(getattr(one_signed, name)) for name in ONE_SIGNED}}
         constants |= {"NODES": slope_mixture.NODES.tolist(), "WEIGHTS": slope_mixture.WEIGHTS.tolist()}
         return {
             "constants": constants | {"KEPT": student_mixture.KEPT, "HALVINGS": student_mixture.HALVINGS},

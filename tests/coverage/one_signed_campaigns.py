@@ -10,7 +10,7 @@ Of a cell ``line`` is by how many standard deviations the noiseless curve rules 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 from pathlib import Path
 
@@ -83,7 +83,10 @@ def line_deviation(t: Array, odd: bool) -> float:
     return float(1.0 / np.linalg.norm(t if odd else t - t.mean()))
 
 
-def frontier(t: Array, odd: bool) -> float:
+SLOWEST, SHAPES = tuple(np.linspace(1.7, 4.0, 24)), tuple(np.geomspace(0.5, 5.0, 12))
+
+
+def frontier(t: Array, odd: bool, powers: Sequence[float] = SLOWEST, saturating: Sequence[float] = SHAPES) -> float:
     """Expected length at a line of the shortest 95 % interval of the class, over that of a line by least squares.
 
     With a line alone and k standard deviations of the slope's best test against the nearest curve of the class, its length is
@@ -91,8 +94,7 @@ def frontier(t: Array, odd: bool) -> float:
     """
     one_sided = not t.min() < 0.0 < t.max()
     free = np.zeros((len(t), 0)) if odd else np.stack([np.ones_like(t), *([] if one_sided else [t * t])], 1)
-    bent = [power(t, p) for p in np.linspace(1.7, 4.0, 24)]
-    bent += [power(t, 2.0) / (1.0 + np.abs(t) / k) for k in np.geomspace(0.5, 5.0, 12)]
+    bent = [power(t, p) for p in powers] + [power(t, 2.0) / (1.0 + np.abs(t) / k) for k in saturating]
     least = np.inf
     for f in bent:  # two shapes of one sign are never nearer than the nearer of both
         r = np.linalg.qr(np.column_stack([free, f, t]), mode="r")
@@ -126,7 +128,9 @@ def main(campaigns: int, seed: int) -> None:
     lines = ["family,design,noise %,campaigns,line,cover %,mean U95 / line,frontier"]
     for design, family, noise in product(DESIGNS, FAMILIES, NOISE):
         inside, length, left = cell(family, design, noise, campaigns, seed)
-        t, odd = settings(design, np.random.default_rng((seed, FAMILIES.index(family), DESIGNS.index(design), NOISE.index(noise))))
+        t, odd = settings(
+            design, np.random.default_rng((seed, FAMILIES.index(family), DESIGNS.index(design), NOISE.index(noise)))
+        )
         lines.append(
             f"{family.replace(',', ':')},{design},{100 * noise:g},{campaigns},{np.median(left):.1f},{100 * inside.mean():.1f},"
             f"{length.mean():.2f},{frontier(t, odd):.2f}"

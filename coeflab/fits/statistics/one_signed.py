@@ -128,8 +128,8 @@ def ends(
     lower, upper = np.full(len(y), np.inf), np.full(len(y), -np.inf)
     for misfit, centre, size, low, high in found:
         reach = np.sqrt(np.maximum(allowed - misfit, 0.0)) / size
-        low, high = np.maximum(low, -reach), np.minimum(high, reach)
-        there = (allowed >= misfit) & (low <= high)
-        lower = np.minimum(lower, np.where(there, centre + low, np.inf).min(0))
-        upper = np.maximum(upper, np.where(there, centre + high, -np.inf).max(0))
+        left, right = np.maximum(low, -reach), np.minimum(high, reach)
+        there = (allowed >= misfit) & (left <= right)
+        lower = np.minimum(lower, np.where(there, centre + left, np.inf).min(0))
+        upper = np.maximum(upper, np.where(there, centre + right, -np.inf).max(0))
     return lower, upper

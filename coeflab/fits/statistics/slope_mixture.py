@@ -131,7 +131,6 @@ class Design:
     largest: float
     variance: Array
     flat: int
-    settings: Index
     terms: Array
     order: tuple[int, ...]
     members: tuple[Members, ...]
@@ -253,8 +252,6 @@ def prepare(
     x: Array,
     variance: Array | None = None,
     *,
-    symmetric: bool = False,
-    settings: Array | None = None,
     strips: Strips | None = None,
     odd: bool = False,
     without: tuple[str, ...] = (),
@@ -266,10 +263,6 @@ def prepare(
     x : (n,) array
     variance : (n,) array, optional
         Stated variance of each row; only its ratios count here.
-    symmetric : bool
-        No even part.
-    settings : (n,) array, optional
-        Rows of one label are replicates of one setting; equal x without it.
     strips : Strips, optional
         Rows are means over several settings.
     odd : bool
@@ -286,9 +279,9 @@ def prepare(
     t, n = x / largest, len(x)
     strips = strips and strips.over(largest)
     ratios = np.ones(n) if variance is None else variance
-    labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
+    labels = np.unique(np.round(t, 9), return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
-    even = not symmetric and not one_sided and not odd and "even" not in without
+    even = not one_sided and not odd and "even" not in without
     nodes = t if strips is None else strips.nodes.ravel()
     terms, bent = _terms(nodes, even), one_signed.curved(nodes)
     if strips is not None:
@@ -329,7 +322,7 @@ def prepare(
                 precision, _log_prior(kinds, nuisance, curved), log_det + rotations.log_det().reshape(log_det.shape),
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, order, tuple(members), strips, shapes)
+    return Design(x, largest, ratios, 1 if one_sided or odd else 2, terms, order, tuple(members), strips, shapes)
 
 
 def _log_density(freedom: float) -> float:
@@ -454,7 +447,9 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     unit = size / design.largest
     if design.shapes:
         weighed = y / size[:, None] / np.sqrt(design.variance)
-        low, high = one_signed.ends(design.shapes, weighed, 0.0 if stated is None else STATED_FREEDOM, noise, floor, least)
+        low, high = one_signed.ends(
+            design.shapes, weighed, 0.0 if stated is None else STATED_FREEDOM, noise, floor, least
+        )
         half = np.max([half, high - ends[:, 1], ends[:, 1] - low], axis=0)
         ends[:, 0], ends[:, 2] = np.minimum(ends[:, 0], low), np.maximum(ends[:, 2], high)
     low, value, high = ends.T * unit

@@ -201,13 +201,13 @@ const slopeAtOrigin = (k) => {
     });
   });
 
-  const prepare = (x, variance, { symmetric = false, odd = false, without = [] } = {}) => {
+  const prepare = (x, variance, { odd = false, without = [] } = {}) => {
     const n = x.length, largest = Math.max(...x.map(Math.abs)), t = x.map((v) => v / largest);
     const ratios = variance || new Array(n).fill(1);
     const rounded = t.map((v) => Math.round(v * 1e9)), distinct = [...new Set(rounded)].sort((a, b) => a - b);
     const labels = rounded.map((v) => distinct.indexOf(v));
     const oneSided = !(Math.min(...t) < 0 && Math.max(...t) > 0);
-    const even = !symmetric && !without.includes("even") && !oneSided && !odd;
+    const even = !without.includes("even") && !oneSided && !odd;
     const terms = t.map((v) => termsAt(v, even)), p = terms[0].length;
     const specs = specifications(t, even, labels, variance !== null, without);
     const total = specs.reduce((s, m) => s + m.odds, 0);
@@ -290,7 +290,77 @@ const slopeAtOrigin = (k) => {
         members.push({ name: spec.name, smooth: spec.smooth, size, root, columns, cells });
       });
     }
-    return { x, t, n, p, largest, variance: ratios, flat: oneSided || odd ? 1 : 2, even, labels, terms, members };
+    const free = odd ? [] : even ? [t.map(() => 1), t.map((v) => v * v)] : [t.map(() => 1)];
+    return { x, t, n, p, largest, variance: ratios, flat: oneSided || odd ? 1 : 2, even, labels, terms, members, free: without.length ? null : free };
+  };
+
+  // Slopes that one-signed curves allow, as coeflab/fits/statistics/one_signed.py has them; null without a degree of freedom.
+  const oneSigned = (d, y, more, noise, floor, least) => {
+    const { n, t } = d, f = d.free.length, one = k.ONE_SIGNED, root = d.variance.map((v) => 1 / Math.sqrt(v));
+    const weighed = (column) => Float64Array.from(column, (v, i) => v * root[i]);
+    const free = d.free.map(weighed), slope = weighed(t);
+    const bent = [
+      ...one.POWERS.map((p) => weighed(t.map((v) => Math.sign(v) * Math.abs(v) ** p))),
+      ...one.SATURATING.map((c) => weighed(t.map((v) => v * Math.abs(v) * (1 + 1 / c) / (1 + Math.abs(v) / c)))),
+    ];
+    // Gram-Schmidt, every column twice; a right-hand side is the last column, what is left of it the misfit.
+    const factored = (columns) => {
+      const basis = [], r = columns.map(() => new Float64Array(columns.length));
+      columns.forEach((column, j) => {
+        const own = Float64Array.from(column);
+        for (let round = 0; round < 2; round++) basis.forEach((b, i) => {
+          const s = dot(b, own, n);
+          r[i][j] += s;
+          for (let q = 0; q < n; q++) own[q] -= s * b[q];
+        });
+        r[j][j] = Math.sqrt(dot(own, own, n));
+        basis.push(own.map((v) => v / (r[j][j] || 1)));
+      });
+      return r;
+    };
+    const found = [], right = weighed(y), costs = [];
+    for (let m = 0; m <= Math.min(one.TERMS, n - f - 3); m++) {
+      const sums = m === 0 ? [[]] : m === 1 ? bent.map((_, i) => [i]) : bent.flatMap((_, i) => grid(i + 1, bent.length, (j) => [i, j]));
+      let some = false, cheapest = Infinity;
+      for (const sum of sums) {
+        const r = factored([...free, ...sum.map((i) => bent[i]), slope, right]), at = f + m, own = grid(0, at + 1, (i) => r[i][i]);
+        if (!(Math.min(...own) > one.SINGULAR * Math.max(...own))) continue;
+        some = true;
+        const size = r[at][at], centre = r[at][at + 1] / size, misfit = r[at + 1][at + 1] ** 2;
+        const back = (column) => {
+          const c = new Array(m);
+          for (let i = m - 1; i >= 0; i--) {
+            c[i] = r[f + i][column];
+            for (let j = i + 1; j < m; j++) c[i] -= r[f + i][f + j] * c[j];
+            c[i] /= r[f + i][f + i];
+          }
+          return c;
+        };
+        const moves = back(at).map((v) => -v), edge = back(at + 1).map((v, i) => v / -moves[i] - centre);
+        for (const up of [1, -1]) {
+          const low = Math.max(-Infinity, ...edge.filter((_, i) => up * moves[i] > 0));
+          const high = Math.min(Infinity, ...edge.filter((_, i) => up * moves[i] < 0));
+          if (low > high) continue;
+          found.push({ misfit, centre, size, low, high });
+          cheapest = Math.min(cheapest, misfit + (size * Math.min(Math.max(0, low), high)) ** 2);
+        }
+      }
+      if (!some) break;
+      costs.push(cheapest);
+    }
+    if (!costs.length) return null;
+    const freedom = n - f - 2 + more, best = Math.min(...costs), variance = Math.max((best + floor) / freedom, least);
+    const ruled = Math.sqrt((costs[0] - best) / Math.max(variance, Number.MIN_VALUE)), [from, to] = one.RULED_OUT;
+    const tail = one.TAILS[0] + (one.TAILS[1] - one.TAILS[0]) * Math.min(Math.max((ruled - from) / (to - from), 0), 1);
+    const allowed = Math.min(best, noise ** 2 * (freedom + 2)) + studentAt(freedom, 1 - tail) ** 2 * variance;
+    let lower = Infinity, upper = -Infinity;
+    for (const s of found) {
+      const reach = Math.sqrt(allowed - s.misfit) / s.size, low = Math.max(s.low, -reach), high = Math.min(s.high, reach);
+      if (!(low <= high)) continue;
+      lower = Math.min(lower, s.centre + low);
+      upper = Math.max(upper, s.centre + high);
+    }
+    return [lower, upper];
   };
 
   // One size of a remainder: its parts of the mixture, and again without each row.
@@ -412,7 +482,10 @@ const slopeAtOrigin = (k) => {
       parts = main.weight.map((w, i) => ({ weight: w, mean: main.mean[i], scale: Math.sqrt(main.variance[i]), freedom: nu }));
     }
     const { ends, half, sd } = mixtureQuantiles(parts, nu, tail);
-    return { lower: ends[0] * unit, value: ends[1] * unit, upper: ends[2] * unit, u95: half * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
+    const reached = d.free && oneSigned(d, scaled, stated === null ? 0 : k.STATED_FREEDOM, noise, floor, least) || [Infinity, -Infinity];
+    const [low, high] = [Math.min(ends[0], reached[0]), Math.max(ends[2], reached[1])];
+    const u95 = Math.max(half, reached[1] - ends[1], ends[1] - reached[0]);
+    return { lower: low * unit, value: ends[1] * unit, upper: high * unit, u95: u95 * unit, sd: sd * unit, noise: noise * size, mean: middle * unit, wrong, without, weights };
   };
 
   // Rows that count, their relative variance and what is to be said of them.
