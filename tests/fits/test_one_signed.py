@@ -10,7 +10,7 @@ import pytest
 from scipy import optimize, stats
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics import one_signed, slopes
+from coeflab.fits.statistics import one_signed
 from coeflab.fits.statistics.slope_mixture import estimate_many, prepare
 from tests.coverage.one_signed_campaigns import frontier, line_deviation
 
@@ -91,19 +91,3 @@ def test_where_the_class_does_not_fit_the_mixture_stands_alone() -> None:
     y = y + 1e-5 * np.random.default_rng(1).standard_normal((4, len(x)))
     design = prepare(x)
     assert np.array_equal(estimate_many(design, y).u95, estimate_many(replace(design, shapes=()), y).u95)
-
-
-def test_an_even_coefficient_of_v2_and_v3_is_covered() -> None:
-    """X = X0 + Xvv v^2 + c |v|^3 at a noise of 1 %: was covered in 30 to 50 %."""
-    x = SINE * EVEN
-    force = -0.001 + 0.004 * x**2 + 0.03 * np.abs(x) ** 3
-    inside = []
-    for shocks in np.random.default_rng(2).standard_normal((20, len(x))):
-        y = force + 0.01 * np.abs(force - force[6]).max() * shocks
-        slope = slopes.origin_slope.estimate(x, y)
-        mean, half = slopes.origin_slope.curve(slope, np.zeros(1))
-        value, u95, _ = slopes.determined(slope, "x2", None, (float(mean[0]), float(half[0])))
-        assert value is not None
-        assert u95 is not None
-        inside.append(abs(value - 0.004) <= u95)
-    assert np.mean(inside) >= 0.8
