@@ -3,12 +3,14 @@
 python3 start.py validate suboff     any coeflab command
 python3 start.py gallery             the sample reports in reports/gallery, made anew
 python3 start.py test                style, types, floors and tests; further arguments go to pytest
+python3 start.py test --fast         the same without slow tests
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -55,21 +57,40 @@ def set_up(groups: tuple[str, ...]) -> None:
 
 
 def test(arguments: list[str]) -> int:
-    """Every gate in turn; stops at the first that does not hold."""
+    """Style first, then types and floors beside the tests; the first gate that does not hold ends all, with what it said last."""
     environment = os.environ | ONE_THREAD
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # processes of tests compile coeflab once, not each
     sources = ["coeflab", "tests", "benchmarks", "cfd_data", "geometry", "reports", "start.py"]
-    gates = [
-        [str(PYTHON), "-m", "ruff", "check", *sources],
-        [str(PYTHON), "-m", "ruff", "format", "--check", *sources],
-        [str(PYTHON), "-m", "mypy"],
-        [str(BIN / "lint-imports")],
-        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", WORKERS, "--dist", "worksteal"])],
-    ]
-    for gate in gates:
-        code = subprocess.run(gate, cwd=ROOT, env=environment, check=False).returncode
-        if code:
+    fast = ["-m", "not slow"] if "--fast" in arguments else []
+    more = [a for a in arguments if a != "--fast"] or ["-n", WORKERS, "--dist", "worksteal"]
+    for gate in (["ruff", "check", *sources], ["ruff", "format", "--check", *sources]):
+        if code := subprocess.run([str(PYTHON), "-m", *gate], cwd=ROOT, env=environment, check=False).returncode:
             return code
-    return 0
+    tests = subprocess.Popen([str(PYTHON), "-m", "pytest", *more, *fast], cwd=ROOT, env=environment)
+    try:
+        for gate in ([str(PYTHON), "-m", "mypy"], [str(BIN / "lint-imports")]):
+            done = subprocess.run(gate, cwd=ROOT, env=environment, check=False, capture_output=True, text=True)
+            if done.returncode:
+                end(tests)
+                sys.stdout.write(f"\n{' '.join(gate)}\n{done.stdout}{done.stderr}")
+                return done.returncode
+        return tests.wait()
+    finally:
+        end(tests)
+
+
+def end(tests: subprocess.Popen[bytes]) -> None:
+    """Interrupt tests that still run, so that they clear up; kill those that do not end."""
+    if tests.poll() is None:
+        if os.name == "nt":
+            tests.terminate()
+        else:
+            tests.send_signal(signal.SIGINT)
+        try:
+            tests.wait(60.0)
+        except subprocess.TimeoutExpired:
+            tests.kill()
+            tests.wait()
 
 
 def main() -> int:

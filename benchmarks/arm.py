@@ -17,11 +17,11 @@ import pinocchio as pin
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from coeflab.arm import compiled, kane
+from coeflab.arm.arm_file import read_chain
+from coeflab.arm.chain import Chain
 from coeflab.core.files import shipped
-from coeflab.motion.multibody import compiled, kane
-from coeflab.motion.multibody.arm_file import read_chain
-from coeflab.motion.multibody.chain import Chain
-from tests.motion.multibody.chains import pinocchio_model
+from tests.arm.chains import pinocchio_model
 
 REPEATS = 7
 

@@ -26,13 +26,13 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from coeflab.arm import compiled, kane  # noqa: E402
+from coeflab.arm.arm_file import read_chain  # noqa: E402
+from coeflab.arm.chain import Chain, Joint  # noqa: E402
+from coeflab.arm.closed_form import derive  # noqa: E402
+from coeflab.arm.languages import Origin, written  # noqa: E402
+from coeflab.arm.tape import ClosedForm  # noqa: E402
 from coeflab.core.files import shipped  # noqa: E402
-from coeflab.motion.multibody import compiled, kane  # noqa: E402
-from coeflab.motion.multibody.arm_file import read_chain  # noqa: E402
-from coeflab.motion.multibody.chain import Chain, Joint  # noqa: E402
-from coeflab.motion.multibody.closed_form import derive  # noqa: E402
-from coeflab.motion.multibody.languages import Origin, written  # noqa: E402
-from coeflab.motion.multibody.tape import ClosedForm  # noqa: E402
 
 REPEATS, CALLS = 5, 1_000_000
 C_LOOP = """
@@ -170,7 +170,7 @@ def pinocchio_in_python(chain: Chain) -> float:
     """Seconds of crba and nonLinearEffects, called from Python."""
     import pinocchio as pin
 
-    from tests.motion.multibody.chains import pinocchio_model
+    from tests.arm.chains import pinocchio_model
 
     model = pinocchio_model(chain)
     data, q, v = model.createData(), pin.neutral(model), np.linspace(0.5, -0.3, model.nv)

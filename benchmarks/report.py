@@ -19,7 +19,7 @@ from typing import TypeVar
 import matplotlib as mpl
 import numpy as np
 
-from coeflab.published.documents import report_of, studied, written
+from coeflab.api.documents import report_of, studied, written
 from coeflab.report.document import Section
 
 mpl.use("Agg")

@@ -19,8 +19,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 
 from coeflab.bodies.added_mass.panel import added_mass
+from coeflab.bodies.added_masses import against_mesh
 from coeflab.bodies.simplify.simplify import simplify
-from coeflab.workbench.hulls import against_mesh
 from tests.bodies.test_twelve import VEHICLES, body
 
 DENSITY, COARSE = 1000.0, 6_000

@@ -17,7 +17,7 @@ from types import FrameType
 from typing import Any
 
 import coeflab
-from coeflab.workbench import rendered
+from coeflab.report.rendered import rendered
 
 PACKAGE = str(Path(coeflab.__file__).parent)
 NAME = "suboff_fully_appended"

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from coeflab.api.result import Points, Result
     from coeflab.api.studies import Study, run
     from coeflab.api.table import Table
-    from coeflab.api.towing import Tow, tow
     from coeflab.api.trimming import Trim, trim
+    from coeflab.api.validations import validation
     from coeflab.api.vehicle import Vehicle, read_vehicle, vehicle
     from coeflab.core.errors import AxesError, CoeflabError, InputError, PluginError, ScalingMismatchError, UnitsError
     from coeflab.core.files import shipped
@@ -46,14 +46,14 @@ if TYPE_CHECKING:
     from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.motion.trim.linear_model import LinearModel
-    from coeflab.published import validation
+    from coeflab.report.rendered import rendered
     from coeflab.study.plan import read_plan
     from coeflab.study.study import Plan
     from coeflab.tables.campaign import read_campaign
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.importers import PlannedTable
+    from coeflab.tank.front_door import Tow, tow
     from coeflab.vehicle.parameter_file import ParameterFile
-    from coeflab.workbench import rendered
 
 
 __version__ = VERSION
@@ -88,7 +88,7 @@ _HOMES = {
         "compare",
     ),
     "api.estimating": ("estimate",),
-    "api.towing": ("Tow", "tow"),
+    "tank.front_door": ("Tow", "tow"),
     "api.trimming": ("Trim", "trim"),
     "api.studies": (
         "Study",
@@ -123,8 +123,8 @@ _HOMES = {
     "vehicle.parameter_file": ("ParameterFile",),
     "study.plan": ("read_plan",),
     "study.study": ("Plan",),
-    "published": ("validation",),
-    "workbench": ("rendered",),
+    "api.validations": ("validation",),
+    "report.rendered": ("rendered",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

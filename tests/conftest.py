@@ -19,17 +19,18 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from coeflab.api.validations import validation
 from coeflab.core.files import shipped
 from coeflab.core.types import locked
-from coeflab.published import validation
 from coeflab.report.content import document
 from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables, run
+from coeflab.tables.reading import read_tables
 from tests.cli.forked import Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
 
@@ -102,6 +103,13 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
     shutil.rmtree(folder)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whatever opens a browser is slow."""
+    for item in items:
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """With COEFLAB_FORBID_SKIPS a skipped test is a failed one; an expected failure is none."""
@@ -156,7 +164,7 @@ def _pickled(found: Any) -> bytes:
     return out.getvalue()
 
 
-def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
+def once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -> Any:
     """What the first worker of a run makes; the others load it."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         return make()
@@ -174,14 +182,14 @@ def _once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) -
 def suboff(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """The SUBOFF study, run once for all workers."""
     plan = shipped("cfd_data") / "suboff" / "plan.toml"
-    found: Study = _once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
+    found: Study = once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
     return found
 
 
 @pytest.fixture(scope="session")
 def suboff_document(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Document:
     """Its report, whole, drawn once for all workers; those that only look at it need no study."""
-    found: Document = _once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
+    found: Document = once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
     return found
 
 

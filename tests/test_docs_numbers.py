@@ -43,7 +43,7 @@ def test_of_two_largest_angles(suboff: Study) -> None:
     (sweep,) = (s for f in suboff.fits if f.campaign == "suboff_roddy_3" for s in f.sweeps if s.symbol == "Yv")
     (shorter,) = (s for s in sweep.sensitivity if abs(np.degrees(np.arcsin(s.cap)) - 10.0) < 0.2)
     ends = f"{plus_minus(shorter.value, shorter.u95)} to 10 deg and {plus_minus(sweep.value, sweep.u95)} to 18 deg"
-    assert f"Yv' of the bare hull is {ends}" in page("intervals.md")
+    assert f"Yv' of the bare hull is {ends}" in page("slope_at_origin.md")
 
 
 def test_of_total_potential_and_viscous_parts(suboff: Study) -> None:

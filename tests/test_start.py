@@ -1,26 +1,39 @@
-"""start.py: what it says after a command that ended well, where no output of coeflab itself changes."""
+"""start.py: what it says after a command that ended well, and gates of which the first that fails ends all."""
 
 from __future__ import annotations
 
 import importlib.util
 import subprocess
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
 FILE = Path(__file__).parents[1] / "start.py"
+GATE = """#!/bin/sh
+echo "$@" >> {ran}
+case "$*" in
+  *ruff*) exit {ruff} ;;
+  *mypy*) echo found by mypy; exit {mypy} ;;
+  *pytest*) trap 'exit 2' INT; for i in $(seq {waits}); do sleep 0.1; done; exit {tests} ;;
+esac
+"""
+
+
+@pytest.fixture
+def start() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("start", FILE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.mark.parametrize(("code", "said"), [(0, True), (1, False), (2, False)])
 def test_a_command_that_ended_well_is_followed_by_what_comes_next(
-    code: int, said: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    start: ModuleType, code: int, said: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    spec = importlib.util.spec_from_file_location("start", FILE)
-    assert spec is not None
-    assert spec.loader is not None
-    start = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(start)
     monkeypatch.setattr(start, "set_up", lambda groups: None)
     monkeypatch.setattr(subprocess, "run", lambda *a, **k: SimpleNamespace(returncode=code))
     monkeypatch.setattr("sys.argv", ["start.py", "validate", "suboff"])
@@ -29,3 +42,31 @@ def test_a_command_that_ended_well_is_followed_by_what_comes_next(
     assert out == ""
     assert ("Set up in .venv" in err) is said
     assert ("activate, then coeflab" in err) is said
+
+
+@pytest.mark.parametrize(
+    ("codes", "arguments", "expected", "last"),
+    [
+        ({}, [], 0, "pytest -n 3 --dist worksteal"),
+        ({}, ["--fast"], 0, "pytest -n 3 --dist worksteal -m not slow"),
+        ({"tests": 5}, ["tests/law"], 5, "pytest tests/law"),
+        ({"mypy": 3, "waits": 600}, [], 3, "pytest -n 3 --dist worksteal"),
+        ({"ruff": 1}, [], 1, "ruff check"),
+    ],
+)
+def test_the_first_gate_that_fails_ends_all(
+    start: ModuleType, codes: dict[str, int], arguments: list[str], expected: int, last: str,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    ran = tmp_path / "ran"
+    for name in ("python", "lint-imports"):
+        gate = tmp_path / name
+        gate.write_text(GATE.format(**({"ruff": 0, "mypy": 0, "tests": 0, "waits": 1} | codes), ran=ran))
+        gate.chmod(0o755)
+    monkeypatch.setattr(start, "PYTHON", tmp_path / "python")
+    monkeypatch.setattr(start, "BIN", tmp_path)
+    assert start.test(arguments) == expected
+    assert ("found by mypy" in capsys.readouterr().out) is ("mypy" in codes)
+    lines = ran.read_text().splitlines()
+    assert sum(last in line for line in lines) == 1
+    assert ("-m mypy" in lines) is ("ruff" not in codes)

@@ -10,14 +10,14 @@ import numpy as np
 
 from coeflab.api.questions import si
 from coeflab.bodies import body as plain
+from coeflab.bodies.added_masses import added_masses, methods
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.law import added_mass as law
-from coeflab.workbench.hulls import added_masses, methods
-from coeflab.workbench.vehicle import subject
+from coeflab.study.estimated_vehicle import subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,9 +11,9 @@ from coeflab.bodies import body as plain
 from coeflab.core.files import stem
 from coeflab.core.machine import one_thread
 from coeflab.law.scaling import Conditions
+from coeflab.law.water import FRESH_WATER
+from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
-from coeflab.tank.tank_keys import FRESH_WATER
-from coeflab.workbench.vehicle import estimated
 
 
 @one_thread()

@@ -10,10 +10,10 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.formats import EXPORTERS
 from coeflab.formats.export import Export, Kind
+from coeflab.formats.exporting import export as rendered
+from coeflab.formats.loss_tables import in_short
 from coeflab.formats.unspoken import without_law
-from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export as rendered
 
 __all__ = ["Export", "ParameterFile", "export", "refusal", "require_targets", "without_law"]
 WITH_MASS = "Give the vehicle a mass and an added mass."

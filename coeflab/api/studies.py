@@ -12,8 +12,8 @@ from coeflab.api.vehicle import Vehicle
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.study import study as plain
+from coeflab.study.run import run as carried_out
 from coeflab.study.study import Plan
-from coeflab.workbench import run as carried_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,7 +120,7 @@ def report_files(
     InputError
         No such format, section or style.
     """
-    from coeflab.published.documents import only, report_of, written
+    from coeflab.api.documents import only, report_of, written
     from coeflab.report.figures.files import styled
 
     with styled(style):
@@ -143,7 +143,7 @@ def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> pla
     progress : callable, optional
         Takes what is being done, in words.
     """
-    from coeflab.published.documents import studied as computed
+    from coeflab.api.documents import studied as computed
 
     return computed(study, progress)
 

@@ -29,14 +29,14 @@ from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import primed
+from coeflab.law.water import FRESH_WATER
+from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
-from coeflab.tank.tank_keys import FRESH_WATER
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.from_shape import Stated
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
-from coeflab.workbench.vehicle import estimated
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,15 +14,21 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from coeflab.core.registry import declared
+
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 GROUPS = {
-    "Data": ("new", "import", "inspect", "tow"),
-    "Fit and report": ("fit", "run", "validate", "report", "serve"),
-    "Body": ("added-mass", "simplify", "draw", "mass"),
-    "Vehicle": ("vehicle", "params", "merge", "compare", "table"),
-    "Motion": ("simulate", "trim", "uncertainty", "tune", "identify", "glide", "derive"),
-    "Files": ("export", "formats", "schema"),
+    "Data": ["new", "import", "inspect"],
+    "Fit and report": ["fit", "run", "validate", "report", "serve"],
+    "Body": ["added-mass", "simplify", "draw", "mass"],
+    "Vehicle": ["vehicle", "params", "merge", "compare", "table"],
+    "Motion": ["simulate", "trim", "uncertainty"],
+    "Files": ["export", "formats", "schema"],
 }
+OF_APPLICATIONS = {name: home for home, theirs in declared("COMMANDS").items() for name in theirs}
+for _theirs in declared("COMMANDS").values():
+    for _name, _group in _theirs.items():
+        GROUPS[_group].append(_name)
 ORDER = [name for names in GROUPS.values() for name in names]
 MOST = 10**9  # of anything that is counted
 WITHOUT_TABLES = {
@@ -118,14 +124,15 @@ class Commands(TyperGroup):
 
 
 def _module(name: str) -> str:
-    """The file of a command; words of Python have an underscore behind."""
-    return f"{name}_" if iskeyword(name) else name.replace("-", "_")
+    """The dotted name of a command; words of Python have an underscore behind."""
+    home = f"coeflab.{OF_APPLICATIONS[name]}.commands" if name in OF_APPLICATIONS else __name__
+    return f"{home}.{name}_" if iskeyword(name) else f"{home}.{name.replace('-', '_')}"
 
 
 def _summary(name: str) -> str:
     from coeflab.core.text.bounded import own_text
 
-    text = own_text(Path(__file__).with_name(f"{_module(name)}.py"))
+    text = own_text(Path(__file__).parents[2] / f"{_module(name).replace('.', '/')}.py")
     found = _SUMMARY.search(text)
     return cleandoc(found[1] or found[2]) if found else ""
 
@@ -136,7 +143,7 @@ def _sentence(text: str) -> str:
 
 
 def _built(name: str) -> Any:
-    module = import_module(f"{__name__}.{_module(name)}")
+    module = import_module(_module(name))
     one = getattr(module, "app", None)
     if one is None:
         one = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)

@@ -62,13 +62,13 @@ def command(
 
     About its reference point in FRD. With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
+    from coeflab.bodies.added_masses import added_masses
+    from coeflab.bodies.finer_panels import finer_panels
     from coeflab.bodies.simplify.source import mesh_body
     from coeflab.cli.fit import further
     from coeflab.core.provenance import work
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
-    from coeflab.workbench.finer_panels import finer_panels
-    from coeflab.workbench.hulls import added_masses
 
     share = _share(error) if error else ""
     with show.narrated():
@@ -151,9 +151,9 @@ def distances_of(wall: str, distance: str, method: str) -> list[float]:
 def _near(
     body: Body, density: float, method: str, wall: str, distance: str, given: dict[str, int | float | str], json: bool
 ) -> None:
+    from coeflab.bodies.added_masses import near_walls
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
-    from coeflab.workbench.hulls import near_walls
 
     found = near_walls(body, density, wall, distances_of(wall, distance, method), given)
     if json:

@@ -7,7 +7,6 @@ from importlib import import_module
 from pathlib import Path
 
 DIRECTIONS = (("forward", "aft"), ("starboard", "port"), ("down", "up"))
-LANGUAGES = ("c", "python", "latex", "octave")
 
 
 def names(words: Iterable[str], begun: str) -> list[str]:
@@ -15,7 +14,7 @@ def names(words: Iterable[str], begun: str) -> list[str]:
     return sorted(word for word in words if word.startswith(begun))
 
 
-def _or_paths(words: Iterable[str], begun: str) -> list[str]:
+def or_paths(words: Iterable[str], begun: str) -> list[str]:
     """Names that fit, then files and folders; a folder with its stroke."""
     folder, _, start = begun.rpartition("/")
     place = Path(folder or ("/" if begun.startswith("/") else ".")).expanduser()
@@ -25,12 +24,14 @@ def _or_paths(words: Iterable[str], begun: str) -> list[str]:
     return [*names(words, begun), *sorted(found)]
 
 
-def _plugins(registry: str, begun: str) -> list[str]:
+def plugins(registry: str, begun: str) -> list[str]:
+    """Plugins of a registry (module below coeflab, a dot, its name) that begin so."""
     package, _, name = registry.rpartition(".")
     return names(getattr(import_module(f"coeflab.{package}"), name).usable(), begun)
 
 
-def _shipped(kind: str, file: str) -> list[str]:
+def shipped_with(kind: str, file: str) -> list[str]:
+    """Shipped folders of a kind that have the file."""
     from coeflab.core.files import shipped
 
     return [place.parent.name for place in shipped(kind).glob(f"*/{file}")]
@@ -38,105 +39,85 @@ def _shipped(kind: str, file: str) -> list[str]:
 
 def validations(incomplete: str) -> list[str]:
     """Shipped studies and publications."""
-    from coeflab.published import validations as shipped_ones
+    from coeflab.api.validations import validations as shipped_ones
 
     return names(shipped_ones(), incomplete)
 
 
 def studies(incomplete: str) -> list[str]:
     """The same, and plans by path."""
-    from coeflab.published import validations as shipped_ones
+    from coeflab.api.validations import validations as shipped_ones
 
-    return _or_paths(shipped_ones(), incomplete)
+    return or_paths(shipped_ones(), incomplete)
 
 
 def folders(incomplete: str) -> list[str]:
     """Folders."""
-    return [path for path in _or_paths((), incomplete) if path.endswith("/")]
+    return [path for path in or_paths((), incomplete) if path.endswith("/")]
 
 
 def plans(incomplete: str) -> list[str]:
     """Shipped plans, and paths."""
-    return _or_paths(_shipped("cfd_data", "plan.toml"), incomplete)
-
-
-def tunings(incomplete: str) -> list[str]:
-    """Shipped plans of a tuning, and paths."""
-    return _or_paths(_shipped("cfd_data", "tune.toml"), incomplete)
+    return or_paths(shipped_with("cfd_data", "plan.toml"), incomplete)
 
 
 def parameters(incomplete: str) -> list[str]:
     """Shipped parameter files, and paths."""
     from coeflab.core.files import by_name
 
-    return _or_paths(tuple(by_name("*.parameters.json")), incomplete)
+    return or_paths(tuple(by_name("*.parameters.json")), incomplete)
 
 
 def campaigns(incomplete: str) -> list[str]:
     """Shipped campaigns, and paths."""
-    return _or_paths(_shipped("cfd_data", "campaign.toml"), incomplete)
+    return or_paths(shipped_with("cfd_data", "campaign.toml"), incomplete)
 
 
 def bodies(incomplete: str) -> list[str]:
     """Shipped bodies, and paths."""
-    return _or_paths(_shipped("geometry", "body.toml"), incomplete)
+    return or_paths(shipped_with("geometry", "body.toml"), incomplete)
 
 
 def inspected(incomplete: str) -> list[str]:
     """Shipped campaigns and bodies, and paths."""
-    shipped_ones = (*_shipped("cfd_data", "campaign.toml"), *_shipped("geometry", "body.toml"))
-    return _or_paths(shipped_ones, incomplete)
-
-
-def gliders(incomplete: str) -> list[str]:
-    """Shipped gliders, and paths."""
-    return _or_paths(("thauv", "slocum"), incomplete)
+    shipped_ones = (*shipped_with("cfd_data", "campaign.toml"), *shipped_with("geometry", "body.toml"))
+    return or_paths(shipped_ones, incomplete)
 
 
 def fits(incomplete: str) -> list[str]:
     """Fits."""
-    return _plugins("fits.FITS", incomplete)
+    return plugins("fits.FITS", incomplete)
 
 
 def importers(incomplete: str) -> list[str]:
     """Importers of tables."""
-    return _plugins("tables.importers.IMPORTERS", incomplete)
+    return plugins("tables.importers.IMPORTERS", incomplete)
 
 
 def exporters(incomplete: str) -> list[str]:
     """Targets of an export."""
-    return _plugins("formats.EXPORTERS", incomplete)
+    return plugins("formats.EXPORTERS", incomplete)
 
 
 def manoeuvres(incomplete: str) -> list[str]:
     """Manoeuvres."""
-    return _plugins("motion.manoeuvres.MANOEUVRES", incomplete)
+    return plugins("motion.manoeuvres.MANOEUVRES", incomplete)
 
 
 def simulators(incomplete: str) -> list[str]:
     """Simulators."""
-    return _plugins("motion.simulators.SIMULATORS", incomplete)
-
-
-def solvers(incomplete: str) -> list[str]:
-    """Solvers of the tow tank."""
-    return _plugins("tank.solvers.SOLVERS", incomplete)
-
-
-def runners(incomplete: str) -> list[str]:
-    """Runners of the tow tank."""
-    return _plugins("tank.runners.RUNNERS", incomplete)
+    return plugins("motion.simulators.SIMULATORS", incomplete)
 
 
 def methods(incomplete: str) -> list[str]:
     """Methods of added mass."""
-    return [*names(("all", "strip:lamb"), incomplete), *_plugins("bodies.added_mass.ADDED_MASS", incomplete)]
+    return [*names(("all", "strip:lamb"), incomplete), *plugins("bodies.added_mass.ADDED_MASS", incomplete)]
 
 
 def reports(incomplete: str) -> list[str]:
     """Formats of a report; behind a comma another."""
     ahead, comma, last = incomplete.rpartition(",")
-    return [f"{ahead}{comma}{name}" for name in _plugins("report.formats.REPORTERS", last)]
+    return [f"{ahead}{comma}{name}" for name in plugins("report.formats.REPORTERS", last)]
 
 
 def formats(incomplete: str) -> list[str]:
@@ -193,21 +174,6 @@ def symbols(incomplete: str) -> list[str]:
     from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 
     return names((f"{force}{motion}" for force in COMPONENTS for motion in (*MOTIONS, *CONTROLS)), incomplete)
-
-
-def languages(incomplete: str) -> list[str]:
-    """Languages of derived equations."""
-    return names(LANGUAGES, incomplete)
-
-
-def arms(incomplete: str) -> list[str]:
-    """Shipped vehicles with an arm, and paths."""
-    from coeflab.core.files import shipped
-    from coeflab.motion.multibody.arm_file import is_arm
-
-    return _or_paths(
-        [name for name in _shipped("geometry", "body.toml") if is_arm(shipped("geometry") / name)], incomplete
-    )
 
 
 def options_of(registry: str, name: str, begun: str) -> list[tuple[str, str]]:

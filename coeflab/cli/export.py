@@ -137,7 +137,7 @@ def _made(
 
 def _print_loss(made: Export, parameters: ParameterFile) -> None:
     from coeflab.api.exporting import without_law
-    from coeflab.report.tables import formats as loss_tables
+    from coeflab.formats import loss_tables
 
     loss = made.loss
     if loss is None:

@@ -88,9 +88,9 @@ def command(
     from coeflab.core.units import quantity
     from coeflab.core.wording import Verbatim
     from coeflab.law.scaling import Scaling
+    from coeflab.study.run import run
     from coeflab.study.study import Plan, PlannedJoint
     from coeflab.tables.reading import suited_fit, table_at
-    from coeflab.workbench import run
 
     if help_options:
         from coeflab.cli.formats import explain

@@ -31,7 +31,7 @@ def command(
     found, broken = _chosen(name)
     rows = [(registry.kind, plugin, registry.load(plugin).summary) for registry, plugin in found]
     if not name:
-        from coeflab.published import validations
+        from coeflab.api.validations import validations
 
         rows += [("validation", v, f"coeflab validate {v}") for v in validations()]
     ours = len(rows)

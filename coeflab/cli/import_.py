@@ -189,10 +189,10 @@ def _first_slopes(folder: Path) -> bool:
     from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
     from coeflab.study.plan import DEFAULT_FITS
+    from coeflab.study.run import run
     from coeflab.study.study import Plan
     from coeflab.tables.campaign import FILE
     from coeflab.tables.reading import suited_fit, table_at
-    from coeflab.workbench import run
 
     suited = suited_fit(folder)
     study, why, failed = None, "", False

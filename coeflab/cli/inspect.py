@@ -294,7 +294,7 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.core.finding import Severity
     from coeflab.study.checks import data_gate
     from coeflab.tables.importers import PlannedTable
-    from coeflab.workbench import read_tables
+    from coeflab.tables.reading import read_tables
 
     path = located(table, "cfd_data")
     only = path.name if path.is_file() and path.suffix != ".toml" else None

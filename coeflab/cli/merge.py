@@ -135,13 +135,14 @@ def carried_out(
     Raises
     ------
     InputError, ScalingMismatchError
-        As of `coeflab.workbench.vehicle.replaced`.
+        As of `coeflab.study.estimated_vehicle.replaced`.
     """
     from coeflab.core.files import write_all
+    from coeflab.report.rendered import replaced_files
+    from coeflab.study.estimated_vehicle import given_by, replaced
+    from coeflab.study.run import run
     from coeflab.vehicle.own_numbers import stated_beside
     from coeflab.vehicle.plausibility import plausibility
-    from coeflab.workbench import run
-    from coeflab.workbench.vehicle import given_by, replaced, replaced_files
 
     by_hand = not isinstance(other, str)
     second, own = (

@@ -33,7 +33,7 @@ def check(
     """
     from coeflab.core.errors import InputError
     from coeflab.formats.model_files import read_model_file
-    from coeflab.report.tables import formats as model_file_tables
+    from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
         raise InputError(f"{density:g}", "a density above zero", column="--density")
@@ -80,7 +80,7 @@ def convert(
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
     from coeflab.formats.model_files import OWN, read_model_file
-    from coeflab.report.tables import formats as model_file_tables
+    from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
         raise InputError(f"{density:g}", "a density above zero", column="--density")
@@ -175,7 +175,7 @@ def new(
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
-    from coeflab.report.tables.formats import contents
+    from coeflab.report.tables.model_file import contents
     from coeflab.vehicle.own_numbers import typed_file
     from coeflab.vehicle.plausibility import plausibility
 
@@ -208,7 +208,7 @@ def new(
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means."""
-    from coeflab.report.tables.formats import schema_page
+    from coeflab.report.tables.schema_page import schema_page
     from coeflab.vehicle import parameter_file
 
     show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))

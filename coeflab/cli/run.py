@@ -62,7 +62,8 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False,
     """
     from coeflab.cli.vehicle import for_simulators
     from coeflab.core.files import write_all
-    from coeflab.workbench import rendered, run
+    from coeflab.report.rendered import rendered
+    from coeflab.study.run import run
 
     folder = out if out is not None else Path(REPORTS) / plan.name
     with show.progress(as_json) as say:
@@ -188,8 +189,8 @@ def _tows(study: Study) -> None:
 
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
+    from coeflab.formats import loss_tables
     from coeflab.report.acceptance import headline_of_study
-    from coeflab.report.tables import formats as format_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
@@ -210,7 +211,7 @@ def _every_table(study: Study) -> None:
         show.table(each)
     show.table(model_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
-        show.table(format_tables.at_points(points_of(parameters), f"Force law of {name}"))
+        show.table(loss_tables.at_points(points_of(parameters), f"Force law of {name}"))
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:

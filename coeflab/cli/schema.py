@@ -11,17 +11,16 @@ from typing import Any
 import typer
 
 from coeflab.cli import complete, show
+from coeflab.core.registry import declared
 
 EXAMPLE = "coeflab schema plan > plan.schema.json"
 KINDS = {
     "plan": "study.plan.PlanFile",
     "campaign": "tables.campaign.CampaignFile",
     "body": "",
-    "glider": "motion.glider.glider.GliderFile",
-    "tuning": "motion.tune.plan.TuningFile",
-    "tank": "tank.tank_keys.TankFile",
     "published": "vehicle.reference.ReferenceFile",
     "parameters": "",
+    **{kind: f"{home}.{place}" for home, theirs in declared("FILES").items() for kind, place in theirs.items()},
 }
 
 

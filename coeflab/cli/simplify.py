@@ -67,6 +67,7 @@ def command(
     A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, appendages of a round hull, and
     bodies along their seams. Exit code 1 where a projected area is off by more than 20 %.
     """
+    from coeflab.bodies.added_masses import against_mesh
     from coeflab.bodies.simplify.simplified import MESH
     from coeflab.bodies.simplify.simplify import parse_box, read_boxes, simplify
     from coeflab.bodies.simplify.source import mesh_body
@@ -76,7 +77,6 @@ def command(
     from coeflab.core.wording import Verbatim
     from coeflab.report.figures.body import body_figure
     from coeflab.report.figures.body_scene import body_scene
-    from coeflab.workbench.hulls import against_mesh
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")

@@ -10,18 +10,16 @@ import typer
 
 from coeflab.cli import complete, show
 from coeflab.core.errors import InputError, shown
+from coeflab.core.registry import declared, of_application
 
 if TYPE_CHECKING:
-    from coeflab.motion.manoeuvre import Manoeuvre, Simulation
-    from coeflab.motion.multibody.chain import Chain
-    from coeflab.motion.trajectory import Trajectory
+    from coeflab.motion.manoeuvre import Simulation
 
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 PLUGIN = {"registry": "motion.manoeuvres.MANOEUVRES", "parameter": "manoeuvre"}  # whose options it takes as well
 TABLES = ("csv", "parquet")
-TAKEN_BY_ARM = {"file", "manoeuvre", "current", "record", "to", "out", "json"}
 
 
 def command(
@@ -76,27 +74,21 @@ def command(
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.plausibility import plausibility
 
-    body = arm_at(file)
+    theirs = next(((one, place) for one in _others() if (place := one.place(file)) is not None), None)
     if help_options:
         from coeflab.cli.formats import explain
         from coeflab.motion.manoeuvres import MANOEUVRES
 
-        if body is None:
+        if theirs is None:
             explain(MANOEUVRES, manoeuvre)
         else:
-            _explain_arm()
+            theirs[0].explain_options()
         return
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
-    if body is not None:
-        typed = _typed(ctx)
-        if strange := sorted(typed - TAKEN_BY_ARM):
-            raise InputError(
-                f"--{strange[0]} for a vehicle with an arm",
-                "--manoeuvre, --record, --current, --to, --out, --json, or an option of --help-options", column=f"--{strange[0]}",
-            )  # fmt: skip
-        of_arm = current_of(current) | ({"record": record} if "record" in typed else {}) | dict(further(ctx.args))
-        _arm(body, manoeuvre if "manoeuvre" in typed else "phases", of_arm, to, out, json)
+    if theirs is not None:
+        asked = {name: ctx.params[name] for name in _typed(ctx)}
+        theirs[0].simulate(theirs[1], asked, current_of(current) | dict(further(ctx.args)), to, out, json)
         return
     parameters = read_vehicle_file(file)
     if not json:
@@ -128,132 +120,15 @@ def command(
         raise typer.Exit(1)
 
 
+def _others() -> list[Any]:
+    """What applications simulate that no parameter file describes."""
+    return [of_application(home, module) for home, module in declared("SIMULATES").items()]
+
+
 def _typed(ctx: typer.Context) -> set[str]:
     """Options that stand on the command line, whatever their value."""
     sources = {name: ctx.get_parameter_source(name) for name in ctx.params}
     return {name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"}
-
-
-def _explain_arm() -> None:
-    """Manoeuvres of an arm and their options, those of its motion, and the keys of its phases."""
-    from coeflab.bodies.arm_keys import ArmPhaseKeys, ControllerKeys, StartKeys
-    from coeflab.cli.formats import explain
-    from coeflab.core.declarations import meanings, taken
-    from coeflab.core.options import described
-    from coeflab.core.table import Table
-    from coeflab.motion.multibody.manoeuvres import MANOEUVRES
-    from coeflab.motion.simulators import SIMULATORS
-
-    named = tuple((f"--manoeuvre {name}", one.summary) for name, one in MANOEUVRES.items())
-    notes = ("Without --manoeuvre: phases.",)
-    show.table(
-        Table("Manoeuvres of a vehicle with an arm", ("option", "what it does"), named, notes, frozenset({0, 1}))
-    )
-    for name, one in MANOEUVRES.items():
-        own = tuple((o.name, o.takes, o.default, o.meaning) for o in described(one.options))
-        if own:
-            heads = ("option", "takes", "default", "meaning")
-            show.table(Table(f"Options of {name}", heads, own, (), frozenset({0, 1, 2, 3})))
-    explain(SIMULATORS, "arm")
-    rows = [
-        (f"{table}{key}", takes.words, meanings(kind)[key])
-        for table, kind in (("[[phase]] ", ArmPhaseKeys), ("[start] ", StartKeys), ("[controller] ", ControllerKeys))
-        for key, takes in taken(kind).items()
-    ]
-    notes = ("All keys of a body.toml of an arm: docs/files.md; a whole one: geometry/urv_puma.",)
-    show.table(Table("Motion in the body.toml", ("key", "takes", "meaning"), tuple(rows), notes, frozenset({0, 1, 2})))
-
-
-def arm_at(file: Path) -> Path | None:
-    """The body.toml of a vehicle with an arm that a person means, by path or shipped name; None for anything else."""
-    from coeflab.core.files import shipped, typed
-    from coeflab.motion.multibody.arm_file import is_arm
-
-    path = typed(file)
-    for place in (path, shipped("geometry") / path.name if len(path.parts) == 1 else path):
-        if is_arm(place):
-            return place
-    return None
-
-
-def _arm(body: Path, name: str, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
-    """A motion of a vehicle with an arm."""
-    from coeflab.core.files import write_all
-    from coeflab.motion.trajectory import Ended
-    from coeflab.report.tables.motion import arm_phases, columns, motion_csv, motion_parquet
-
-    chain, manoeuvre, moved = _moved(body, name, options)
-    table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
-    content = (
-        {} if out is None else {f"{manoeuvre.name}.{to}": table, **_arm_pictures(body, chain, manoeuvre.name, moved)}
-    )
-    write_all(Path(out or ""), content)
-    files = [str(Path(out or "") / name) for name in content]
-    if json:
-        last = {name: float(values[-1]) for name, values in columns(moved).items()}
-        said = {"name": chain.name, "phases": list(moved.phases), "ended": moved.ended.value, "why": moved.why}
-        show.json_object({**said, "last": last, "statements": list(moved.statements), "files": files})
-    else:
-        show.table(arm_phases(moved, chain.name))
-        for line in moved.statements:
-            show.text(f"  {line}")
-        if moved.why:
-            show.text(f"  {moved.ended.value}: {moved.why}")
-        for path in files:
-            show.path(path)
-    if moved.ended is not Ended.COMPLETE:
-        raise typer.Exit(1)
-
-
-def _moved(body: Path, name: str, options: dict[str, Any]) -> tuple[Chain, Manoeuvre, Trajectory]:
-    """Read a body.toml and make a manoeuvre; what its keys are to blame for names their lines."""
-    from coeflab.core.options import described
-    from coeflab.core.text.toml import read_toml
-    from coeflab.motion.multibody.arm_file import BODY, read_arm
-    from coeflab.motion.multibody.manoeuvres import MANOEUVRES
-    from coeflab.motion.simulators import SIMULATORS
-
-    own = {o.name for o in described(MANOEUVRES[name].options)} if name in MANOEUVRES else set()
-    simulator = SIMULATORS.load("arm")
-    known = own | {o.name for o in described(simulator.Options)}
-    if name in MANOEUVRES and (strange := [option for option in options if option not in known]):
-        expected = f"one of {', '.join(sorted(known))}"
-        option = f"--{strange[0].replace('_', '-')}"
-        raise InputError(f"{option} for {name}", expected, column=option, advice="See --help-options.")
-    texts = {k: v if k in ("lasts", "stays") else str(v) for k, v in options.items() if k in own}
-    arm = read_arm(body, name, texts)
-    stated = {f.name: getattr(arm.controller, f.name) for f in fields(arm.controller)}
-    stated["knows_current"] = "yes" if arm.controller.knows_current else "no"
-    try:
-        with SIMULATORS.guarded("arm"):
-            how = {k: v for k, v in options.items() if k not in own}
-            return arm.chain, arm.manoeuvre, simulator.simulate(arm.chain, arm.manoeuvre, stated | how)
-    except InputError as why:
-        column = "" if why.file is not None or why.column is None else why.column
-        toml = read_toml(body / BODY if body.is_dir() else body)
-        place, _, key = column.partition(".")
-        if column == "thruster":
-            raise toml.fail(column, why.found, why.expected, why.advice) from None
-        if not place.startswith("phase["):
-            raise
-        place = arm.places[int(place[6:-1])]
-        if not place:
-            raise InputError(why.found, why.expected, column=f"--{key}", advice=why.advice) from None
-        raise toml.fail(f"{place}.{key}", why.found, why.expected, why.advice) from None
-
-
-def _arm_pictures(body: Path, chain: Chain, name: str, moved: Trajectory) -> dict[str, bytes]:
-    """Joints, torques, thrusts and the path of the end effector as a drawing, and a page that plays the motion."""
-    from coeflab.bodies.readers.arm import read
-    from coeflab.report.figures.arm import animation, hull_of, simulated, simulated_sheet
-
-    motion = simulated(chain, hull_of(read(body / "body.toml" if body.is_dir() else body)), moved)
-    what = "motion" if name == "arm_motion" else name.replace("_", " ")
-    said = f"{what.capitalize()} of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
-    return {
-        f"{name}.svg": simulated_sheet(motion, moved),
-        f"{name}.html": animation(motion, f"{what.capitalize()} of {chain.name}", said),
-    }
 
 
 def of_manoeuvre(name: str, words: list[str]) -> dict[str, Any]:

@@ -33,8 +33,8 @@ def command(
     Fits shipped tables and compares the derivatives with published ones, or reproduces a published vehicle; writes report,
     parameter files and tables.
     """
+    from coeflab.api.validations import validation
     from coeflab.cli.run import REPORTS, carry_out
-    from coeflab.published import validation
     from coeflab.report.acceptance import Acceptance
 
     with show.progress(json) as say:
@@ -47,11 +47,11 @@ def command(
 
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
+    from coeflab.api.documents import report_of
+    from coeflab.api.documents import written as rendered
     from coeflab.core.files import write_all
-    from coeflab.published.documents import report_of
-    from coeflab.published.documents import written as rendered
+    from coeflab.formats.exporting import parameter_files_rendered
     from coeflab.report import acceptance as acceptance_tables
-    from coeflab.workbench.exports import parameter_files_rendered
 
     files = parameter_files_rendered(found.parameter_files) | dict(rendered(report_of(found).document, ["html"]))
     files |= {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}

@@ -90,9 +90,10 @@ def command(
     from coeflab.cli.export import named
     from coeflab.cli.merge import carried_out
     from coeflab.core.files import located, write_all
-    from coeflab.workbench import checked, rendered
-    from coeflab.workbench.exports import refuse_unknown
-    from coeflab.workbench.vehicle import asked, completed_by_hand, from_shape, subject
+    from coeflab.formats.exporting import refuse_unknown
+    from coeflab.report.rendered import rendered
+    from coeflab.study.checking import checked
+    from coeflab.study.estimated_vehicle import asked, completed_by_hand, from_shape, subject
 
     if campaign:
         located(campaign, "cfd_data")  # before minutes of added mass
@@ -211,7 +212,7 @@ def for_simulators(study: Study) -> list[str]:
 def _exported(study: Study, folder: Path) -> None:
     """What each export does not hold, in short; its loss report has all of it."""
     from coeflab.core.wording import file_stem
-    from coeflab.report.tables.formats import in_short
+    from coeflab.formats.loss_tables import in_short
 
     for made in study.exports:
         if made.loss is None:
@@ -229,7 +230,7 @@ def as_json(study: Study) -> dict[str, Any]:
     """Particulars, estimates with what they are made of, manoeuvres, what is assumed and what is missing; SI and radians."""
     from coeflab.bodies.mesh.particulars import mesh_statements
     from coeflab.cli.uncertainty import as_json as carried_json
-    from coeflab.report.tables.formats import in_short
+    from coeflab.formats.loss_tables import in_short
 
     shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
     if shape is None:

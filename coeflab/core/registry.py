@@ -10,7 +10,7 @@ import pkgutil
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from functools import cached_property
+from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
@@ -23,11 +23,35 @@ Port = TypeVar("Port")
 OURS = f"coeflab {VERSION}"
 
 
+@cache
+def applications() -> tuple[str, ...]:
+    """Names of the applications: folders of coeflab with a module ``application``; without any of them the core still runs."""
+    return tuple(sorted(p.parent.name for p in Path(__file__).parents[1].glob("*/application.py")))
+
+
+def of_application(name: str, module: str) -> Any:
+    """A module of an application, imported."""
+    return importlib.import_module(f"coeflab.{name}.{module}")
+
+
+def declared(member: str) -> dict[str, Any]:
+    """What every application that has it declares under a name, by application.
+
+    Examples
+    --------
+    >>> declared("COMMANDS")["glider"]
+    {'glide': 'Motion'}
+    """
+    found = {name: of_application(name, "application") for name in applications()}
+    return {name: getattr(module, member) for name, module in found.items() if hasattr(module, member)}
+
+
 class Registry(Generic[Port]):
     """The plugins of one kind.
 
-    A plugin is a module; its file's name is its name. Packages outside coeflab add theirs through an entry point in
-    the group of this name (``coeflab.fits``). A name that coeflab ships, or that two packages claim, is
+    A plugin is a module; its file's name is its name. An application brings its own in a folder that it declares as
+    ``PLUGINS``. Packages outside coeflab add theirs through an entry point in the group of this name
+    (``coeflab.fits``). A name that coeflab ships, or that two packages claim, is
     refused: the shipped plugin stays, and the log says whose was left out.
 
     Parameters
@@ -48,12 +72,20 @@ class Registry(Generic[Port]):
         self.package, self.kind, self._port, self._folder, self._file = package, kind, port, folder or package, file
 
     @cached_property
-    def _shipped(self) -> frozenset[str]:
-        here = importlib.import_module(self._folder).__path__
+    def _shipped(self) -> dict[str, str]:
+        """Dotted name of the folder of every shipped plugin, by its name."""
+        here = [Path(root) for root in importlib.import_module(self._folder).__path__]
         if self._file:
-            folders = (p.parent for root in here for p in Path(root).glob(f"*/{self._file}.py"))
-            return frozenset(f.name for f in folders if not f.name.startswith("_"))
-        return frozenset(m.name for m in pkgutil.iter_modules(here) if not m.ispkg and not m.name.startswith("_"))
+            names = (p.parent.name for root in here for p in root.glob(f"*/{self._file}.py"))
+        else:
+            names = (m.name for m in pkgutil.iter_modules(map(str, here)) if not m.ispkg)
+        homes = dict.fromkeys(names, self._folder)
+        for home, theirs in declared("PLUGINS").items():
+            for folder in (folder for kind, folder in theirs.items() if kind == self.package):
+                place = Path(__file__).parents[1] / home / folder
+                names = (m.name for m in pkgutil.iter_modules([str(place)]) if not m.ispkg)
+                homes |= dict.fromkeys(names, f"coeflab.{home}.{folder}")
+        return {name: home for name, home in homes.items() if not name.startswith("_")}
 
     @cached_property
     def _claims(self) -> tuple[dict[str, EntryPoint], tuple[tuple[str, str], ...]]:
@@ -80,7 +112,11 @@ class Registry(Generic[Port]):
 
     def names(self) -> tuple[str, ...]:
         """Names of all plugins, sorted; nothing is imported."""
-        return tuple(sorted(self._shipped | set(self._claims[0])))
+        return tuple(sorted({*self._shipped, *self._claims[0]}))
+
+    def home(self, name: str) -> str:
+        """Dotted name of the module that a shipped plugin is."""
+        return ".".join(filter(None, (self._shipped[name], name, self._file)))
 
     def is_shipped(self, name: str) -> bool:
         """Whether the plugin of that name is coeflab's own."""
@@ -130,7 +166,7 @@ class Registry(Generic[Port]):
             raise PluginError(f"no {self.kind} is called {shown(name)}{hint} Known: {known}.{refused}")
         point = self._claims[0].get(name)
         if point is None:
-            plugin: Any = importlib.import_module(".".join(filter(None, (self._folder, name, self._file))))
+            plugin: Any = importlib.import_module(self.home(name))
             owner = ""
         else:
             with self.guarded(name, "cannot be imported"):
@@ -169,31 +205,6 @@ class Registry(Generic[Port]):
                 raise
             what = f"{type(why).__name__}: {shown(why, 200)[1:-1]}" if str(why) else type(why).__name__
             raise PluginError(f"the {self.kind} {shown(name)} of {_distribution(point)} {doing}: {what}.") from why
-
-
-class Folders:
-    """Modules of one name in the folders of a package, by the folder: found without being imported, imported on use.
-
-    Parameters
-    ----------
-    package : str
-        Dotted name.
-    file : str
-        Name of the module that every folder has.
-    """
-
-    def __init__(self, package: str, file: str) -> None:
-        self._package, self._file = package, file
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Names of the folders, sorted."""
-        here = importlib.import_module(self._package).__path__
-        return tuple(sorted(p.parent.name for root in here for p in Path(root).glob(f"*/{self._file}.py")))
-
-    def load(self, name: str) -> Any:
-        """The module of a folder."""
-        return importlib.import_module(f"{self._package}.{name}.{self._file}")
 
 
 def _distribution(point: EntryPoint) -> str:

@@ -12,10 +12,10 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.formats.stated_file import Law, Stated, stated_file, stated_table
+from coeflab.glider.glider import Glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.motion.glider.glider import Glider
 from coeflab.published.flyingfish.model import FlyingFish, Medium, thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics

@@ -1,6 +1,7 @@
 """What a workbench page needs of a study: sweeps to change, and what follows from their slopes.
 
-The page computes in the browser what `coeflab.fits`, `coeflab.vehicle.stability` and `coeflab.motion` compute here. A zigzag
+Slopes on fewer points are computed here; the page adds up budgets, indices and motions as `coeflab.fits`,
+`coeflab.vehicle.stability` and `coeflab.motion` do. A zigzag
 takes the file's law with the changed slopes in it; terms that were tied to these follow them, nothing else is fitted again.
 """
 
@@ -13,13 +14,15 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.rows.sweeps import one_size
 from coeflab.fits.slope_at_origin import NODES
-from coeflab.fits.statistics import one_signed, origin_slope, slope_mixture, slopes, student_mixture
+from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
@@ -36,12 +39,6 @@ from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import INDICES
 
-CONSTANTS = (
-    "NOTHING", "SIZES", "COARSE", "NUISANCE", "REMAINDER", "SCATTER", "BEYOND", "FAR", "NO_REMAINDER", "NOTHING_CURVED",
-    "QUADRATIC_ODDS", "ALIKE", "GROWING", "SETTING", "COMMON", "LOOSE", "POWER", "TAIL", "TAIL_PER_DECADE", "TAILS", "WRONG",
-    "PINNED", "ROUNDING", "WEIGHTLESS", "DECAY", "ORDERS", "STATED_FREEDOM", "MOST_LIKELY",
-)  # fmt: skip
-ONE_SIGNED = ("POWERS", "SATURATING", "TERMS", "SINGULAR", "TAILS", "RULED_OUT")
 COMPONENTS = "YNZMK"
 RUDDERS = (10.0, 20.0)  # deg: the zigzags of IMO MSC.137(76)
 PUBLISHED = 4  # values drawn beside ours
@@ -71,17 +68,11 @@ class BenchData:
     left_out: tuple[str, ...] = ()
 
     def content(self) -> dict[str, Any]:
-        """All of it, with the constants of the method."""
-        constants = {name: _plain(getattr(slope_mixture, name)) for name in CONSTANTS}
-        constants |= {"REMOVE": origin_slope.REMOVE, "FEWEST": origin_slope.FEWEST}
-        constants |= {"ODD": list(slope_mixture.ODD.items()), "SIDES": list(slope_mixture.SIDES.items())}
-        constants |= {"ONE_SIGNED": {name: _plain(getattr(one_signed, name)) for name in ONE_SIGNED}}
-        constants |= {"NODES": slope_mixture.NODES.tolist(), "WEIGHTS": slope_mixture.WEIGHTS.tolist()}
+        """All of it, every sweep with what it gives on fewer of its points."""
         return {
-            "constants": constants | {"KEPT": student_mixture.KEPT, "HALVINGS": student_mixture.HALVINGS},
             "nodes": NODES,
             "sameLevel": slopes.SAME_LEVEL,
-            "sweeps": list(self.sweeps),
+            "sweeps": [{**s, "choices": _choices(s)} for s in self.sweeps],
             "campaigns": dict(self.campaigns),
             "files": list(self.files),
             "leftOut": list(self.left_out),
@@ -115,8 +106,48 @@ def _usable(s: Sweep) -> bool:
     return _slope(s) and len(s.x) <= EACH_ROW
 
 
-def _plain(value: Any) -> Any:
-    return [_plain(v) for v in value] if isinstance(value, tuple) else value
+def _choices(sweep: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The sweep up to each smaller setting, and without each of its points."""
+    size = np.abs(np.array(sweep["x"]))
+    levels, begun = [], -np.inf
+    for value in np.unique(size[size > 0.0]).tolist():
+        if value - begun > slopes.SAME_LEVEL * size.max():
+            levels.append(value)
+            begun = value
+        levels[-1] = value
+    shorter = [(limit, None, size <= limit * (1.0 + slopes.SAME_LEVEL)) for limit in levels[:-1]]
+    without = [(None, i, np.arange(len(size)) != i) for i in range(len(size))]
+    return [
+        {"limit": limit, "dropped": i} | _on(sweep, np.flatnonzero(kept)) for limit, i, kept in (*shorter, *without)
+    ]
+
+
+def _on(sweep: Mapping[str, Any], rows: NDArray[np.intp]) -> dict[str, Any]:
+    """The slope on some points of a sweep, as the study finds it on all; curves to eight digits."""
+    x, y = (np.array(sweep[axis])[rows] for axis in "xy")
+    se = None if sweep["se"] is None else np.array(sweep["se"])[rows]
+    found = origin_slope.estimate(x, y, se, odd=sweep["odd"])
+    refused = one_size(x, sweep["variable"], np.ones(len(x)))
+    out = {
+        "kept": rows.tolist(), "value": None, "reason": refused or found.reason, "status": found.status.value, "removed": [],
+    }  # fmt: skip
+    if found.design is None or refused:
+        return out
+    value, u95, moved = slopes.determined(found, "x", None, (0.0, 0.0))
+    over = float(np.abs(x).max()) * np.linspace(-1.0, 1.0, NODES)
+    mean, half = origin_slope.curve(found, np.concatenate([x, over]))
+    by_row = np.zeros(len(x))
+    by_row[found.used] = moved
+    random = 2.0 * found.noise * float(np.linalg.norm(moved * np.sqrt(found.design.variance)))
+    return out | {
+        "value": value, "fit": u95, "random": min(random, u95 or 0.0), "removed": rows[np.logical_not(found.used)].tolist(),
+        "reach": float(np.abs(x).max()), "curve": _short(mean[len(x) :]), "half": _short(half[len(x) :]),
+        "misfit": _short(by_row * (y - mean[: len(x)])),
+    }  # fmt: skip
+
+
+def _short(values: Array) -> list[float]:
+    return [float(f"{v:.8g}") for v in values]
 
 
 def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.formats import loss_tables
 from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, Topic, digest_of, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
@@ -48,7 +49,6 @@ from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.estimates import estimates_sections
 from coeflab.report.sections.parameter_file import export_sections, manoeuvre_sections, stability_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
-from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
@@ -332,7 +332,7 @@ def _models(study: Study) -> tuple[Section, ...]:
 
 def _laws(study: Study) -> tuple[Section, ...]:
     found = {name: points_of(p) for name, p in study.parameter_files.items()}
-    each = {name: format_tables.at_points(laws, f"Force law of {name}") for name, laws in found.items() if laws}
+    each = {name: loss_tables.at_points(laws, f"Force law of {name}") for name, laws in found.items() if laws}
     if not each:
         return ()
     text: tuple[str, ...] = (
@@ -344,7 +344,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
         text += (_not_in_a_file(none),)
     whole = Section(
-        "all-laws", "Force laws at their points", (format_tables.IN_PERCENT,), tuple(each.values()), appendix=True
+        "all-laws", "Force laws at their points", (loss_tables.IN_PERCENT,), tuple(each.values()), appendix=True
     )
     return (Section("law-at-points", "Force law at its points", text, subsections=(whole,)),)
 
@@ -357,10 +357,10 @@ def _held(name: str, found: Sequence[LawAtPoints], table: Table) -> str:
     worst = max(judged, key=lambda f: f.share)
     holding = sum(not f.missed for f in judged)
     apart, allowed = (
-        format_tables.percent(x) for x in (worst.share, worst.allowed / worst.largest if worst.largest else 0.0)
+        loss_tables.percent(x) for x in (worst.share, worst.allowed / worst.largest if worst.largest else 0.0)
     )
     said = f"{name}: {holding} of {len(judged)} components of tables hold; the largest difference is {apart} ({worst.component} of {worst.table}, allowed {allowed})."
-    return " ".join((said, *(n for n in table.notes if n != format_tables.IN_PERCENT)))
+    return " ".join((said, *(n for n in table.notes if n != loss_tables.IN_PERCENT)))
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:

@@ -114,6 +114,7 @@ _ATOM = (
 )
 _POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"
 _UNIT = re.compile(rf"{_ATOM}{_POWER}(?:\s*[*/·.\- ]\s*\(?{_ATOM}{_POWER}\)?)*")
+_LETTER = re.compile(r"[^\W\d]|[°%‰]")
 _BRACKETS = re.compile(r"(?P<name>.*?\S)\s*\[(?P<unit>[^\[\]]*)\]")
 _PARENTHESES = re.compile(r"(?P<name>.*?\S)\s*\((?P<unit>[^()]*(?:\([^()]*\)[^()]*)*)\)")
 _BEHIND = re.compile(r"(?P<name>.*?[^\s,/])(?:\s*,\s*|\s+/\s+)(?P<unit>\S.*)")
@@ -132,8 +133,10 @@ _BETWEEN_UNITS = re.compile(r"\s*[×•∙⋅‐‑_]\s*|\s+x\s+")  # as N×m, N
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit as tables write it, without brackets."""
-    return text in _NO_UNIT - {""} or (len(text) <= 24 and _UNIT.fullmatch(text) is not None)
+    """Whether a text is a unit as tables write it, without brackets; of numbers 1 alone is one, not 1.1 nor 12."""
+    if text in _NO_UNIT - {""} or text == "1":
+        return True
+    return len(text) <= 24 and _UNIT.fullmatch(text) is not None and _LETTER.search(text) is not None
 
 
 def name_and_unit(text: str) -> tuple[str, str]:
@@ -196,25 +199,30 @@ def numbered(rows: Sequence[Sequence[str]], marks: Marks) -> frozenset[int]:
     return frozenset(out)
 
 
-def is_unit_row(cells: Sequence[str], numbers: Set[int]) -> bool:
+def is_unit_row(cells: Sequence[str], numbers: Set[int], names: Sequence[str] = ()) -> bool:
     """Whether a row between names and data holds units: the letters of a run (A, K, m, s) and the number 1 are units too.
 
     Every cell is a unit, a share such as 1e-3, or blank. Beyond that one cell has to be what no row of data has: a unit in
-    letters or % over a column of numbers, a bracket, or a share such as 1e-3 beside a dash; or all are dashes.
+    letters or % over a column of numbers, a bracket, or a share such as 1e-3 beside a dash; or all are dashes. A number under a
+    name that has its unit is one of the data.
 
     Parameters
     ----------
     cells : sequence of str
     numbers : set of int
         Columns that hold numbers below, see `numbered`.
+    names : sequence of str
+        Over them, where they are known.
     """
     bare = [_bare(c) for c in cells]
+    if any((c == "1" or share(c) is not None) and c != "%" and name_and_unit(n)[1] for c, n in zip(cells, names)):
+        return False
     units = [not c or is_unit(c) or share(c) is not None for c in bare]
     if not any(cells):
         return False
     if not all(units):  # units that nobody knows between those of columns of numbers, as H:M:S
         within = [k for k in numbers if k < len(bare)]
-        known = [bare[k] for k in within if bare[k] and bare[k] not in (*_NO_UNIT, "1") and units[k]]
+        known = [bare[k] for k in within if bare[k] not in (*_NO_UNIT, "1") and is_unit(bare[k])]
         return (
             len({*known}) > 1
             and sum(units) >= MOSTLY * len(units)
@@ -296,7 +304,7 @@ def read_head(
     if (
         united == 0
         and len(rows) > 1
-        and is_unit_row(rows[-1][1], numbers)
+        and is_unit_row(rows[-1][1], numbers, rows[-2][1])
         and is_name_row(rows[-2][1], marks)
         and named != rows[-1][0]
     ):

@@ -416,11 +416,16 @@ def sniff(path: Path, options: Options) -> TextDialect:
     fits = [n > 0 and n >= usual for n in counts]
     begin = next(i for i in range(run[1]) if i == run[0] or (fits[i] and all(fits[i : i + 2])))
     numbers_below = numbered([c for _, c in rows[begin + 1 : run[1]] or rows[begin : run[1]]], marks)
+    places = [(begin, run[0])]
     if options.units == 0 and begin + 1 < run[1] and is_unit_row(rows[begin][1], numbers_below):
-        begin, run = begin + 1, (begin + 1, *run[1:])  # 1e-3 and the like over the data, read as numbers
-    body = [c for _, c in rows[run[0] : run[1]]]
-    filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
-    head, remarks = _head(lines, rows[begin][0], (delimiter, marks, width, filled), numbers_below, options, path)
+        places.insert(0, (begin + 1, begin + 1))  # 1e-3 and the like over the data, read as numbers
+    for first, top in places:
+        body = [c for _, c in rows[top : run[1]]]
+        filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
+        head, remarks = _head(lines, rows[first][0], (delimiter, marks, width, filled), numbers_below, options, path)
+        if head.unit_line == rows[begin][0]:
+            break
+    begin = first
     _two_blanks(delimiter, marks, kept, rows[begin : run[1]], path)
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
     words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)

@@ -19,11 +19,12 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.registry import Registry
 from coeflab.core.text.toml import TomlFile, own_toml, quoted, read_toml, value
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.water import FRESH_WATER
 from coeflab.tank import test_matrix
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS
 from coeflab.tank.tank import Tank
-from coeflab.tank.tank_keys import FRESH_WATER, MatrixKeys, TankFile, folder_name
+from coeflab.tank.tank_keys import MatrixKeys, TankFile, folder_name
 from coeflab.tank.test_matrix import Sweeps
 from coeflab.tank.towed_body import TowedBody
 

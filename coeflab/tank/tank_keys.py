@@ -14,16 +14,14 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, shown
 from coeflab.core.units import with_unit
-from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import CONTROL_COLUMNS
-from coeflab.law.water import FRESH_DENSITY, FRESH_VISCOSITY
 from coeflab.tank.tank import Grid
 from coeflab.tank.test_matrix import Study
 
 MEDIUM = "medium"
 GRIDS = (Grid("coarse", 1.3), Grid(MEDIUM, 1.0), Grid("fine", 1.0 / 1.3))
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]{0,59}")
-FRESH_WATER = Conditions(FRESH_DENSITY, 2.0, FRESH_VISCOSITY)
 
 
 def folder_name(name: str) -> str:

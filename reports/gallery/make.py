@@ -10,19 +10,20 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from coeflab.api.documents import report_of, studied, written
 from coeflab.core.files import shipped, write_atomically
-from coeflab.published.documents import report_of, studied, written
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
 from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.svg import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.study.checking import checked
+from coeflab.study.estimated_vehicle import asked, from_shape, subject
 from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedTow, Study
 from coeflab.tank.campaign import SIX
-from coeflab.workbench import checked, run
-from coeflab.workbench.vehicle import asked, from_shape, subject
 
 HERE = Path(__file__).resolve().parent
 VEHICLE, TOW = "myring_auv", "suboff_tow_bare_hull"

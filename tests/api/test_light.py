@@ -29,7 +29,7 @@ def modules(lines: str) -> list[str]:
 def test_a_fit_imports_no_picture_body_or_motion() -> None:
     loaded = modules(LINES)
     heavy = ("matplotlib", "trimesh", "typst", "typer", "rich", "numba")
-    ours = ("report", "motion", "bodies", "vehicle", "formats", "workbench", "tank", "cli")
+    ours = ("report", "motion", "bodies", "vehicle", "formats", "tank", "cli")
     assert [m for m in loaded if m.split(".")[0] in heavy] == []
     assert [m for m in loaded if m.split(".")[0] == "coeflab" and m.split(".")[1:2] and m.split(".")[1] in ours] == []
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.added_mass import panel
+from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
@@ -17,7 +18,6 @@ from coeflab.bodies.readers.groves import appended, mesh
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "suboff_aff8" / "body.toml"
 

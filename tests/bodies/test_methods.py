@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.added_mass import ADDED_MASS, ellipsoid, primitives, strip
+from coeflab.bodies.added_masses import added_masses, methods
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_coefficient
 from coeflab.bodies.readers import read_body
@@ -17,7 +18,6 @@ from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.scaling import Scaling
 from coeflab.report.tables.added_mass import derivatives
-from coeflab.workbench.hulls import added_masses, methods
 
 RHO = 1000.0
 BODIES = ("suboff_bare_hull", "spheroid_example", "huuv")

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
+from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.meshing import dense_meridian, meshed
 from coeflab.bodies.profiles import Myring
@@ -18,7 +19,6 @@ from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "remus100" / "body.toml"
 REMUS = Myring(0.191, 0.654, 0.541, 0.191, 2.0, 0.436, 0.0165, 0.0368)

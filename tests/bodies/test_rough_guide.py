@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from trimesh.creation import annulus, box
 
+from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.rough_guide import OTHER, rough_u95
@@ -19,11 +20,11 @@ from coeflab.core.axes import Datum
 from coeflab.core.finding import Severity
 from coeflab.core.provenance import Source
 from coeflab.law.added_mass import AddedMass
+from coeflab.report.rendered import rendered
+from coeflab.study.checking import checked
+from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.vehicle.parameter_file import read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
-from coeflab.workbench import checked, rendered
-from coeflab.workbench.hulls import added_masses
-from coeflab.workbench.vehicle import asked, from_shape
 from tests.bodies.twelve import TWELVE
 
 FLU = np.diag([1.0, -1.0, -1.0])

@@ -11,7 +11,9 @@ import pytest
 import trimesh
 from trimesh.creation import annulus, box, capsule, cylinder, icosphere
 
+from coeflab.bodies import added_masses as hulls
 from coeflab.bodies.added_mass import panel
+from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.readers import read_body
@@ -19,8 +21,6 @@ from coeflab.bodies.simplify.simplify import simplify
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
-from coeflab.workbench import hulls
-from coeflab.workbench.hulls import added_masses
 
 RHO, COARSE, FINE = 1000.0, 1200, 2000
 FORWARD = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0.0, 1.0, 0.0])

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, StandIn
@@ -16,7 +17,6 @@ from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
 from coeflab.report.tables.added_mass import derivatives
-from coeflab.workbench.hulls import added_masses
 
 RHO = 1000.0
 

@@ -7,13 +7,13 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from coeflab.bodies.added_masses import against_mesh
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Faceted
 from coeflab.bodies.simplify.simplify import simplify
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
-from coeflab.workbench.hulls import against_mesh
 from tests.bodies.four import FOUR
 from tests.bodies.twelve import TWELVE
 

@@ -12,9 +12,9 @@ from coeflab.report.content import document
 from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
 from coeflab.report.sections.body import drawn_body
+from coeflab.study.run import run
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import run
 from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
 NAMES = {"plain": "tow", "hostile": HOSTILE, "endless": ENDLESS}

@@ -12,12 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coeflab.bodies.readers.particulars import read as read_other
-from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
-from coeflab.motion.multibody.motion import at_rest
-from coeflab.published.urv.model import hull, wet
-from coeflab.report.figures.arm import (
+from coeflab.arm.figures import (
     FRAMES,
     ArmMotion,
     animation,
@@ -28,6 +23,11 @@ from coeflab.report.figures.arm import (
     path_figure,
     poses_figure,
 )
+from coeflab.arm.motion import at_rest
+from coeflab.bodies.readers.particulars import read as read_other
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.published.urv.model import hull, wet
 from coeflab.report.figures.palette import COLOURS
 
 

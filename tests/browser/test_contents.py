@@ -9,8 +9,6 @@ PLACES = """() => {
   const box = s => { const b = document.querySelector(s).getBoundingClientRect(); return [b.left, b.right, b.top, b.bottom]; };
   return {contents: box('details.contents nav'), main: box('.report')};
 }"""
-REGIONS = """() => [...document.querySelectorAll('[role=region], section[aria-labelledby], nav')].map(r => r.ariaLabel ||
-  r.getAttribute('aria-labelledby').split(' ').map(i => document.getElementById(i).textContent).join(' / '))"""
 
 
 @pytest.fixture
@@ -112,25 +110,6 @@ def test_nothing_glides_for_who_wants_no_motion(plain):
     page = plain(reduced_motion="reduce")
     assert page.evaluate("getComputedStyle(document.documentElement).scrollBehavior") == "auto"
     assert page.evaluate("document.getAnimations().length") == 0
-
-
-def test_regions_have_names_of_their_own(opened):
-    names = opened(WIDE).evaluate(REGIONS)
-    assert len(names) > 3
-    assert sorted(names) == sorted(set(names))
-
-
-# A4 less the margins of the page rule, at 96 pixels an inch. A browser shrinks the whole print to the widest line.
-def test_paper_holds_every_table_and_caption(opened):
-    page = opened(673)
-    page.emulate_media(media="print")
-    wide = page.evaluate(
-        """() => [...document.querySelectorAll('table, caption, pre, p, h1, h2, h3, h4, nav')].filter(
-        e => e.getBoundingClientRect().right > 674).map(e => e.tagName + ' ' + e.textContent.slice(0, 60))"""
-    )
-    assert wide == []
-    assert page.locator(".up:visible").count() == 0
-    assert page.locator("nav:visible").count() == page.locator("#answer").count()
 
 
 def test_on_paper_a_caption_takes_one_line_where_there_is_room(visit, written):

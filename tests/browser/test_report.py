@@ -11,7 +11,6 @@ import pytest
 from coeflab.report.content import core
 from coeflab.report.formats import REPORTERS
 
-WIDTHS = [1440, 390]
 CLIPPED = """() => {
   const out = [];
   for (const svg of document.querySelectorAll('figure svg')) {
@@ -30,6 +29,10 @@ CLIPPED = """() => {
   }
   return out;
 }"""
+REGIONS = """() => [...document.querySelectorAll('[role=region], section[aria-labelledby], nav')].map(r => r.ariaLabel ||
+  r.getAttribute('aria-labelledby').split(' ').map(i => document.getElementById(i).textContent).join(' / '))"""
+COLOURS = """() => [getComputedStyle(document.body).backgroundColor,
+  getComputedStyle(document.querySelector('figure svg text')).fill]"""
 SMALLEST = """() => Math.min(...[...document.querySelectorAll('figure svg text')].map(t => {
   const m = t.getScreenCTM();
   return parseFloat(getComputedStyle(t).fontSize) * Math.hypot(m.a, m.b);
@@ -49,20 +52,77 @@ OVERLAPPING = """() => {
 }"""
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_the_page_is_silent_and_loads_nothing_else(opened, address, width):
-    page = opened(width)
+def drawn_whole(page):
+    """Nothing of a drawing is cut off, no text lies on another, nothing scrolls sideways."""
+    assert page.evaluate(CLIPPED) == []
+    assert page.evaluate(OVERLAPPING) == []
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    assert page.evaluate("document.scrollingElement.scrollWidth <= window.innerWidth")
+
+
+def silent(page, address):
+    """It says nothing and loads nothing but itself."""
     assert page.heard == []
     assert [url for url in page.fetched if not url.startswith("data:")] == [address]
 
 
-def test_the_script_is_all_that_runs(opened):
+def test_a_page_on_a_wide_screen(opened, address):
+    """Opened once: silence, scripts, keyboard, regions, colours, drawings, and all tables in print."""
     page = opened(1440)
+    silent(page, address)
     views = page.locator("script.space").count() > 0  # they bring three.js, a script of its own
     assert page.evaluate(
         "[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')"
     ) == ["module"] * (1 + views)
     assert page.locator("[onload], [onclick], [onerror], iframe, object, embed").count() == 0
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.className") == "skip"
+    assert page.evaluate("document.activeElement.getBoundingClientRect().top") >= 0
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "main"
+    names = page.evaluate(REGIONS)
+    assert len(names) > 3
+    assert sorted(names) == sorted(set(names))
+    assert page.locator("figure svg").count() >= 4
+    light = page.evaluate(COLOURS)
+    page.emulate_media(color_scheme="dark")
+    dark = page.evaluate(COLOURS)
+    assert light[0] != dark[0]
+    assert light[1] != dark[1]
+    page.emulate_media(color_scheme="light")
+    drawn_whole(page)
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = false; })")
+    page.emulate_media(media="print")
+    assert page.evaluate(
+        "[...document.querySelectorAll('details table')].every(t => t.getBoundingClientRect().height > 10)"
+    )
+
+
+def test_a_page_on_a_phone(opened, address):
+    page = opened(390)
+    silent(page, address)
+    assert page.locator("figure svg").count() >= 4
+    assert page.evaluate(SMALLEST) >= 10.0
+    drawn_whole(page)
+
+
+# A4 less the margins of the page rule, at 96 pixels an inch.
+def test_a_page_on_paper(opened):
+    page = opened(673)
+    page.emulate_media(media="print")
+    assert page.evaluate("[...document.querySelectorAll('figure')].every(f => f.getBoundingClientRect().right <= 674)")
+    assert page.evaluate("Math.max(...[...document.querySelectorAll('figure svg')].map(f => f.clientHeight))") < 980
+    assert page.evaluate(CLIPPED) == []
+    assert page.locator("canvas:visible, .probe:visible").count() == 0
+    # A browser shrinks the whole print to the widest line.
+    wide = page.evaluate(
+        """() => [...document.querySelectorAll('table, caption, pre, p, h1, h2, h3, h4, nav')].filter(
+        e => e.getBoundingClientRect().right > 674).map(e => e.tagName + ' ' + e.textContent.slice(0, 60))"""
+    )
+    assert wide == []
+    assert page.locator(".up:visible").count() == 0
+    assert page.locator("nav:visible").count() == page.locator("#answer").count()
+    assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
 
 
 @pytest.mark.slow
@@ -82,26 +142,6 @@ def test_the_suboff_report_is_small_and_painted_within_a_second(browser, suboff_
         taken.append(known["TaskDuration"])  # parsing, script, style and layout are tasks: all until the page is loaded
         page.close()
     assert 0.0 < min(taken) < 1.0
-
-
-@pytest.mark.parametrize("width", WIDTHS)
-def test_the_page_does_not_scroll_sideways(opened, width):
-    page = opened(width)
-    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true; })")
-    assert page.evaluate("document.scrollingElement.scrollWidth <= window.innerWidth")
-
-
-@pytest.mark.parametrize("width", WIDTHS)
-def test_no_drawing_is_cut_off_and_no_text_lies_on_another(opened, width):
-    page = opened(width)
-    assert page.locator("figure svg").count() >= 4
-    assert page.evaluate(CLIPPED) == []
-    assert page.evaluate(OVERLAPPING) == []
-
-
-def test_text_of_drawings_is_readable_on_a_phone(opened):
-    page = opened(390)
-    assert page.evaluate(SMALLEST) >= 10.0
 
 
 @pytest.mark.slow
@@ -156,43 +196,3 @@ def test_a_table_that_scrolls_has_a_shadow_at_the_edge_that_hides_something(visi
     box.evaluate("s => { s.scrollLeft = s.scrollWidth; }")
     left, right = edges()
     assert right < 0.02 < left
-
-
-def test_dark_and_light_differ_in_paper_and_ink(opened):
-    seen = {}
-    for scheme in ("light", "dark"):
-        page = opened(1440, scheme)
-        seen[scheme] = page.evaluate(
-            "[getComputedStyle(document.body).backgroundColor, "
-            "getComputedStyle(document.querySelector('figure svg text')).fill]"
-        )
-    assert seen["light"][0] != seen["dark"][0]
-    assert seen["light"][1] != seen["dark"][1]
-
-
-def test_the_keyboard_reaches_the_skip_link_first(opened):
-    page = opened(1440)
-    page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.className") == "skip"
-    assert page.evaluate("document.activeElement.getBoundingClientRect().top") >= 0
-    page.keyboard.press("Enter")
-    assert page.evaluate("document.activeElement.id") == "main"
-
-
-# A4 less the margins of the page rule, at 96 pixels an inch.
-def test_print_cuts_off_nothing(opened):
-    page = opened(673)
-    page.emulate_media(media="print")
-    assert page.evaluate("[...document.querySelectorAll('figure')].every(f => f.getBoundingClientRect().right <= 674)")
-    assert page.evaluate("Math.max(...[...document.querySelectorAll('figure svg')].map(f => f.clientHeight))") < 980
-    assert page.evaluate(CLIPPED) == []
-    assert page.locator("canvas:visible, .probe:visible").count() == 0
-    assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
-
-
-def test_print_shows_all_tables(opened):
-    page = opened(1440)
-    page.emulate_media(media="print")
-    assert page.evaluate(
-        "[...document.querySelectorAll('details table')].every(t => t.getBoundingClientRect().height > 10)"
-    )

@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import WORKS, sha256_of
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 
 CFD_DATA = shipped("cfd_data")
 CAMPAIGNS = sorted(p.parent.name for p in CFD_DATA.glob("*/campaign.toml"))

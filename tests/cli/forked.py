@@ -31,7 +31,7 @@ import manifold3d, rich.console, scipy.interpolate, scipy.spatial, scipy.stats, 
 from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.plan import read_plan
-from coeflab.workbench import run
+from coeflab.study.run import run
 from pathlib import Path
 # Checkers of files, fonts and the like are made when they are needed first: here once, not in every command.
 REPORTERS.load("html").render(document(run(read_plan(Path(coeflab.cli.__file__).parent / "template" / "plan.toml")), full=False))

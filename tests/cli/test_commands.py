@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
 from pathlib import Path
-from subprocess import CompletedProcess
 
 import pytest
 import trimesh
 
 from coeflab.law.coefficient import COVERS
-from tests.cli.conftest import COEFLAB, Run, flat
+from tests.cli.conftest import Run, Validated, files, flat
 from tests.cli.survey import too_long
 
 SIX = {"Yv'", "Nv'", "Zw'", "Mw'", "Yr'", "Nr'"}
@@ -20,29 +18,6 @@ CONTRACT = {
     "symbol", "value", "u95", "unit", "table", "campaign", "body", "scaling", "estimator", "window", "n_points",
     "status", "parts", "assumed",
 }  # fmt: skip
-
-
-def files(folder: Path) -> dict[str, tuple[bytes, int]]:
-    """Content and time of change of every file."""
-    found = [p for p in sorted(folder.rglob("*")) if p.is_file()]
-    return {str(p.relative_to(folder)): (p.read_bytes(), p.stat().st_mtime_ns) for p in found}
-
-
-Done = CompletedProcess[str]
-Validated = tuple[Path, Done, dict[str, tuple[bytes, int]], Done]
-
-
-@pytest.fixture(scope="module")
-def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
-    """A folder, the first run in it, the files and their times after that, and a second run, as JSON."""
-    folder = tmp_path_factory.mktemp("validated")
-
-    def run(*more: str) -> Done:
-        command = [str(COEFLAB), "validate", "suboff", *more]
-        return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
-
-    first = run()
-    return folder, first, files(folder), run("--json")
 
 
 @pytest.mark.slow

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.arm.commands import derive
 from coeflab.cli import complete, schema
+from coeflab.identify.commands import tune
+from coeflab.tank.commands import tow
 from tests.cli.conftest import Run
 
 
@@ -24,8 +27,8 @@ from tests.cli.conftest import Run
             ["suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_2_dimensional", "suboff_roddy_3"],
         ),
         (complete.fits, "slope", ["slope_at_origin"]),
-        (complete.solvers, "open", ["openfoam"]),
-        (complete.runners, "slu", ["slurm"]),
+        (tow.solvers, "open", ["openfoam"]),
+        (tow.runners, "slu", ["slurm"]),
         (complete.reports, "html,pd", ["html,pdf"]),
         (complete.methods, "pan", ["panel"]),
         (schema.kinds, "camp", ["campaign"]),
@@ -35,9 +38,9 @@ from tests.cli.conftest import Run
         (complete.axes, "forward,p", ["forward,port"]),
         (complete.axes, "forward,port,", ["forward,port,down", "forward,port,up"]),
         (complete.symbols, "Yd", ["Ydb", "Ydr", "Yds"]),
-        (complete.languages, "la", ["latex"]),
-        (complete.arms, "urv_", ["urv_puma"]),
-        (complete.arms, "remus", []),
+        (derive.languages, "la", ["latex"]),
+        (derive.arms, "urv_", ["urv_puma"]),
+        (derive.arms, "remus", []),
     ],
 )
 def test_names_that_begin_so(offer, begun: str, offered: list[str]) -> None:
@@ -81,7 +84,7 @@ def test_a_shell_is_offered_values_and_options(
 def test_every_plan_and_parameter_file_is_offered() -> None:
     assert complete.parameters("remus") == ["remus100"]
     assert complete.plans("subo") == ["suboff"]
-    assert "huuv" in complete.tunings("hu")
+    assert "huuv" in tune.tunings("hu")
 
 
 def test_a_shipped_name_is_a_parameter_file(coeflab: Run, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from coeflab.cli import show, vehicle
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, Table
-from coeflab.tank.tank_keys import FRESH_WATER
+from coeflab.law.water import FRESH_WATER
 from tests.cli.conftest import COEFLAB, flat
 from tests.cli.test_compare import VALUES, made
 

@@ -13,9 +13,10 @@ import pytest
 from coeflab.bodies.profiles import Myring
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
+from coeflab.report.rendered import rendered
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.vehicle.stability import index_gradient, stability_index
-from coeflab.workbench import rendered, run
 from tests.cli.conftest import COEFLAB, Run, flat
 
 HUUV = shipped("cfd_data") / "huuv" / "huuv.parameters.json"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 
@@ -11,7 +12,7 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.vehicle.parameter_file import read_parameter_file
 from coeflab.vehicle.plausibility import LAW, plausibility
-from tests.cli.conftest import Run
+from tests.cli.conftest import Run, Validated
 
 OWN = ("--length", "2 m", "--speed", "1.5 m/s", "--density", "1025", "--about", "cg")
 SOUND = ("--set", "Yv'=-0.03 +- 0.003", "--set", "Nr'=-0.006")
@@ -27,21 +28,19 @@ FAST = {
     "run": ("run", WATER, "--out", "out"),
 }
 SLOW = {
-    "validate": ("validate", "suboff", "--out", "out"),
     "validate thauv": ("validate", "thauv", "--out", "out"),
     "vehicle": ("vehicle", "myring_auv", "--out", "out"),
     "tune": ("tune", TUNE, "--out", "out"),
 }
 
 
-def holds(coeflab: Run, folder: Path, command: tuple[str, ...], *, fails: bool | None = None) -> None:
-    """Run a command; each failure of each file that it wrote is among what it says."""
-    done = coeflab(*command, "--json")
+def holds(done: CompletedProcess[str], out: Path, *, fails: bool | None = None) -> None:
+    """Each failure of each file that a command wrote is among what it says."""
     assert done.returncode in (0, 1), done.stderr
     printed = json.loads(done.stdout)
     rows = [*printed.get("findings", []), *printed.get("checks", [])]
     failing = {r["found"] for r in rows if r["severity"] == "fail"}
-    files = sorted((folder / "out").rglob("*.parameters.json"))
+    files = sorted(out.rglob("*.parameters.json"))
     assert files
     failures = [c for f in files for c in plausibility(read_parameter_file(f)) if c.severity is Severity.FAIL]
     assert {c.statistic for c in failures if c.name != LAW} <= failing
@@ -53,26 +52,32 @@ def holds(coeflab: Run, folder: Path, command: tuple[str, ...], *, fails: bool |
 
 @pytest.mark.parametrize("name", FAST)
 def test_what_params_check_fails_is_said_by_the_writer(coeflab: Run, tmp_path: Path, name: str) -> None:
-    holds(coeflab, tmp_path, FAST[name], fails="wrong sign" in name)
+    holds(coeflab(*FAST[name], "--json"), tmp_path / "out", fails="wrong sign" in name)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SLOW)
 def test_what_params_check_fails_is_said_by_slower_writers(coeflab: Run, tmp_path: Path, name: str) -> None:
-    holds(coeflab, tmp_path, SLOW[name], fails=False)
+    holds(coeflab(*SLOW[name], "--json"), tmp_path / "out", fails=False)
+
+
+@pytest.mark.slow
+def test_what_params_check_fails_is_said_by_the_validation(validated: Validated) -> None:
+    folder, _, _, again = validated
+    holds(again, folder / "reports", fails=False)
 
 
 def test_every_command_that_writes_a_parameter_file_is_here() -> None:
-    """Places of the source that make its bytes: two in the workbench, which run, validate, vehicle, merge and tune share, params new, identify."""
+    """Places of the source that make its bytes: those of exports and tunings, which run, validate, vehicle, merge and tune share, params new, identify."""
     package = Path(__file__).parents[2] / "coeflab"
     writers = {
         str(f.relative_to(package)) for f in package.rglob("*.py")
         if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
     }  # fmt: skip
     assert writers == {
-        "workbench/exports.py",
-        "workbench/tune.py",
+        "formats/exporting.py",
+        "identify/tune.py",
         "cli/params.py",
-        "cli/identify.py",
+        "identify/commands/identify.py",
         "api/vehicle.py",
     }

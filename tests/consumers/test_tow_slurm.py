@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.files import shipped
+from coeflab.tank import tow as room
 from coeflab.tank.folder import CAMPAIGN
 from coeflab.tank.jobs import JobState, progress
-from coeflab.workbench import tow as room
-from coeflab.workbench.tow import Tow
+from coeflab.tank.tow import Tow
 from tests.consumers.one_node_slurm import MISSING, OneNodeSlurm
 
 pytestmark = [

@@ -9,10 +9,10 @@ import pytest
 
 from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
+from coeflab.formats.exporting import export
+from coeflab.study.estimated_vehicle import asked, from_shape, subject
 from coeflab.study.study import Plan
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
-from coeflab.workbench.vehicle import asked, from_shape, subject
 from tests.bodies.twelve import TWELVE
 from tests.consumers.lxdyn_environment import PYTHON
 from tests.consumers.test_lxdyn import in_xdyn

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-import coeflab
 from coeflab.core.text.csv_rows import csv_text, escaped, plain
 from coeflab.core.text.delimited import read_cells
+from tests.sources import PACKAGE, texts
 
 HOSTILE = (
     "=cmd|' /C calc'!A0",
@@ -47,10 +47,6 @@ def test_what_a_spreadsheet_would_calculate_begins_with_an_apostrophe(tmp_path: 
 
 def test_no_other_file_of_the_package_writes_csv() -> None:
     """One writer: whoever makes a CSV of its own would forget the apostrophe."""
-    root = Path(coeflab.__file__).parent
-    own = [
-        f.relative_to(root).as_posix()
-        for f in root.rglob("*.py")
-        if re.search(r"csv\.(?:writer|DictWriter)", f.read_text(encoding="utf-8"))
-    ]
+    writer = re.compile(r"csv\.(?:writer|DictWriter)")
+    own = [f.relative_to(PACKAGE).as_posix() for f, text in texts().items() if writer.search(text)]
     assert own == ["core/text/csv_rows.py"]

@@ -11,7 +11,7 @@ from coeflab.core.declarations import declared_key
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.text.toml import read_toml
 from coeflab.study.plan import read_plan
-from coeflab.workbench import run
+from coeflab.study.run import run
 
 PROSE = "nose, 2 m aft"
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
-import coeflab
 from coeflab.core.errors import PluginError
 from coeflab.core.finding import Finding, Severity, worst
 from coeflab.core.texts import remark, templates, words
+from tests.sources import PACKAGE, texts
 
-PACKAGE = Path(coeflab.__file__).parent
 SUBJECTS = sorted(f.stem for f in (PACKAGE / "core" / "texts").glob("*.toml"))
 FOUND = Finding.of("finding.example", "drift", Severity.WARN, statistic=0.19, threshold=0.05, rows=[80, 81])
 
@@ -35,22 +33,18 @@ def test_the_worst_of_several() -> None:
     assert worst([]) is Severity.PASS
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
-def test_every_template_is_of_a_code_that_the_source_makes(subject: str) -> None:
-    made: set[str] = set()
-    for file in PACKAGE.rglob("*.py"):
-        text = file.read_text(encoding="utf-8")
-        made |= set(re.findall(rf'"({re.escape(subject)}\.[a-z0-9_]+)"', text))
-    if any(
-        f'f"{subject}.{{' in f.read_text(encoding="utf-8") for f in PACKAGE.rglob("*.py")
-    ):  # the rest of a code is handed over
-        words_of = "\n".join(f.read_text(encoding="utf-8") for f in PACKAGE.rglob("*.py"))
-        made |= {f"{subject}.{word}" for word in re.findall(r'"([a-z0-9_]+)"', words_of)}
-    assert made >= {f"{subject}.{code}" for code in templates(subject)}
+def test_every_template_is_of_a_code_that_the_source_makes() -> None:
+    written = "\n".join(texts().values())
+    codes = set(re.findall(r'"([a-z0-9_]+\.[a-z0-9_]+)"', written))
+    parts = set(re.findall(r'"([a-z0-9_]+)"', written))
+    for subject in SUBJECTS:
+        handed_over = parts if f'f"{subject}.{{' in written else set()  # the rest of a code
+        unused = {code for code in templates(subject) if f"{subject}.{code}" not in codes and code not in handed_over}
+        assert unused == set(), subject
 
 
 def test_every_code_that_the_source_makes_has_a_template() -> None:
-    for file in PACKAGE.rglob("*.py"):
-        for code in re.findall(r'Finding(?:\.of)?\(\s*"([^"]+)"', file.read_text(encoding="utf-8")):
+    for file, text in texts().items():
+        for code in re.findall(r'Finding(?:\.of)?\(\s*"([^"]+)"', text):
             subject, _, what = code.partition(".")
             assert what in templates(subject), f"{file}: {code}"

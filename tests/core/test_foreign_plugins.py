@@ -19,8 +19,8 @@ from coeflab.core.version import VERSION
 from coeflab.fits import FITS
 from coeflab.study.checks import CHECKS
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan
-from coeflab.workbench import run
 
 Install = Callable[..., None]
 GOOD = "from coeflab.core.table import Check, Severity\nsummary = 'theirs'\ncitations = ()\n"

@@ -6,20 +6,19 @@ import ast
 import importlib.util
 from pathlib import Path
 
-import coeflab
+from tests.sources import PACKAGE, nodes, texts
 
-ROOT = Path(str(coeflab.__file__)).parent
 ALLOWED = ("__init__.py", "core/registry.py", "cli/")
 DYNAMIC = {"import_module", "__import__", "resolve_name", "run_module"}
 
 
 def by_a_string(file: Path) -> set[int]:
     """Lines that import by a string."""
-    tree = ast.parse(file.read_text("utf-8"))
-    found = {n.lineno for n in ast.walk(tree) if isinstance(n, ast.Name) and n.id in DYNAMIC}
-    found |= {n.lineno for n in ast.walk(tree) if isinstance(n, ast.Attribute) and n.attr in DYNAMIC}
+    within = nodes()[file]
+    found = {n.lineno for n in within if isinstance(n, ast.Name) and n.id in DYNAMIC}
+    found |= {n.lineno for n in within if isinstance(n, ast.Attribute) and n.attr in DYNAMIC}
     modules = {"importlib", "runpy"}
-    for n in ast.walk(tree):
+    for n in within:
         if isinstance(n, ast.ImportFrom) and n.module in modules and {a.name for a in n.names} & DYNAMIC:
             found.add(n.lineno)
     return found
@@ -27,8 +26,8 @@ def by_a_string(file: Path) -> set[int]:
 
 def test_imports_by_a_string_stand_in_registry_command_line_and_front_door_alone() -> None:
     hidden = {}
-    for file in sorted(ROOT.rglob("*.py")):
-        name = file.relative_to(ROOT).as_posix()
+    for file in texts():
+        name = file.relative_to(PACKAGE).as_posix()
         allowed = name in ALLOWED or name.startswith("cli/")
         if lines := by_a_string(file) if not allowed else set():
             hidden[name] = sorted(lines)
@@ -36,7 +35,7 @@ def test_imports_by_a_string_stand_in_registry_command_line_and_front_door_alone
 
 
 def test_no_modules_form_a_circle() -> None:
-    spec = importlib.util.spec_from_file_location("house", ROOT.parent / "benchmarks" / "house.py")
+    spec = importlib.util.spec_from_file_location("house", PACKAGE.parent / "benchmarks" / "house.py")
     assert spec is not None
     assert spec.loader is not None
     house = importlib.util.module_from_spec(spec)

@@ -13,8 +13,8 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import leading_bytes, stream_of, whole_bytes
+from tests.sources import PACKAGE, trees
 
-PACKAGE = Path(__file__).parents[2] / "coeflab"
 READS = {"open", "read_text", "read_bytes"}
 PARSES = {
     "json.loads", "json.load", "tomllib.loads", "tomllib.load", "yaml.load", "yaml.safe_load", "pickle.load", "pickle.loads", "np.load",
@@ -75,7 +75,8 @@ def found(package: Path) -> dict[str, list[str]]:
         name = file.relative_to(package).as_posix()
         if not name.startswith(READER):
             text = file.read_text(encoding="utf-8")
-            calls = [f"{at}: {call}" for at, call in foreign(ast.parse(text))] if MAY_READ.search(text) else []
+            tree = trees()[file] if package == PACKAGE else ast.parse(text)
+            calls = [f"{at}: {call}" for at, call in foreign(tree)] if MAY_READ.search(text) else []
             if calls:
                 out[name] = calls
     return out

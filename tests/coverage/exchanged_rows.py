@@ -1,7 +1,7 @@
 """Exchanged rows: how many of 54 swaps the data gate names, and how many clean campaigns it warns of.
 
 ``python -m tests.coverage.exchanged_rows`` writes ``tests/coverage/exchanged_table.csv``. Swaps: six one-sided sweeps of 5 to 9 settings, two
-shipped ones and four simulated, neighbours and next neighbours. Clean: campaigns of `tests.workbench.test_data_gate` and short one-sided sweeps.
+shipped ones and four simulated, neighbours and next neighbours. Clean: campaigns of `tests.study.test_data_gate` and short one-sided sweeps.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
 from tests.coverage.slope_campaigns import FAMILIES
-from tests.workbench.test_data_gate import clean_campaign, table_of
+from tests.study.test_data_gate import clean_campaign, table_of
 
 TABLE = Path(__file__).with_name("exchanged_table.csv")
 NOISE = (0.01, 0.003, 0.001, 0.0001)

@@ -1,7 +1,7 @@
 """Coverage of the intervals of `coeflab identify` on simulated series of a vehicle whose coefficients are known.
 
 ``python -m tests.coverage.identify_campaigns [SEEDS]`` writes ``identify_table.csv`` beside this file. A campaign is the six
-manoeuvres of `tests.motion.test_identify`, or two of them, with noise on u v r of a share of each one's root mean square:
+manoeuvres of `tests.identify.test_identify`, or two of them, with noise on u v r of a share of each one's root mean square:
 white; white but heavy-tailed (Student, 3 degrees of freedom); or neighbouring rows correlated by 0.9. The terms are given, or chosen from
 the whole library; then a term that is not in the truth counts as zero, and exchangeable ones, which have no interval, do not
 count. Seeds are those of the noise.
@@ -21,13 +21,13 @@ from scipy.signal import lfilter
 
 from coeflab.core.types import Array
 from coeflab.fits.sparse import scaled_optimizer
-from coeflab.motion.identify.force_balance import Candidate, candidate_terms, correlated, weak
-from coeflab.motion.identify.identification import exchangeable, half_widths, identify, multiples
-from coeflab.motion.identify.series import MotionSeries, read_series
+from coeflab.identify.force_balance import Candidate, candidate_terms, correlated, weak
+from coeflab.identify.identification import exchangeable, half_widths, identify, multiples
+from coeflab.identify.series import MotionSeries, read_series
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.tables.motion import motion_csv
-from tests.motion.test_identify import FILE, RUNS, TRUE
+from tests.identify.test_identify import FILE, RUNS, TRUE
 
 SEEDS, CHOSEN = 10, 4
 HALF = 1.124  # s, three quarters of L/V

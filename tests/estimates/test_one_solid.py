@@ -13,7 +13,7 @@ from trimesh.transformations import rotation_matrix
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import mirror_planes
 from coeflab.estimates import Estimates, Water, estimated
-from coeflab.workbench.vehicle import subject
+from coeflab.study.estimated_vehicle import subject
 from tests.bodies.twelve import Mesh, at, fin, hull, rounded
 
 WATER = Water(998.2, 1.0034e-6, 1.0)

@@ -15,7 +15,7 @@ from coeflab.published.estimates.acceptance import Row, acceptance, goals, ring_
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.first_page import answer
 from coeflab.tables.reading import read_tables, table_at
-from coeflab.workbench import tow
+from coeflab.tank import tow
 
 FOOT = 0.3048
 

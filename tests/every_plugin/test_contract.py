@@ -29,7 +29,7 @@ PLUGINS = [pytest.param(room, name, id=f"{room.package}.{name}") for room in ROO
 
 
 def module_of(room: Registry[Any], name: str) -> str:
-    return ".".join(filter(None, (room._folder, name, room._file)))
+    return room.home(name)
 
 
 @pytest.mark.parametrize("room", ROOMS, ids=lambda r: r.package)

@@ -29,10 +29,9 @@ from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.reading import declared, with_declarations
+from coeflab.tables.reading import declared, read_tables, with_declarations
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import centre_of_pressure, stability
-from coeflab.workbench import read_tables
 from tests.report.studies import FULL, HALF, LENGTH, budgets, small_study, small_table
 
 ONE = 0.01

@@ -17,10 +17,10 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Pooling
 from coeflab.law.coefficient import Status
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.reading import table_at
-from coeflab.workbench import run
 from tests.fits.shipped import tables
 
 pytestmark = pytest.mark.usefixtures("one_thread")

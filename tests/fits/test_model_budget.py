@@ -16,8 +16,8 @@ from coeflab.fits.uncertainty.model_budget import SELECTED, with_model_budgets
 from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import read_tables
 from coeflab.vehicle.assemble import record
-from coeflab.workbench import read_tables
 from tests.report.studies import FULL, LENGTH, small_table
 
 EXPERIMENT = Source("tank", kind="experiment")

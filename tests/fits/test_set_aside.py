@@ -13,7 +13,7 @@ from coeflab.fits.results.fitted_model import readmitted
 from coeflab.fits.rows.regression import Area, collect
 from coeflab.fits.rows.sweeps import only_moving
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.report.studies import FULL, LENGTH, small_table
 
 PRIMES = Area(LENGTH.length**2, "L^2", LENGTH.length)

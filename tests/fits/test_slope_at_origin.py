@@ -289,7 +289,7 @@ def warnings(study: Study) -> list[Check]:
 
 
 def test_a_wrong_point_is_left_out_and_the_value_with_it_is_kept() -> None:
-    """The gate for data makes the warning of it: tests/workbench/test_data_gate.py."""
+    """The gate for data makes the warning of it: tests/study/test_data_gate.py."""
     clean, wrong = swept(ANGLES), swept(ANGLES, {9: 3.0})
     before, after = (s.fits[0].sweep("Yv") for s in (clean, wrong))
     assert list(after.wrong) == [9]

@@ -14,10 +14,10 @@ from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.law.scaling import Conditions
 from coeflab.study.checks.data_gate import check as data_gate
 from coeflab.study.checks.straight_runs import check
+from coeflab.study.run import run
 from coeflab.study.study import Plan
 from coeflab.tables.reading import table_at
 from coeflab.vehicle.merge import merged
-from coeflab.workbench import run
 from tests.motion.vehicles import made
 from tests.report.studies import small_study, small_table
 

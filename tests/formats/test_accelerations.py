@@ -14,7 +14,9 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, InertialExporter
 from coeflab.formats.export import LOSSLESS, Export
+from coeflab.formats.exporting import export
 from coeflab.formats.gazebo.law import read_gz_link
+from coeflab.formats.loss_tables import forces, in_short, parts
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
 from coeflab.law.added_mass import potential_part
@@ -23,13 +25,13 @@ from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.sections import parameter_file as export_section
-from coeflab.report.tables.formats import forces, in_short, parts
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.massed import with_mass
 from tests.vehicle.test_inertia import accelerating
+
+few_states = pytest.mark.usefixtures("few_states")
 
 Array = np.ndarray
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
@@ -103,6 +105,7 @@ def own(made: Export) -> dict[str, bytes]:
     return {n: c for n, c in made.files.items() if not n.endswith(".loss.txt")}
 
 
+@few_states
 @both
 @pytest.mark.parametrize("target", READERS)
 def test_the_first_acceleration_is_that_of_simulate(target: str, accelerations: str) -> None:
@@ -116,6 +119,7 @@ def test_the_first_acceleration_is_that_of_simulate(target: str, accelerations: 
     assert np.max(np.abs(found - other)) > 0.01
 
 
+@few_states
 @both
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin"])
 def test_the_flagship_too(suboff: Study, target: str, accelerations: str) -> None:
@@ -127,6 +131,7 @@ def test_the_flagship_too(suboff: Study, target: str, accelerations: str) -> Non
     np.testing.assert_allclose(found[at], wanted[at], rtol=1e-9, atol=1e-12)
 
 
+@few_states
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin", "uuv_simulator", "xdyn"])
 def test_a_flipped_sign_shows(target: str) -> None:
     """The sway-yaw entry of the written added mass, with the other sign."""
@@ -215,7 +220,7 @@ def test_motions_without_a_known_inertia_have_no_number(suboff: Study) -> None:
     assert written(nothing, "mss", "measured").loss.accelerations is None
 
 
-@pytest.mark.slow
+@few_states
 def test_the_choice_is_named_in_every_file() -> None:
     file = accelerating()
     for target in (*TARGETS, "stonefish"):

@@ -14,6 +14,7 @@ import pytest
 from coeflab.core.finding import Severity
 from coeflab.core.texts import words
 from coeflab.formats.c_program import program as c
+from coeflab.formats.exporting import export
 from coeflab.formats.flat_law import feet, flat_law
 from coeflab.law.domain import Hull
 from coeflab.law.symbols import MOTIONS
@@ -22,7 +23,6 @@ from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import VectorSet, compared, vector_sets
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import torpedo, with_mass
 from tests.formats.of_a_vehicle import driven

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.formats.exporting import export
 from coeflab.formats.mss import write as mss
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.vehicle.conform import vector_sets
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 
 NAMES = ("huuv_5dof", "domains", "overlaps", "refusals", "refusal_at_rest")
 SETS = {s.name: s for s in vector_sets() if s.name in NAMES}

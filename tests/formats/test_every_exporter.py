@@ -11,12 +11,13 @@ import pytest
 
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
-from coeflab.formats.export import DEFLECTED, covered_grid, rare_states
+from coeflab.formats import export as of_export
+from coeflab.formats.export import DEFLECTED, rare_states
+from coeflab.formats.exporting import export
 from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law, steered_terms
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.files import HOSTILE, slopes_alone
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
@@ -121,6 +122,7 @@ def both_forces(target: str, given: ParameterFile, files: Mapping[str, bytes], n
     return to.steered_force(files, states, controls), ours
 
 
+@pytest.mark.usefixtures("few_states")
 @each_target
 @each_body
 def test_the_loss_report_is_there_and_true(suboff: Study, target: str, body: str) -> None:
@@ -129,7 +131,7 @@ def test_the_loss_report_is_there_and_true(suboff: Study, target: str, body: str
     made = export(given, target)
     loss = made.loss
     assert loss is not None
-    nu, grid = covered_grid(given)
+    nu, grid = of_export.covered_grid(given)
     files = {n: c for n, c in made.files.items() if not n.endswith(".loss.txt")}
     theirs, ours = both_forces(target, given, files, nu)
     apart = np.abs(theirs - ours)

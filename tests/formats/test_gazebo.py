@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.text.xml import parse_xml
+from coeflab.formats.exporting import export
 from coeflab.formats.gazebo import write as gazebo
 from coeflab.formats.gazebo.law import GzLink, read_gz_link
 from coeflab.formats.gazebo_plugin import write as gazebo_plugin
@@ -24,7 +25,6 @@ from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats import of_a_vehicle
 from tests.formats import of_second_order as second

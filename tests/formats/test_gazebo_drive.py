@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.text.xml import parse_xml
+from coeflab.formats.exporting import export
 from coeflab.formats.gazebo import write as gazebo
 from coeflab.formats.gazebo.assembly import LINK
 from coeflab.formats.gazebo.drive import driven_force, named
@@ -19,7 +20,6 @@ from coeflab.formats.model_files import read_model_file
 from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_parts import ParameterSurface
-from coeflab.workbench.exports import export
 
 HOSTILE = ("../../x", "a b", "<plugin/>", "dr", "'; rm -rf ~", "$(x)", "</model>", "thruster\n", "--", "__model__", "\u202eevil", "a::b", "&amp;", "con", "x" * 150)  # fmt: skip
 
@@ -116,6 +116,7 @@ def test_hostile_names_of_thrusters_are_inert(name: str) -> None:
         assert len(siblings) == len(set(siblings))
 
 
+@pytest.mark.usefixtures("few_states")
 @pytest.mark.parametrize("target", ["gazebo", "gazebo_plugin"])
 def test_what_the_fins_hold_is_not_called_lost(target: str) -> None:
     """REMUS 100 states no limits: the one that is written is said, and where a command goes."""

@@ -11,12 +11,12 @@ import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
+from coeflab.formats.exporting import export
 from coeflab.formats.holoocean import write as exporter
 from coeflab.formats.holoocean.write import CROSS_FLOW, WATER, Torpedo, lifting_area
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import MASS, torpedo, with_mass
 

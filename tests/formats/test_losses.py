@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,14 +16,14 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import LOSSLESS, Kind, covered_grid, loss_of, missing_mass, missing_water
+from coeflab.formats.exporting import export
+from coeflab.formats.loss_tables import in_short
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
-from coeflab.report.tables.formats import in_short
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import ADDED, VALUES, torpedo, with_mass
 from tests.vehicle.test_force_law import HULL, LENGTH, parameters
@@ -38,7 +39,11 @@ NEED_MASS = [
     "uuv_simulator",
     "xdyn",
 ]
-each_target = pytest.mark.parametrize("target", TARGETS)
+
+
+def each_target(test: Any) -> Any:
+    """What is lost by each, over a few states."""
+    return pytest.mark.usefixtures("few_states")(pytest.mark.parametrize("target", TARGETS)(test))
 
 
 def lost(file: ParameterFile, target: str, kind: Kind, accelerations: str = "measured") -> list[str]:
@@ -138,7 +143,7 @@ def test_fitted_tables_over_two_angles_are_not_held_by_simulators() -> None:
     assert export(file, "toml").lossless
 
 
-@each_target
+@pytest.mark.parametrize("target", TARGETS)
 def test_a_file_of_tables_alone_is_no_proof_of_an_export_without_them(target: str) -> None:
     """The HUUV's drag and side force are tables: a target that is given none of them is not near the file."""
     file = huuv_file(read_huuv())
@@ -168,6 +173,7 @@ def test_a_name_that_is_taken_is_changed_and_said(target: str, name: str) -> Non
     assert any(c.startswith(f'files are called vehicle_{name}: of the name "{name}"') for c in found.loss.changes)
 
 
+@pytest.mark.usefixtures("few_states")
 @pytest.mark.parametrize("name", made.HOSTILE)
 @pytest.mark.parametrize("target", [*TARGETS, "csv", "toml"])
 def test_no_name_leads_out_of_the_folder(target: str, name: str) -> None:
@@ -215,6 +221,7 @@ def test_a_component_next_to_nothing_is_not_called_worse_than_none() -> None:
 STEERED = [n for n in TARGETS if isinstance(EXPORTERS.load(n), SteeredExporter)]
 
 
+@pytest.mark.usefixtures("few_states")
 @pytest.mark.parametrize("target", STEERED)
 def test_controls_are_among_what_is_compared(target: str) -> None:
     """A rudder of the other sign in the target's law shows, and so does one that is not read."""

@@ -14,6 +14,7 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import Kind
+from coeflab.formats.exporting import export
 from coeflab.formats.mujoco import write as exporter
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.scaling import Conditions, Scaling, powers_of
@@ -22,7 +23,6 @@ from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import CENTRE, MASS, OWN, torpedo, with_mass
 from tests.formats.vehicles import FACTS, vehicle

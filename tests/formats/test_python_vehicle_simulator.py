@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from coeflab.core.wording import one_line
+from coeflab.formats.exporting import export
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.law.rigid_body import ideal_force, rigid_body_inertia
 from coeflab.law.transforms import skew
 from coeflab.vehicle.force_law import force_law
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import CENTRE, MASS, torpedo, with_mass
 from tests.formats.massed import INERTIA as INERTIA_MATRIX

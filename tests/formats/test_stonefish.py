@@ -13,12 +13,12 @@ from coeflab.bodies.mesh.mesh import mesh_integrals
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import covered_grid
+from coeflab.formats.exporting import export
 from coeflab.formats.stonefish import write as exporter
 from coeflab.formats.stonefish.write import StonefishLink, added, ellipsoid_mesh, met_at_speed, raw_drag, weighed
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import CENTRE, MASS, OWN, torpedo, with_mass
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from coeflab.core.axes import Datum
+from coeflab.formats.exporting import export
 from coeflab.formats.unspoken import unstated, without_law
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.own_numbers import mass_of, own_numbers, stated_file
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
-from coeflab.workbench.exports import export
 
 PLANAR = ["Yv'=-0.03", "Nv'=-0.012", "Yr'=0.005", "Nr'=-0.006", "Xudot'=-0.001", "Yvdot'=-0.009", "Nrdot'=-0.0005"]
 SAID = "no law for X, Z, K, M: only v and r may move at a constant u; hold w, p and q"

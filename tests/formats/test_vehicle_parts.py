@@ -11,6 +11,7 @@ import pytest
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, SimulatorExporter
 from coeflab.formats.export import Kind
+from coeflab.formats.exporting import export
 from coeflab.formats.mss import read as mss_reader
 from coeflab.formats.toml import write as toml
 from coeflab.formats.uuv_simulator import write as uuv_simulator
@@ -18,10 +19,11 @@ from coeflab.formats.xdyn import read as xdyn_reader
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export
 from tests.formats.massed import CENTRE, MASS, torpedo
 from tests.formats.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floating, quaternion, restoring
 from tests.rigid_motion import rotation
+
+pytestmark = pytest.mark.usefixtures("few_states")
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
 DRIVES = {"gazebo", "gazebo_plugin", "c", "fmi"}  # thrusters and limits of fins are in it

@@ -13,10 +13,10 @@ from coeflab.core.texts import remark
 from coeflab.formats import EXPORTERS, SimulatorExporter
 from coeflab.formats.export import LOSSLESS, Kind, PlannedExport, rare_states
 from coeflab.formats.exported_law import written_terms
+from coeflab.formats.exporting import export, exports_of
 from coeflab.formats.unspoken import in_header
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.workbench.exports import export, exports_of
 from tests.formats.massed import torpedo
 from tests.vehicle.hybrid import RATES, hybrid
 

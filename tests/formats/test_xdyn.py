@@ -11,6 +11,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats.export import Kind
+from coeflab.formats.exporting import export
 from coeflab.formats.xdyn import read as importer
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.formats.xdyn.law import xdyn_body
@@ -18,7 +19,6 @@ from coeflab.law.transforms import moved
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import water_inertia
-from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import CENTRE, MASS, OWN, torpedo, with_mass
 

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from coeflab.arm.arm_file import read_arm
 from coeflab.bodies.mesh.file import load
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.simplify.simplify import parse_box, read_boxes
@@ -23,12 +24,11 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.units import parse_header, quantity, typed
 from coeflab.formats.model_files import read_model_file
+from coeflab.glider.glider import read_glider
+from coeflab.identify.series import read_series
+from coeflab.identify.tuning_plan import read_tuning_plan
 from coeflab.law.symbols import derivative
 from coeflab.law.terms import read_equation, read_term
-from coeflab.motion.glider.glider import read_glider
-from coeflab.motion.identify.series import read_series
-from coeflab.motion.multibody.arm_file import read_arm
-from coeflab.motion.tune.plan import read_tuning_plan
 from coeflab.motion.vehicle import vehicle
 from coeflab.study.plan import read_plan
 from coeflab.tables.column_map import read_column_map

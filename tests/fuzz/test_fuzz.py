@@ -16,7 +16,7 @@ from tests.conftest import PEAK_KILOBYTES
 from tests.fuzz.fuzz import CASES, SLOWEST_S, Tally, case_is_refused, fuzz, is_read
 from tests.fuzz.parsers import ROOT, SAMPLES, Parser, attempt, of_foreign_files, parsers, with_samples
 
-COUNT = int(os.environ.get("COEFLAB_FUZZED", "200"))  # inputs of a parser of share 1; 31,000 make a million
+COUNT = int(os.environ.get("COEFLAB_FUZZED", "80"))  # inputs of a parser of share 1; 31,000 make a million
 FIRST = int(os.environ.get("COEFLAB_FUZZ_FIRST", "0"))
 ALL = list(parsers())
 HALVES = (ALL[::2], ALL[1::2])

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import coeflab
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Conditions, Scaling
+from tests.sources import PACKAGE, nodes
 
 LOA, LBP = Scaling(4.356, "LOA"), Scaling(4.26086, "LBP")
 # Steady-CFD column of Table 4.
@@ -189,9 +188,9 @@ NO_PRIMES = {
     ),
     "formats/stonefish/write.py": (2, "form drag of Stonefish, on the panels of its mesh"),
     "formats/holoocean/write.py": (3, "dynamic pressure of HoloOcean's drag law, on its own area"),
-    "motion/multibody/compiled.py": (1, "dynamic pressure on the drag area of a vehicle"),
-    "motion/multibody/kane.py": (1, "dynamic pressure on the drag area of a vehicle"),
-    "motion/multibody/thrusters.py": (1, "dynamic pressure on the area of a propeller's blades"),
+    "arm/compiled.py": (1, "dynamic pressure on the drag area of a vehicle"),
+    "arm/kane.py": (1, "dynamic pressure on the drag area of a vehicle"),
+    "arm/thrusters.py": (1, "dynamic pressure on the area of a propeller's blades"),
     "published/huuv/five_dof.py": (2, "dynamic pressure on the reference area of the paper's coefficients"),
     "published/urv/acceptance.py": (3, "dynamic pressure on a drag area, as printed and as corrected"),
     "published/urv/model.py": (1, "drag of a strip, written apart from the kernel"),
@@ -216,10 +215,10 @@ def _word(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
-def hand_written(source: str) -> list[int]:
+def hand_written(within: Iterable[ast.AST]) -> list[int]:
     """Lines of products that hold two of: a density, one half, a power of a length."""
     found = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in within:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
             parts = list(_parts(node))
             density = any(_word(p).lower() in {"density", "rho", "water", "water_density"} for p in parts)
@@ -233,8 +232,7 @@ def hand_written(source: str) -> list[int]:
 
 def test_no_prime_factor_is_written_by_hand() -> None:
     """`Scaling.unit` is the only place that says 1/2 rho U^a L^b."""
-    home = Path(coeflab.__file__).parent
-    found = {p.relative_to(home).as_posix(): hand_written(p.read_text(encoding="utf-8")) for p in home.rglob("*.py")}
+    found = {p.relative_to(PACKAGE).as_posix(): hand_written(within) for p, within in nodes().items()}
     known = {name: lines for name, lines in found.items() if name in NO_PRIMES}
     new = {name: lines for name, lines in found.items() if lines and name not in NO_PRIMES}
     assert not new, "use Scaling.unit, or say in NO_PRIMES why it is no unit of the prime system"
@@ -250,8 +248,8 @@ def test_no_prime_factor_is_written_by_hand() -> None:
     ],
 )  # fmt: skip
 def test_hand_written_factors_are_found(line: str) -> None:
-    assert hand_written(line) == [1]
-    assert hand_written("unit = scaling.unit(symbol, density) * length / 2.0") == []
+    assert hand_written(ast.walk(ast.parse(line))) == [1]
+    assert hand_written(ast.walk(ast.parse("unit = scaling.unit(symbol, density) * length / 2.0"))) == []
 
 
 def test_intervals_stay_positive_and_rate_windows_follow_the_length() -> None:

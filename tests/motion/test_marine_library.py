@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from coeflab.identify.force_balance import candidate_terms
+from coeflab.identify.identification import allowed, candidates, column, same
 from coeflab.law.symbols import derivative
 from coeflab.law.terms import Term, parse_suffix
-from coeflab.motion.identify.force_balance import candidate_terms
-from coeflab.motion.identify.identification import allowed, candidates, column, same
 from coeflab.motion.vehicle import vehicle
 from tests.motion.vehicles import STABLE, made
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.arm import control, kane, thrusters
+from coeflab.arm.thrusters import TorqueThruster, VoltageThruster
 from coeflab.law import transforms
-from coeflab.motion.multibody import control, kane, thrusters
-from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
 from tests.mutations.harness import Suboff, Verdicts, edited, refusals, validate_urv
 
 

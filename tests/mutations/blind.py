@@ -10,17 +10,17 @@ from unittest.mock import patch
 
 import numpy as np
 
+from coeflab.arm import kane
 from coeflab.bodies import closed_forms, fin_lift
 from coeflab.core.files import shipped
 from coeflab.estimates import crossflow
 from coeflab.fits.uncertainty import grid_convergence
+from coeflab.glider import motion as glider_motion
+from coeflab.glider.glider import Glider
+from coeflab.glider.motion import GliderBody
 from coeflab.law import scaling, transforms
 from coeflab.law.force_law import ForceLaw
 from coeflab.motion import media, steady_state
-from coeflab.motion.glider import motion as glider_motion
-from coeflab.motion.glider.glider import Glider
-from coeflab.motion.glider.motion import GliderBody
-from coeflab.motion.multibody import kane
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.harness import (

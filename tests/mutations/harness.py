@@ -25,16 +25,17 @@ from typing import Any
 
 import numpy as np
 
-import coeflab.workbench as workbench
+import coeflab.study.run as carried_out
 from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.formats.stated_file import Stated, stated_file
+from coeflab.glider.flight import Flown
+from coeflab.glider.glide import GlideRun
+from coeflab.glider.glider import Glider, gliders_at, read_glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.glider.glide import GlideRun
-from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.published.estimates import acceptance as from_shape
 from coeflab.published.flyingfish import acceptance as flyingfish
@@ -58,7 +59,6 @@ from coeflab.study.study import Study
 from coeflab.study.validation import printed_indices
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
-from coeflab.workbench.glide import Flown
 
 GRAVE = {Severity.WARN: "warns", Severity.FAIL: "fails"}
 REFUSED = "refused"
@@ -424,7 +424,7 @@ class Suboff:
 
     def _run(self, plan: Any, anew: bool) -> Study:
         """Fits of tables that are as before, what the gate finds in them, and the added mass of the hulls are not made anew."""
-        fitted, hulls_of, gate = vars(workbench)["fitted"], vars(workbench)["_hulls"], data_gate.findings
+        fitted, hulls_of, gate = vars(carried_out)["fitted"], vars(carried_out)["_hulls"], data_gate.findings
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
@@ -461,7 +461,7 @@ class Suboff:
 
         hulls = self.study.hulls
         with exchanged(fitted, memo), exchanged(hulls_of, lambda *_: hulls), exchanged(gate, through_gate):
-            return workbench.run(plan)
+            return carried_out.run(plan)
 
 
 # ---- REMUS ---------------------------------------------------------------------------------------------------------

@@ -11,15 +11,15 @@ from unittest.mock import patch
 import numpy as np
 
 from coeflab.core.files import shipped
+from coeflab.glider import motion as glider_motion
+from coeflab.glider import space
+from coeflab.glider.glider import Glider
+from coeflab.glider.masses import MassModel
+from coeflab.glider.space import SpaceBody
+from coeflab.identify import thruster
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
 from coeflab.motion import media, steady_state
-from coeflab.motion.glider import motion as glider_motion
-from coeflab.motion.glider import space
-from coeflab.motion.glider.glider import Glider
-from coeflab.motion.glider.masses import MassModel
-from coeflab.motion.glider.space import SpaceBody
-from coeflab.motion.identify import thruster
 from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.motion.manoeuvres import steady_motion
 from coeflab.published import parameter_files

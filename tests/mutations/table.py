@@ -1,4 +1,4 @@
-"""The mutation table of docs/validation.md: ``python -m tests.mutations.table`` writes it anew."""
+"""The table of docs/mutations.md: ``python -m tests.mutations.table`` writes it anew."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from tests.mutations.harness import REFUSED, Outcome, Suboff, compare
 from tests.mutations.mutations import Mutation, mutations, unchanged
 
-PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
+PAGE = Path(__file__).parents[2] / "docs" / "mutations.md"
 BEGIN, END = "<!-- mutation table: made by tests/mutations/table.py -->", "<!-- end of the mutation table -->"
 HEAD = "| validation | mutation | noticed | first by |\n|---|---|---|---|\n"
 
@@ -50,13 +50,13 @@ def _cell(text: str) -> str:
 
 def main() -> None:
     """Run every mutation and write the table into the page."""
-    import coeflab.workbench as workbench
     from coeflab.core.files import shipped
     from coeflab.study.plan import read_plan
+    from coeflab.study.run import run
 
     plan = replace(read_plan(Path(str(shipped("cfd_data"))) / "suboff" / "plan.toml"), exports=(), manoeuvres=())
     with TemporaryDirectory() as folder:
-        study = Suboff(workbench.run(plan), Path(folder))
+        study = Suboff(run(plan), Path(folder))
         base = {name: unchanged(name, study) for name in dict.fromkeys(m.study for m in mutations())}
         outcomes = {m: compare(base[m.study], m.run(study)) for m in mutations()}
     text = PAGE.read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.finding import Severity
-from coeflab.motion.glider import motion
+from coeflab.glider import motion
 from coeflab.study.study import Study
 from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, validate_huuv
 from tests.mutations.mutations import NR, UNDETECTABLE, YR, every_constant, mutations, of_huuv, published, unchanged
@@ -53,7 +53,7 @@ def base(study: Suboff):
 def test_every_mutation_is_noticed_or_moves_nothing_that_is_compared(
     name: str, study: Suboff, base: Callable[[str], Verdicts]
 ) -> None:
-    """And the table of docs/validation.md says so: `python -m tests.mutations.table` writes it anew."""
+    """And docs/mutations.md says so: `python -m tests.mutations.table` writes it anew."""
     outcomes = {m: compare(base(name), m.run(study)) for m in mutations() if m.study == name}
     assert [m.what for m, o in outcomes.items() if not o.by and not m.why_not] == []
     assert [m.what for m, o in outcomes.items() if m.why_not and (o.by or not o.share < 1.0)] == []

@@ -12,6 +12,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.formats.exporting import export
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
 from coeflab.published.flyingfish.model import (
@@ -24,10 +25,9 @@ from coeflab.published.flyingfish.model import (
 )
 from coeflab.published.parameter_files import flyingfish_file as published_file
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.vehicle.parameter_file import read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
-from coeflab.workbench import run
-from coeflab.workbench.exports import export
 from tests.motion.trimmed import flyingfish_file
 
 

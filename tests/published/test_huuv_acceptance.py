@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from coeflab.cli import as_json, show
-from coeflab.motion.tune.output_error import estimate
-from coeflab.motion.tune.tuning import OPEN, SIGN
+from coeflab.identify.output_error import estimate
+from coeflab.identify.tuning import OPEN, SIGN
 from coeflab.published.huuv.acceptance import acceptance
 from coeflab.published.huuv.model import read_huuv
 from coeflab.published.huuv.tuning import BASE, ERRORS, FREE, NAMES, hidden, start_of, tuned, turning_problem

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from coeflab.cli import as_json, show
+from coeflab.formats.exporting import export
 from coeflab.motion.simulation import simulate
 from coeflab.published.thauv.acceptance import acceptance
 from coeflab.report.acceptance import Acceptance, ComparedTable
-from coeflab.workbench.exports import export
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ from coeflab.core.provenance import Source
 from coeflab.report.content import document
 from coeflab.report.sections.body import body_sections
 from coeflab.study.plan import read_plan
-from coeflab.workbench import run
+from coeflab.study.run import run
 from tests.report.studies import FULL, small_study
 
 PARTS = Parts(

@@ -26,7 +26,7 @@ from coeflab.report.figures.variables import (
     scatter_in_words,
 )
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.report.studies import LENGTH
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -8,7 +8,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.report.tables import models as model_tables
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.report.studies import LENGTH
 
 

@@ -24,7 +24,7 @@ from coeflab.report.first_page import answer
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.motion.vehicles import made
 from tests.report.studies import FULL, HOSTILE, LENGTH, small_study
 

@@ -7,11 +7,11 @@ from functools import cache
 import pymupdf
 import pytest
 
+from coeflab.api.documents import report_of
 from coeflab.core.errors import OutputError
 from coeflab.core.finding import Severity
 from coeflab.core.table import Table
 from coeflab.core.version import VERSION
-from coeflab.published.documents import report_of
 from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, Section
 from coeflab.report.formats import REPORTERS, Renderer, pdf

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from coeflab.report.tables.formats import schema_page
+from coeflab.report.tables.schema_page import schema_page
 from coeflab.vehicle.parameter_file import VERSIONS, schema
 
 SHIPPED = Path(__file__).parents[2] / "docs" / "parameter_file.md"

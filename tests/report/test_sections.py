@@ -24,7 +24,7 @@ from coeflab.report.sections.conventions import AXES, axes_figures
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.study.checks.symmetry import check as symmetry_check
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.motion.vehicles import made
 from tests.report.studies import FULL, HOSTILE, LENGTH, small_study, small_table
 

@@ -15,8 +15,8 @@ from coeflab.report.first_page import answer
 from coeflab.report.tables import sources
 from coeflab.report.tables.results import primed_about
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
-from coeflab.workbench import run
 
 SHA = "cd5c0a81b68b0a4764f9416ac0d792f1c7d5438274880fb0224e4e7db2911e2e"
 TOML = f"""[campaign]

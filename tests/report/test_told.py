@@ -7,10 +7,10 @@ import re
 import numpy as np
 import pytest
 
-from coeflab.motion.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.identify.identified_figures import identified_figure
 from coeflab.motion.uncertainty.spread import Importance
 from coeflab.report.document import Figure, Panel, Series
-from coeflab.report.figures.identified import identified_figure
 from coeflab.report.figures.motion import track_figure
 from coeflab.report.figures.series import MOST, curve
 from coeflab.report.figures.uncertainty import bars

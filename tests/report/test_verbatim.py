@@ -23,8 +23,8 @@ from coeflab.report.formats import pdf
 from coeflab.report.notation import Symbol, cell_runs, keeping, kept, runs, users_texts
 from coeflab.report.printable import shortened
 from coeflab.study.plan import read_plan
+from coeflab.study.run import run
 from coeflab.study.study import Study
-from coeflab.workbench import run
 from tests.report.studies import HALF, small_study
 
 TITLE = "Tank tests of Xu, Wang and Li in Yr 2024"

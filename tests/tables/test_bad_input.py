@@ -13,7 +13,7 @@ from coeflab.core.errors import AxesError, CoeflabError, InputError, UnitsError
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import read_tables
+from coeflab.tables.reading import read_tables
 from tests.conftest import SECTIONS
 
 Read = Callable[..., ForceTable]

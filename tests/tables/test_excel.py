@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
@@ -252,6 +252,8 @@ def test_locked_and_foreign_files_say_so(tmp_path: Path) -> None:
     ),
     st.sampled_from(["{} [{}]", "{} ({})", "row"]),
 )
+@example([[1.0, 1.1], [0.0, 0.0]], "{} [{}]")
+@example([[11.0, 1.0], [2.0, 3.0]], "{} ({})")
 @settings(max_examples=30, deadline=None)
 def test_a_sheet_reads_back_equal(
     tmp_path_factory: pytest.TempPathFactory, values: list[list[float]], style: str

@@ -584,7 +584,7 @@ PIECES = [
 
 
 @pytest.mark.slow
-@settings(max_examples=2000)
+@settings(max_examples=400)
 @given(st.data())
 def test_mutated_cases_raise_input_errors_alone(fuzzed: Path, data: st.DataObject) -> None:
     name = data.draw(st.sampled_from(sorted(SEEDS)))

@@ -200,6 +200,29 @@ def test_what_makes_a_row_of_units(tmp_path: Path, row: str, units: tuple[str, .
     assert any("taken for the units" in r for r in table.remarks) == bool(units and "1" in row and "[" not in row)
 
 
+@pytest.mark.parametrize("row", ["1.1,1", "11,1", "1.1,11", "1e-3,-", "-,1e-3", "1,1e-3"])
+@pytest.mark.parametrize("above", ["", "# Test 7\n"])
+def test_numbers_under_names_with_units_are_data(tmp_path: Path, row: str, above: str) -> None:
+    for head in ("r [rad/s],Y [N]", "# r [rad/s], Y [N]"):
+        table = read(tmp_path, f"{above}{head}\n{row}\n2.5,3.5\n4.5,6.5\n")
+        assert [(c.name, c.unit) for c in table.columns] == [("r", "rad/s"), ("Y", "N")]
+        first = [float("nan") if c == "-" else float(c) for c in row.split(",")]
+        np.testing.assert_array_equal([c.values[0] for c in table.columns], first)
+
+
+@pytest.mark.parametrize("row", ["1.1,1.1,1.1", "11,1.1,1", "12,13,14", "0.5,1e-05,1e-06", "5.2,1e-3,1e-4"])
+def test_numbers_alone_are_data_whatever_powers_of_ten_are_among_them(tmp_path: Path, row: str) -> None:
+    table = read(tmp_path, f"Drift,CY,CN\n{row}\n-4,1.5,0.8\n4,-1.5,-0.8\n")
+    assert len(table) == 3
+    assert [c.unit for c in table.columns] == [""] * 3
+
+
+def test_a_share_may_stand_under_a_name_without_unit_beside_one_with_its_own(tmp_path: Path) -> None:
+    table = read(tmp_path, "alpha (deg),CL,CD\n-,1e-3,1e-3\n-4,1.5,0.8\n4,-1.5,-0.8\n")
+    assert len(table) == 2
+    assert [c.unit for c in table.columns][1:] == ["1e-3", "1e-3"]
+
+
 def test_text_in_a_column_of_numbers_is_kept_as_written(tmp_path: Path) -> None:
     """After the first 64 KiB too, when all columns were taken for numbers."""
     long = "1.00000000000000000000,2.00000000000000000000\n" * 2_000

@@ -53,7 +53,6 @@ def in_one_patch(folder: Path) -> TowedBody:
 
 
 ONE_FIN = X_FINS.rsplit("[[fin]]", 3)[0]
-ABOUT_A_PLANE = X_FINS.replace('roll = "135 deg"', 'roll = "315 deg"').rsplit("[[fin]]", 2)[0]
 
 
 @pytest.mark.parametrize(
@@ -61,14 +60,10 @@ ABOUT_A_PLANE = X_FINS.replace('roll = "135 deg"', 'roll = "315 deg"').rsplit("[
     [
         pytest.param(named("suboff_aff8"), Half.WHOLE, 70, 20, id="groves, one plane with edges in it"),
         pytest.param(named("suboff_aff8"), Half.PORT, 70, 20, id="groves, its half"),
-        pytest.param(named("suboff_hull_planes"), Half.UPPER, 70, 20, id="groves, two planes, a half"),
-        pytest.param(named("suboff_bare_hull"), Half.WHOLE, 100, 24, id="groves, no edge"),
         pytest.param(named("myring_auv"), Half.WHOLE, 70, 16, id="myring, fins to port and starboard"),
-        pytest.param(named("myring_auv"), Half.PORT, 70, 16, id="myring, its half"),
         pytest.param(written(X_FINS), Half.WHOLE, 60, 20, id="finned, mirrored twice"),
         pytest.param(written(X_FINS), Half.UPPER, 60, 20, id="finned, mirrored once"),
         pytest.param(written(ONE_FIN), Half.WHOLE, 60, 20, id="finned, no plane"),
-        pytest.param(written(ABOUT_A_PLANE), Half.WHOLE, 60, 20, id="finned, one plane"),
         pytest.param(in_one_patch, Half.WHOLE, 90, 20, id="mesh, one patch with X fins"),
         pytest.param(named("tow_spheroid"), Half.WHOLE, 60, 20, id="primitives"),
     ],

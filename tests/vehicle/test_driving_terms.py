@@ -13,10 +13,10 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.study.checks.plausibility import check
 from coeflab.study.plan import plan_at
+from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.vehicle.driving_terms import moved_to_zero
 from coeflab.vehicle.plausibility import driving_terms, plausibility
-from coeflab.workbench import run
 
 
 def sweep(folder: Path, linear: float, noise: float) -> Study:

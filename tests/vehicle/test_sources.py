@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.identify.tune import tune
+from coeflab.identify.tuning_plan import read_tuning_plan
 from coeflab.law.terms import Term
 from coeflab.motion.dynamics import term_force_of_one
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.simulators import rigid_body
 from coeflab.motion.trajectory import Ended
 from coeflab.motion.trim.trim import trim
-from coeflab.motion.tune.plan import read_tuning_plan
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.force_law import force_law, full_force, known_beside, motion_law, not_used
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
-from coeflab.workbench.tune import tune
 from tests.vehicle.hybrid import (
     ADDED,
     AREA,
@@ -246,7 +246,7 @@ def test_a_motion_ends_where_a_table_has_no_value(rule: str) -> None:
     found = trim(vehicle(file, free=("u", "v", "r")), {}, orders)
     assert [f.code for f in found.refused] == (["law.refused_point"] if rule == "refuse" else [])
     body = vehicle(file, free=("u", "v", "r"))
-    plan = straight_then(orders, 20.0)
+    plan = straight_then(orders, 3.0)
     for how in (
         {},
         {"integrator": "rk4", "step": 0.02, "kernel": "numpy"},

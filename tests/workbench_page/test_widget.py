@@ -51,4 +51,4 @@ def test_the_widget_holds_script_style_and_data(boat, monkeypatch):
     cell = widget.widget(boat)
     assert "export default" in cell._esm
     assert ".bench" in cell._css
-    assert '"constants"' in cell.content
+    assert '"choices"' in cell.content

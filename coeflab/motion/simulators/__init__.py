@@ -9,25 +9,21 @@ from coeflab.core.registry import Plugin, Registry
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from coeflab.motion.glider.glider import Glider
     from coeflab.motion.manoeuvre import Manoeuvre
-    from coeflab.motion.multibody.chain import Chain
     from coeflab.motion.trajectory import Trajectory
-    from coeflab.motion.vehicle import Vehicle
 
 
 @runtime_checkable
 class Simulator(Plugin, Protocol):
     """Moves a vehicle through a manoeuvre."""
 
-    def simulate(
-        self, vehicle: Vehicle | Glider | Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]
-    ) -> Trajectory:
+    def simulate(self, vehicle: Any, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -> Trajectory:
         """The motion, as far as it goes; how it ended is a status of it.
 
         Parameters
         ----------
-        vehicle : Vehicle, Glider or Chain
+        vehicle : Vehicle
+            Or the noun that a simulator of an application moves.
         manoeuvre : Manoeuvre
         options : mapping of str to value
             Of the plugin's `Options`.

@@ -10,13 +10,13 @@ import numpy as np
 
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
-from coeflab.motion.identify.thruster import BenchTest
+from coeflab.identify.identified_figures import bench_figure
+from coeflab.identify.thruster import BenchTest
 from coeflab.motion.trajectory import Trajectory
 from coeflab.published.flyingfish.model import ROTORS, FlyingFish, Medium
 from coeflab.published.flyingfish.motions import Craft, benches, hop, steady
 from coeflab.report.acceptance import ComparedTable
 from coeflab.report.document import Figure
-from coeflab.report.figures.identified import bench_figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables

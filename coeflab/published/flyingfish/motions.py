@@ -10,8 +10,8 @@ import numpy as np
 
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
+from coeflab.identify.thruster import BenchTest, bench_test
 from coeflab.motion.dynamics import from_euler
-from coeflab.motion.identify.thruster import BenchTest, bench_test
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.motion.manoeuvres.steady_motion import helix
 from coeflab.motion.marching import STILL, alone

@@ -8,9 +8,9 @@ from coeflab.bodies.closed_forms import plate_coefficient
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.core.wording import THREE_LINES, grouped
+from coeflab.identify.tuning import Tuning, largest_correlations
 from coeflab.motion import steady_state
 from coeflab.motion.marching import idle, integrated_forces
-from coeflab.motion.tune.tuning import Tuning, largest_correlations
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.figures import CANNOT, paper_figures, tuning_figures
 from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof

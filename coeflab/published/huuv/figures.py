@@ -9,8 +9,9 @@ import numpy as np
 from coeflab.bodies.shape import Parts
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.identify.tuning import Tuning
+from coeflab.identify.tuning_figures import Groups, agreement_figure, curves_figure
 from coeflab.motion.steady_state import steady_turns, turn_figures
-from coeflab.motion.tune.tuning import Tuning
 from coeflab.published.huuv.five_dof import FiveDof, assumed_body, elevator_laws, hull_laws, turning_laws
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, commands, thrust
@@ -18,7 +19,6 @@ from coeflab.published.huuv.tuning import IN_WORDS
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import body_figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
-from coeflab.report.figures.tuning import Groups, agreement_figure, curves_figure
 
 CANNOT = (
     "Fig. 1, views and dimensions: the dimensions stand in the picture alone.",

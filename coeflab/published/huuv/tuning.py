@@ -10,9 +10,8 @@ import numpy as np
 
 from coeflab.core.texts import remark
 from coeflab.core.types import Array
-from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
-from coeflab.motion.tune.output_error import Estimate, Problem, estimate, examine, problem
-from coeflab.motion.tune.tuning import (
+from coeflab.identify.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.identify.tuning import (
     TunedQuantity,
     Tuning,
     driving,
@@ -21,6 +20,7 @@ from coeflab.motion.tune.tuning import (
     together_in_words,
     tuned_parameters,
 )
+from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.published.huuv.model import MATLAB, Huuv, Turns, thrust, thrust_rates
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 

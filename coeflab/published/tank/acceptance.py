@@ -18,9 +18,9 @@ from coeflab.core.table import plus_minus
 from coeflab.fits.uncertainty.grid_convergence import cell_sizes, grid_convergence
 from coeflab.law.coefficient import Coefficient
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.study.run import run
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
-from coeflab.workbench import run
 
 # c/a, k1, k2, k' as printed in R&M 623.
 LAMB = (

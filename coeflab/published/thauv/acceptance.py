@@ -3,7 +3,7 @@
 Constants of a glider's pitch balance from its steady speeds: m3 - m1, the moment below, a moment ahead per setting.
 
 A steady speed gives the angle of attack by the balance of forces, V^2 |L, D|/V^2 = |m0| g, and so one equation of
-`coeflab.motion.glider.motion`, linear in the constants. Its solution starts the least squares of the speeds themselves.
+`coeflab.glider.motion`, linear in the constants. Its solution starts the least squares of the speeds themselves.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array, brief
-from coeflab.motion.glider.glide import steady_glides
-from coeflab.motion.glider.glider import Glider, GliderPhase
-from coeflab.motion.glider.motion import Polar, balanced, glide, unexplained_power
+from coeflab.glider.flight import Flown, fly
+from coeflab.glider.glide import steady_glides
+from coeflab.glider.glider import Glider, GliderPhase
+from coeflab.glider.motion import Polar, balanced, glide, unexplained_power
 from coeflab.published.parameter_files import thauv_file
 from coeflab.published.thauv.figures import NOT_DRAWN, figures
 from coeflab.published.thauv.in_space import ASSUMED, compared_in_space, dive_files, flown_spiral, space_of
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
-from coeflab.workbench.glide import Flown, fly
 
 STEEP = np.radians(40.0)
 NOWHERE = 1.0

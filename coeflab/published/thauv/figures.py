@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from coeflab.core.types import Array
-from coeflab.motion.glider.glide import GlideRun
+from coeflab.glider.figures import motion_figure, polar_figure
+from coeflab.glider.flight import Flown
+from coeflab.glider.glide import GlideRun
 from coeflab.published.thauv.in_space import space_of
 from coeflab.report.document import Figure
-from coeflab.report.figures.glide import motion_figure, polar_figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
-from coeflab.workbench.glide import Flown
 
 SHOWN = (-15.0, 15.0)
 SPEEDS = (0.25, 0.5, 0.75, 1.0)

@@ -21,11 +21,9 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array
 from coeflab.fits.glide_polar import series
 from coeflab.formats.stated_file import Law, Stated, stated_file
-from coeflab.law.rigid_body import MassProperties
-from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.glider.glide import GlideRun, steady_glides, steady_spirals
-from coeflab.motion.glider.glider import Glider, GliderPhase
-from coeflab.motion.glider.space import (
+from coeflab.glider.glide import GlideRun, steady_glides, steady_spirals
+from coeflab.glider.glider import Glider, GliderPhase
+from coeflab.glider.space import (
     SpaceBody,
     Spiral,
     cruise,
@@ -34,6 +32,8 @@ from coeflab.motion.glider.space import (
     steady_spiral,
     unexplained_in_space,
 )
+from coeflab.law.rigid_body import MassProperties
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.acceptance import Basis, Compared, ComparedTable

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from coeflab.arm import kane
+from coeflab.arm.chain import FLU, Chain, in_frame_0
+from coeflab.arm.motion import at_rest
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.law.transforms import denavit_hartenberg
-from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.chain import FLU, Chain, in_frame_0
-from coeflab.motion.multibody.motion import at_rest
 from coeflab.published.urv import model
 from coeflab.published.urv.model import ADDED, BIAS, DENSITY, FIRST_ROW, MASS, cylinder, dry, wet
 from coeflab.published.urv.tasks import control, energy, figures, page, tasks

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
+from coeflab.arm.arm_file import read_chain
+from coeflab.arm.chain import Base, Chain, Joint, Link, Strip
+from coeflab.arm.figures import hull_of
+from coeflab.arm.kane import bias, partial_velocities, pose
+from coeflab.arm.readers.arm import read
+from coeflab.arm.thrusters import TorqueThruster, VoltageThruster
 from coeflab.bodies.closed_forms import cylinder_added_mass
-from coeflab.bodies.readers.arm import read
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
-from coeflab.motion.multibody.arm_file import read_chain
-from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
-from coeflab.motion.multibody.kane import bias, partial_velocities, pose
-from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
-from coeflab.report.figures.arm import hull_of
 
 DENSITY = 1000.0
 BASIC = 1.1  # C_D,basic of a cylinder, section 4.5

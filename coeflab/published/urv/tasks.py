@@ -8,19 +8,19 @@ from functools import cache
 
 import numpy as np
 
+from coeflab.arm import figures as arm
+from coeflab.arm import kane
+from coeflab.arm.chain import Chain, Flow, in_frame_0
+from coeflab.arm.control import ControlledRun, Controller, Station, controlled, wanted_accelerations
+from coeflab.arm.motion import at_rest, equations_of, track_of_end, track_to
+from coeflab.arm.thrusters import thruster_matrix
 from coeflab.core.types import Array
 from coeflab.motion.dynamics import rotations
-from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.chain import Chain, Flow, in_frame_0
-from coeflab.motion.multibody.control import ControlledRun, Controller, Station, controlled, wanted_accelerations
-from coeflab.motion.multibody.motion import at_rest, equations_of, track_of_end, track_to
-from coeflab.motion.multibody.thrusters import thruster_matrix
 from coeflab.published.urv import model
 from coeflab.published.urv.model import dry, wet
 from coeflab.published.urv.theory import SPEEDS, Q, none, same
 from coeflab.report.acceptance import ComparedTable
 from coeflab.report.document import Figure
-from coeflab.report.figures import arm
 
 CONSERVED, BALANCED = 1e-8, 1e-6
 LASTS, RELATIVE = 5.0, 1e-9

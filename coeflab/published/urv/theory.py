@@ -7,14 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.types import Array
-from coeflab.law.rigid_body import axes_in_earth, kinematics
-from coeflab.law.transforms import rotation
-from coeflab.motion.dynamics import from_euler, rotations
-from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.chain import FLU, Chain, in_frame_0
-from coeflab.motion.multibody.control import demand, gain_of, most_thrust
-from coeflab.motion.multibody.thrusters import (
+from coeflab.arm import kane
+from coeflab.arm.chain import FLU, Chain, in_frame_0
+from coeflab.arm.control import demand, gain_of, most_thrust
+from coeflab.arm.thrusters import (
     BLADE,
     Thruster,
     TorqueThruster,
@@ -22,6 +18,10 @@ from coeflab.motion.multibody.thrusters import (
     require_all_directions,
     thruster_matrix,
 )
+from coeflab.core.types import Array
+from coeflab.law.rigid_body import axes_in_earth, kinematics
+from coeflab.law.transforms import rotation
+from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.published.urv import model
 from coeflab.published.urv.model import DENSITY, dry, wet
 from coeflab.report.acceptance import Basis, Compared, ComparedTable

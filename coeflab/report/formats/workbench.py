@@ -1,6 +1,6 @@
 """A page on which an expert changes what a slope rests on, and sees what follows; one HTML file, no network.
 
-The numbers are those of the Python code, recomputed in the browser: tests/workbench_page holds both to 1e-9.
+Slopes are those of the Python code; what follows from them is recomputed in the browser: tests/workbench_page holds both to 1e-9.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from coeflab.report.bench import BenchData
 from coeflab.report.document import Document
 from coeflab.report.printable import visible
 
-summary = "one HTML file to change points, angles and terms and see slope, U95, G_h and zigzag follow"
+summary = "one HTML file to take points or angles out of a sweep and see slope, U95, G_h and zigzag follow"
 citations: tuple[str, ...] = ()
-NUMBERS = ("slope.js", "motion.js", "bench.js")
+NUMBERS = ("motion.js", "bench.js")
 
 
 def render(document: Document) -> Mapping[str, bytes]:

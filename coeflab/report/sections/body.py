@@ -27,6 +27,7 @@ from coeflab.bodies.shape import Parts, Shape
 from coeflab.bodies.triangulation import RULE, Triangulation
 from coeflab.core.table import plus_minus
 from coeflab.core.types import Array, brief
+from coeflab.formats import loss_tables
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.report.document import Axis, Figure, Layer, Scene, Section
 from coeflab.report.figures.body import MARGIN, SIDE, TOP, Sheet, View, body_figure
@@ -36,7 +37,6 @@ from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.sections.campaign import filled
 from coeflab.report.tables import added_mass as tables
-from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.added_mass import particulars
 from coeflab.study.study import Study

@@ -20,6 +20,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.types import Array
 from coeflab.core.wording import grouped, in_sentences, listed
+from coeflab.formats import loss_tables
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.motion.manoeuvre import Simulation
@@ -30,7 +31,6 @@ from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, tagged
 from coeflab.report.figures.svg import settings, svg_text
-from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study

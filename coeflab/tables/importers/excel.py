@@ -8,7 +8,7 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from lzma import LZMAError
 from pathlib import Path
@@ -428,9 +428,14 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
     )
     below = [[_text(v) for v in row] for row in rows[begin + 1 : begin + 500] or rows[begin:]]
     numbers = numbered(below, PLAIN)
-    if options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]], numbers):
-        begin += 1  # 1e-3 and the like over the data, read as numbers
-    width = len(rows[0])
+    over = options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]], numbers)
+    head = _head_over(rows, begin + over, numbers, options, path)  # 1e-3 and the like over the data, read as numbers
+    if over and head.unit_line != begin + 1:
+        return begin, _head_over(rows, begin, numbers, options, path)
+    return begin + over, head
+
+
+def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: Options, path: Path) -> Head:
     above: list[Row] = []
     for i in range(begin - 1, max(begin - 12, -1), -1):
         cells = [_text(v) for v in rows[i]]
@@ -441,7 +446,7 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
             raise InputError(
                 f"nothing in row {wanted}", f"names over the data, which begin in row {begin + 1}", file=path
             )
-    return begin, read_head(above, width, PLAIN, numbers, options.header, options.units)
+    return read_head(above, len(rows[0]), PLAIN, numbers, options.header, options.units)
 
 
 def _kept(

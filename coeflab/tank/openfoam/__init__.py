@@ -16,6 +16,12 @@ from coeflab.tank.jobs import Step
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+# Of the C library: fields stay with the process between iterations, on large pages. A serial run of 964,000 cells takes 2.7 s an
+# iteration so, 3.9 s without.
+KEEPS_MEMORY = (
+    "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=2000000000:"
+    "glibc.malloc.trim_threshold=4000000000:glibc.malloc.top_pad=268435456"
+)
 SHARE = "/usr/share/openfoam"  # where Debian's packages put what a sourced etc/bashrc points WM_PROJECT_DIR at
 
 
@@ -45,6 +51,7 @@ def step(name: str, *command: str, cores: int = 1, watched: bool = False) -> Ste
     watched : bool
     """
     environment = [] if os.environ.get("WM_PROJECT_DIR") else [f"WM_PROJECT_DIR={SHARE}"]
+    environment += [] if os.environ.get("GLIBC_TUNABLES") else [KEEPS_MEMORY]
     launcher, parallel = [], []
     if cores > 1:
         environment += ["OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"]

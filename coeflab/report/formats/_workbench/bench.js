@@ -1,9 +1,6 @@
 "use strict";
 // From an edit to value, U95, G_h and the terms of the force law, as coeflab/fits and coeflab/vehicle/stability.py have them.
 const benchOf = (data) => {
-  const slope = slopeAtOrigin(data.constants), known = new Map();
-  const untouched = { limit: null, dropped: [], without: [] };
-
   // np.interp and np.gradient of one curve.
   const interpolated = (at, x, y) => {
     if (at <= x[0]) return y[0];
@@ -17,7 +14,7 @@ const benchOf = (data) => {
     return -b / (a * (a + b)) * y[i - 1] + (b - a) / (a * b) * y[i] + a / (b * (a + b)) * y[i + 1];
   });
 
-  const isUntouched = (edit) => !edit || (edit.limit === null && !edit.dropped.length && !edit.without.length);
+  const isUntouched = (edit) => !edit || (edit.limit === null && edit.dropped === null);
   const asFound = (index) => {
     const s = data.sweeps[index], b = s.base;
     return {
@@ -25,33 +22,13 @@ const benchOf = (data) => {
       misfit: new Map(s.labels.map((label, i) => [label, b.misfit[i]])), removed: b.removed, reason: b.reason, status: "",
     };
   };
-  const fitted = (index, edit, afresh = false) => {
-    const s = data.sweeps[index], chosen = edit || untouched, key = `${index} ${JSON.stringify(chosen)}`;
-    if (isUntouched(edit) && !afresh) return asFound(index);
-    if (known.has(key)) return known.get(key);
-    const kept = s.x.map((_, i) => i).filter((i) => {
-      const inside = chosen.limit === null || Math.abs(s.x[i]) <= chosen.limit * (1 + data.sameLevel);
-      return inside && !chosen.dropped.includes(i);
-    });
-    const x = kept.map((i) => s.x[i]), y = kept.map((i) => s.y[i]), se = s.se && kept.map((i) => s.se[i]);
-    const found = x.length ? slope.estimate(x, y, se, { odd: s.odd, without: chosen.without })
-      : { design: null, reason: "no points, at least 3 different settings are needed", removed: [] };
-    const out = { index, kept, value: null, u95: null, reason: found.reason, status: found.status, removed: (found.removed || []).map((i) => kept[i]) };
-    if (found.design) {
-      const reach = Math.max(...x.map(Math.abs)), over = Array.from({ length: data.nodes }, (_, i) => reach * (-1 + 2 * i / (data.nodes - 1)));
-      const all = slope.curve(found, [...x, ...over]), moves = slope.byRow(found), used = x.map((_, i) => i).filter((i) => found.used[i]);
-      const byRow = new Array(x.length).fill(0);
-      used.forEach((i, j) => { byRow[i] = moves[j]; });
-      const random = 2 * found.noise * Math.sqrt(moves.reduce((sum, m, j) => sum + m * m * found.design.variance[j], 0));
-      Object.assign(out, {
-        value: found.value, fit: found.u95, random: Math.min(random, found.u95), noise: found.noise, withAll: found.withAll,
-        at: over, curve: all.mean.slice(x.length), half: all.half.slice(x.length),
-        misfit: new Map(kept.map((i, j) => [s.labels[i], byRow[j] * (y[j] - all.mean[j])])),
-      });
-    }
-    if (known.size > 60) known.delete(known.keys().next().value);
-    known.set(key, out);
-    return out;
+  const choiceOf = (index, edit) => data.sweeps[index].choices.find((c) => c.limit === edit.limit && c.dropped === edit.dropped);
+  const fitted = (index, edit) => {
+    if (isUntouched(edit)) return asFound(index);
+    const s = data.sweeps[index], found = choiceOf(index, edit), middle = (data.nodes - 1) / 2;
+    if (found.value === null) return { ...found, index, u95: null };
+    const at = found.curve.map((_, i) => found.reach * (i / middle - 1));
+    return { ...found, index, u95: null, at, misfit: new Map(found.kept.map((i, j) => [s.labels[i], found.misfit[j]])) };
   };
 
   // A sweep's value as a function of input errors, the curve held fixed.
@@ -185,5 +162,5 @@ const benchOf = (data) => {
     const found = { row: campaigns[name].rows[at], before: before[name].rows[at] };
     return { campaigns, ...found, indices: data.files.map((f) => f.indices.map((i) => [indexOf(i, campaigns), indexOf(i, before)])) };
   };
-  return { fitted, isUntouched, view, campaignOf, answer, indexOf, coefficientsOf, motion };
+  return { fitted, choiceOf, isUntouched, view, campaignOf, answer, indexOf, coefficientsOf, motion };
 };

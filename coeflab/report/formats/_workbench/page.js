@@ -38,15 +38,9 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const edits = {};
   const wanted = data.sweeps.findIndex((s) => s.wanted);
   const state = { index: Math.max(wanted, 0), view: "force", file: 0, zigzag: 0 };
-  const editOf = (index) => edits[index] || (edits[index] = { limit: null, dropped: [], without: [] });
-  const sizes = (s) => [...new Set(s.x.map((x) => Number(Math.abs(x).toPrecision(9))).filter((x) => x > 0))].sort((a, b) => a - b);
-  // A step of the slider is a level: settings within 2 % of the largest are one nominal angle.
-  const levels = (s) => {
-    const all = sizes(s), most = all[all.length - 1], out = [];
-    let start = -Infinity;
-    for (const x of all) { if (x - start > 0.02 * most) { out.push(x); start = x; } else out[out.length - 1] = x; }
-    return out;
-  };
+  const editOf = (index) => edits[index] || (edits[index] = { limit: null, dropped: null });
+  // A step of the slider is a level of the setting.
+  const levels = (s) => [...s.choices.filter((c) => c.limit !== null).map((c) => c.limit), Math.max(...s.x.map(Math.abs))];
 
   // The worker, or this thread where a page may have none.
   let worker = null, asked = 0, running = false, next = null, here = null;
@@ -104,15 +98,6 @@ const mountBench = (root, data, source, prefix = "bench") => {
   }
   const slider = make("input", { type: "range", id: `${prefix}-limit`, min: 0, step: 1, oninput: () => moved() });
   const limitText = make("output", { for: `${prefix}-limit` }), limitLabel = make("label", { for: `${prefix}-limit`, class: "label" });
-  const parts = [["v|v|", "quadratic"], ["cubic", "cubic"], ["remainder", "smooth remainder"], ["even", "even part"]];
-  const boxes = parts.map(([key]) => make("input", {
-    type: "checkbox", id: `${prefix}-part-${key.replace(/\W/g, "a")}`, onchange: (e) => {
-      const edit = editOf(state.index);
-      edit.without = parts.map(([k]) => k).filter((k) => (k === key ? !e.target.checked : edit.without.includes(k)));
-      changed();
-    },
-  }));
-  const boxLabels = boxes.map((b) => make("label", { for: b.id }));
   const points = make("div", { class: "points", role: "group", "aria-label": "Points used", tabindex: "0" });
   const shareText = make("span"), pointsLegend = make("legend");
   const share = make("button", { type: "button", onclick: () => { shareEdit(); changed(); } }, shareText);
@@ -123,53 +108,45 @@ const mountBench = (root, data, source, prefix = "bench") => {
       make("fieldset", {}, make("label", { for: select.id, class: "label" }, "Coefficient"), select),
       make("fieldset", {}, limitLabel, slider, limitText)),
     make("div", { class: "more" },
-      make("fieldset", {}, make("legend", {}, "The curve may contain"),
-        make("div", { class: "choice" }, make("input", { type: "checkbox", id: `${prefix}-part-line`, checked: true, disabled: true }), make("label", { for: `${prefix}-part-line` }, "line: the slope")),
-        boxes.map((b, i) => make("div", { class: "choice" }, b, boxLabels[i]))),
       make("fieldset", {}, pointsLegend, points),
       make("div", { class: "row" }, reset, resetAll, share)));
 
   const current = () => data.sweeps[state.index];
   const moved = () => {
     const all = levels(current()), i = Number(slider.value);
-    editOf(state.index).limit = i === all.length - 1 ? null : all[i];
+    edits[state.index] = { limit: i === all.length - 1 ? null : all[i], dropped: null };
     changed();
   };
   const toggle = (i) => {
-    const edit = editOf(state.index), at = edit.dropped.indexOf(i);
-    if (at < 0) edit.dropped.push(i); else edit.dropped.splice(at, 1);
-    edit.dropped.sort((a, b) => a - b);
+    edits[state.index] = { limit: null, dropped: editOf(state.index).dropped === i ? null : i };
     changed();
   };
   const siblings = () => data.campaigns[current().campaign].sweeps.filter((i) => i !== state.index && data.sweeps[i].table === current().table && data.sweeps[i].variable === current().variable);
   const shareEdit = () => {
-    const edit = editOf(state.index), labels = edit.dropped.map((i) => current().labels[i]);
-    for (const i of siblings()) edits[i] = { limit: edit.limit, without: edit.without.slice(), dropped: data.sweeps[i].labels.map((l, j) => (labels.includes(l) ? j : -1)).filter((j) => j >= 0) };
+    const edit = editOf(state.index), label = edit.dropped === null ? null : current().labels[edit.dropped];
+    for (const i of siblings()) {
+      const at = label === null ? -1 : data.sweeps[i].labels.indexOf(label), same = { limit: edit.limit, dropped: at < 0 ? null : at };
+      if (local().isUntouched(same) || local().choiceOf(i, same)) edits[i] = same;
+    }
   };
   const within = (s, edit, i) => edit.limit === null || Math.abs(s.x[i]) <= edit.limit * (1 + data.sameLevel);
   const controls = () => {
-    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, all = levels(s);
+    const s = current(), edit = edits[state.index] || { limit: null, dropped: null }, all = levels(s);
     select.value = String(state.index);
     limitLabel.textContent = limitName(s);
     slider.max = String(all.length - 1);
     const at = edit.limit === null ? all.length - 1 : all.findIndex((x) => x === edit.limit);
     slider.value = String(at);
-    const used = s.x.filter((_, i) => within(s, edit, i) && !edit.dropped.includes(i)).length;
+    const used = s.x.filter((_, i) => within(s, edit, i) && edit.dropped !== i).length;
     const said = `${setting(s, all[at])}: ${used} of ${s.x.length} points`;
     limitText.textContent = said;
     slider.setAttribute("aria-valuetext", said);
-    const name = `${s.variable}′`, words = [`${name}|${name}|`, `${name}³`, "smooth remainder (stall, separation)", "even part: sides may differ"];
-    boxes.forEach((b, i) => {
-      b.disabled = parts[i][0] === "even" && (s.odd || s.oneSided);
-      b.checked = !b.disabled && !edit.without.includes(parts[i][0]);
-      boxLabels[i].textContent = words[i] + (b.disabled ? (s.odd ? " (none by symmetry)" : " (one-sided sweep)") : "");
-    });
-    pointsLegend.textContent = `Points used: ${used}`;
+    pointsLegend.textContent = `Points used: ${used}; leave one out`;
     const order = s.x.map((_, i) => i).sort((a, b) => s.x[a] - s.x[b] || a - b), focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.point : undefined;
     points.replaceChildren(...order.map((i) => {
       const beyond = !within(s, edit, i), id = `${prefix}-point-${i}`;
       return make("div", { class: `choice${beyond ? " beyond" : ""}`, title: s.labels[i] },
-        make("input", { type: "checkbox", id, "data-point": i, checked: !edit.dropped.includes(i) && !beyond, disabled: beyond, onchange: () => toggle(i) }),
+        make("input", { type: "checkbox", id, "data-point": i, checked: edit.dropped !== i && !beyond, disabled: beyond, onchange: () => toggle(i) }),
         make("label", { for: id }, setting(s, s.x[i]), make("span", { class: "unseen" }, `, ${s.labels[i]}`)));
     }));
     if (focus !== undefined) { const again = points.querySelector(`[data-point="${focus}"]`); if (again) again.focus(); }
@@ -207,7 +184,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
 
   const widthOf = (box) => Math.round(Math.min(Math.max(box.clientWidth, 320), 1200));
   const sweepFigure = () => {
-    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, { row, before } = shown, w = widthOf(picture), h = Math.round(Math.max(0.5 * w, 240)), m = [66, 28, 14, 44];
+    const s = current(), edit = edits[state.index] || { limit: null, dropped: null }, { row, before } = shown, w = widthOf(picture), h = Math.round(Math.max(0.5 * w, 240)), m = [66, 28, 14, 44];
     const ratio = state.view === "ratio", has = row.value !== null, middle = has ? row.curve[(data.nodes - 1) / 2] : before.curve[(data.nodes - 1) / 2];
     const most = Math.max(...s.x.map(Math.abs), ...s.leftOut.map((p) => Math.abs(p[0])));
     const near = 0.04 * most, at = (x, y) => (ratio ? [Math.abs(x), (y - middle) / x] : [x, y]);
@@ -237,7 +214,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     }
     for (const { p, xy } of others) { const x = f.px(xy[0]), y = f.py(xy[1]); inside.push(`<path d="M${(x - 4).toFixed(1)} ${(y - 4).toFixed(1)}l8 8m0-8l-8 8" stroke="${colour.muted}"><title>${escaped(`${p[2]}: ${p[3]}`)}</title></path>`); }
     for (const p of drawn) {
-      const gone = edit.dropped.includes(p.i), far = !within(s, edit, p.i), wrong = row.removed.includes(p.i), own = gone || far ? colour.muted : wrong ? colour.b : colour.a;
+      const gone = edit.dropped === p.i, far = !within(s, edit, p.i), wrong = row.removed.includes(p.i), own = gone || far ? colour.muted : wrong ? colour.b : colour.a;
       const words = `${s.labels[p.i]}: ${s.variable}′ ${short(p.x, 4)}, ${name} ${short(p.y, 4)}${gone ? ", left out by you" : far ? `, beyond the ${limitName(s).toLowerCase()}` : wrong ? ", does not fit the others: left out by the fit" : ""}`;
       inside.push(`<circle class="point" data-at="${p.i}" cx="${f.px(p.xy[0]).toFixed(2)}" cy="${f.py(p.xy[1]).toFixed(2)}" r="5" fill="${gone || far || wrong ? "var(--paper, #fff)" : own}" stroke="${own}" stroke-width="1.5"${far ? ' stroke-dasharray="2 2"' : ""}><title>${escaped(words)}</title></circle>`);
     }
@@ -311,7 +288,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const byValue = (x) => x.sense.endsWith(", no U95");
   const senseOf = (x) => (byValue(x) ? `${x.sense.replace(", no U95", "")}, but ${x.why.replace("no U95: ", "").replaceAll("'", "′")}` : x.sense);
   const show = () => {
-    const s = current(), { row, before } = shown, edit = edits[state.index] || { limit: null, dropped: [], without: [] }, has = row.value !== null;
+    const s = current(), { row, before } = shown, edit = edits[state.index] || { limit: null, dropped: null }, has = row.value !== null;
     viewLabels[0].textContent = `${s.component}′ over ${s.variable}′`;
     viewLabels[1].textContent = `slope: ${s.component}′/${s.variable}′ over |${s.variable}′|`;
     picture.innerHTML = sweepFigure();
@@ -322,8 +299,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     else lines.push(make("p", { class: "warn" }, row.reason));
     if (row.removed.length) lines.push(make("p", { class: "warn" }, `Left out by the fit, does not fit the others: ${row.removed.map((i) => s.labels[i]).join(", ")}`));
     if (s.status === "form_rejected") lines.push(make("p", { class: "warn" }, "The study rejects the form of this sweep."));
-    if (edit.without.length) lines.push(make("p", { class: "warn" }, "U95 holds only if the curve has none of the parts you took out."));
-    else if (edit.dropped.length || edit.limit !== null) lines.push(make("p", { class: "quiet" }, "U95 does not include the effect of your choice of points."));
+    if (!local().isUntouched(edit)) lines.push(make("p", { class: "quiet" }, "U95 does not include the effect of your choice of points."));
     said.replaceChildren(...lines);
     const apart = (x) => (has ? `${row.value > x ? "+" : ""}${short(row.value - x, 2)}` : "");
     const rows = [["Study", value(before.value, before.u95), apart(before.value)], ...s.published.map(([name, x]) => [name, short(x, 4), apart(x)])];

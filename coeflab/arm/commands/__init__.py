@@ -1,0 +1,1 @@
+"""Commands about a vehicle with an arm."""

@@ -1,0 +1,1 @@
+"""Body files of a vehicle with an arm."""

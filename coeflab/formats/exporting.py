@@ -1,0 +1,218 @@
+"""Parameter files for simulators: the target's files, and what they lose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from coeflab.core.errors import InputError, PluginError, shown
+from coeflab.core.machine import one_thread
+from coeflab.core.wording import PREFIX, file_stem
+from coeflab.formats import (
+    EXPORTERS,
+    BuiltExporter,
+    InertialExporter,
+    PartialExporter,
+    SimulatorExporter,
+    SteeredExporter,
+)
+from coeflab.formats.export import Export, Kind, Lost, Refused, loss_of, lost_by_all
+from coeflab.formats.loss_tables import as_text, in_short
+from coeflab.formats.unspoken import found_in, lacking_tables, without_law
+from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
+
+if TYPE_CHECKING:
+    from coeflab.formats.export import PlannedExport
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+LONGEST = 255
+
+
+@one_thread()
+def export(
+    parameters: ParameterFile, target: str, accelerations: str = MEASURED, *, accept_loss: bool = False
+) -> Export:
+    """Render a parameter file for a target and evaluate the target's own law from the rendered files.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    target : str
+    accelerations : {"measured", "computed"}
+        As for `coeflab.motion.simulation.simulate`. The loss is counted from the file with its measured ones.
+    accept_loss : bool
+        Write without the terms that the target would do the wrong way round, and say which, where it has such.
+
+    Raises
+    ------
+    PluginError
+        No exporter has that name.
+    InputError
+        The target cannot hold the file at all, or not with its signs and ``accept_loss`` is false, or a file of it would leave the
+        folder.
+    """
+    plugin = EXPORTERS.load(target)
+    water = water_inertia(parameters, accelerations)
+    given = with_accelerations(parameters, accelerations)
+    with EXPORTERS.guarded(target):
+        files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
+    _refuse_places(files, parameters, target)
+    if not isinstance(plugin, SimulatorExporter):
+        files |= _remarks(files, parameters, target, found_in(parameters))
+        return Export(parameters.name, target, files, None, plugin.citations)
+    left = _left_out(plugin, given, accept_loss)
+    missing = tuple(Lost(Kind.MISSING, said) for said in plugin.missing(given))
+    lost = (*left, *missing, *lost_by_all(parameters, plugin.holds, water))
+    changes = (
+        *dict.fromkeys((*plugin.changes(given), *water.warnings)),
+        *without_law(parameters),
+        *converted(parameters),
+        *_renamed(files, parameters),
+    )
+    found = loss_of(
+        target, parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
+        plugin.added_mass if isinstance(plugin, InertialExporter) else None,
+        plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
+    )  # fmt: skip
+    lacking = () if "tables" in plugin.holds else lacking_tables(parameters)
+    if isinstance(plugin, BuiltExporter):
+        with EXPORTERS.guarded(target):
+            files = dict(plugin.built(files))
+    files |= _remarks(files, parameters, target, (*lacking, *found_in(parameters)))
+    files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
+    return Export(parameters.name, target, files, found, plugin.citations)
+
+
+def _remarks(
+    files: Mapping[str, bytes], parameters: ParameterFile, target: str, due: Sequence[str]
+) -> dict[str, bytes]:
+    """What files have to say of their numbers, beside those of a format that has no place for it."""
+
+    def letters(text: str) -> str:
+        return "".join(c for c in text if c.isalnum())
+
+    written = letters("\n".join(content.decode(errors="ignore") for content in files.values()))
+    found = [said for said in due if letters(said) not in written]
+    if not found:
+        return {}
+    return {f"{file_stem(parameters.name)}.{target}.remarks.txt": ("\n".join(found) + "\n").encode()}
+
+
+def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[Lost, ...]:
+    """What the target's files are without, for it would be of the wrong sign there.
+
+    Raises
+    ------
+    InputError
+        Something is, and no loss is accepted.
+    """
+    found = plugin.left_out(given) if isinstance(plugin, PartialExporter) else None
+    if found is None:
+        return ()
+    why, words = found
+    if not accept_loss:
+        advice = f"{why.advice} Or accept the loss: it is written without, and the loss report says of what."
+        raise InputError(why.found, why.expected, file=why.file, column=why.column, advice=advice)
+    return tuple(Lost(Kind.LEFT_OUT, said) for said in words)
+
+
+def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
+    """Refuse file names that lead out of the folder or that no file can bear."""
+    for name in files:
+        if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable() or len(name) > LONGEST:
+            theirs = parameters.name in name
+            raise InputError(
+                f"a file called {shown(name)}", "a name that files can be given" if theirs else "a plain file name",
+                column="name" if theirs else f"exporter.{target}",
+            )  # fmt: skip
+
+
+def _renamed(files: Mapping[str, bytes], parameters: ParameterFile) -> tuple[str, ...]:
+    """What files are called where it is not the parameter file's name."""
+    stems = sorted({name.partition(".")[0] for name in files})
+    if parameters.name in stems:
+        return ()
+    return (
+        f"files are called {', '.join(stems)}: of the name {shown(parameters.name)} letters and digits are kept, at most 63, and "
+        f"{PREFIX} stands before a digit or a word that the target or a file system reserves",
+    )
+
+
+def parameter_files_rendered(several: Iterable[ParameterFile]) -> dict[str, bytes]:
+    """Every parameter file and its tables as CSV, by name. Nothing is written."""
+    files: dict[str, bytes] = {}
+    for parameters in several:
+        files[f"{file_stem(parameters.name)}.parameters.json"] = parameters.to_json()
+        files.update(EXPORTERS.load("csv").render(parameters))
+    return files
+
+
+def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
+    """Refuse targets without an exporter before anything is computed.
+
+    Raises
+    ------
+    PluginError
+        Names the plan's file and key.
+    """
+    for p in planned:
+        try:
+            EXPORTERS.load(p.to)
+        except PluginError as why:
+            raise PluginError(f"{p.file}, {shown(p.key('to'))}: {why}" if p.file else str(why)) from None
+
+
+def exports_of(
+    planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
+) -> tuple[tuple[Export, ...], tuple[Refused, ...]]:
+    """Every parameter file of a study for every target of its plan; what is refused does not keep the rest from being made.
+
+    Parameters
+    ----------
+    planned : sequence of PlannedExport
+    files : iterable of ParameterFile
+    progress : callable
+        Takes what is being done, in words.
+
+    Returns
+    -------
+    tuple of Export
+    tuple of Refused
+        A target cannot hold a file, or not all of it and the plan does not accept that.
+    """
+    out: list[Export] = []
+    refused: list[Refused] = []
+    for p, parameters in ((p, parameters) for p in planned for parameters in files):
+        try:
+            out.append(_accepted(p, parameters))
+        except InputError as why:
+            refused.append(Refused(parameters.name, p.to, why))
+            progress(f"refused {parameters.name} for {p.to}")
+        else:
+            progress(f"exported {parameters.name} for {p.to}")
+    return tuple(out), tuple(refused)
+
+
+def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
+    """The export, if the plan accepts what it loses.
+
+    Raises
+    ------
+    InputError
+        Names the plan's file and key.
+    """
+    try:
+        made = export(parameters, p.to, p.accelerations, accept_loss=p.accept_loss and not p.strict)
+    except InputError as why:
+        found = f"{why.found} in {parameters.name} for {p.to}"
+        raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
+    if made.loss is not None and not made.lossless and (p.strict or not p.accept_loss):
+        raise InputError(
+            f"{p.to} cannot hold all of {parameters.name}: {in_short(made.loss)}",
+            "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
+            file=p.file,
+            column=p.key("strict" if p.strict else "accept_loss"),
+            advice=f"The study and its parameter file are written without this export; `coeflab export FILE --to {p.to}` "
+            "prints the whole loss.",
+        )
+    return made

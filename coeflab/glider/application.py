@@ -1,0 +1,5 @@
+"""Gliders: steady glides, cycles, motion in space."""
+
+COMMANDS = {"glide": "Motion"}
+FILES = {"glider": "glider.GliderFile"}
+PLUGINS = {"coeflab.simulators": "simulators"}

@@ -1,0 +1,128 @@
+"""``coeflab glide``: steady glides, speed polar and dive-and-surface cycles of a glider."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.glider.flight import Flown
+
+
+EXAMPLE = "coeflab glide thauv"
+
+
+def gliders(incomplete: str) -> list[str]:
+    """Shipped gliders, and paths."""
+    return complete.or_paths(("thauv", "slocum"), incomplete)
+
+
+def command(
+    glider: str = typer.Argument(
+        ...,
+        metavar="GLIDER",
+        autocompletion=gliders,
+        help="A glider file, a folder of them, or a shipped one: thauv, slocum.",
+    ),
+    cycles: int = typer.Option(
+        1, "--cycles", metavar="COUNT", min=1, max=1000, help="How often the phases of the file are flown."
+    ),
+    roller: float = typer.Option(
+        0.0,
+        "--roller",
+        metavar="DEGREES",
+        min=-180.0,
+        max=180.0,
+        help="Turn the roller in every phase, to starboard above zero: spirals in place of straight glides.",
+    ),
+    record: float = typer.Option(1.0, "--record", metavar="SECONDS", help="Time between rows, s."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for CSV and SVG; without it nothing is written."
+    ),
+    basis: bool = typer.Option(False, "--basis", help="Say where every number of the glider comes from."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Show the steady glides of a glider and fly its cycles.
+
+    Write CSV and figures with --out. Exit code 1 when a motion ended early.
+    """
+    from coeflab.core.files import write_all
+    from coeflab.glider import tables as glide_tables
+    from coeflab.glider.flight import files, fly
+
+    flown = fly(glider, cycles, {"step": record}, math.radians(roller))
+    made = {} if out is None else files(flown)
+    changed = write_all(Path(out or ""), made)
+    if json:
+        show.json_object({"gliders": [as_json(f) for f in flown], "files": [str(Path(out or "") / n) for n in made]})
+    else:
+        for f in flown:
+            show.table(glide_tables.steady(f.run.glider, f.steady))
+            if any(p.turns for p in f.run.glider.phases):
+                show.table(glide_tables.spirals(f.run.glider, f.spirals))
+            show.table(glide_tables.phases(f.run))
+            if basis:
+                show.table(glide_tables.basis(f.run.glider))
+        for name, new in changed.items():
+            show.path(f"{Path(out or '') / name}:", "written" if new else "unchanged")
+    if not all(f.complete for f in flown):
+        raise typer.Exit(1)
+
+
+def as_json(flown: Flown) -> dict[str, Any]:
+    """Steady glides and phases of one glider, SI and radians."""
+    run = flown.run
+    return {
+        "name": run.glider.name,
+        "title": run.glider.title,
+        "citation": run.glider.citation,
+        "basis": dict(run.glider.basis),
+        "steady_glides": [
+            {
+                "phase": s.phase,
+                "net_mass": s.net_mass,
+                "position": s.position,
+                "speed": s.speed,
+                "alpha": s.alpha,
+                "zeta": s.zeta,
+                "theta": s.theta,
+                "stable": s.stable,
+                "growth": s.growth,
+            }
+            for s in flown.steady
+        ],
+        "spirals": [
+            {
+                "phase": phase,
+                "speed": s.speed,
+                "alpha": s.alpha,
+                "beta": s.beta,
+                "phi": s.phi,
+                "theta": s.theta,
+                "turn": s.turn,
+                "radius": s.radius,
+                "sinking": s.sinking,
+            }
+            for phase, s in flown.spirals
+        ],
+        "phases": [
+            {
+                "phase": run.phase_of(i).name,
+                "ends": float(run.time[row]),
+                "depth": float(run.depth[row]),
+                "x": float(run.x[row]),
+                "speed": float(run.speed[row]),
+                "met_depth": run.trajectory.reached[i] is not None,
+                "settled": run.settled(i),
+            }
+            for i, row in enumerate(run.ends)
+        ],
+        "ended": run.trajectory.ended.value,
+        "why": run.trajectory.why,
+        "statements": list(run.statements),
+    }

@@ -1,0 +1,187 @@
+"""``coeflab identify``: coefficients from time series of motions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.core.table import Check
+    from coeflab.identify.identification import Identified
+
+
+EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
+
+
+def command(
+    series: list[Path] = typer.Argument(
+        ...,
+        metavar="SERIES",
+        help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ...; of a bench t, speed, T, Q.",
+    ),
+    params: Path = typer.Option(
+        ...,
+        "--params",
+        metavar="PARAMS",
+        autocompletion=complete.parameters,
+        help="Parameter file: mass, inertia, scaling, and what to compare with.",
+    ),
+    thruster: str = typer.Option(
+        "", metavar="NAME", help="A bench test of this thruster: thrust and torque over its command, no motion."
+    ),
+    terms: str = typer.Option(
+        "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."
+    ),
+    weak: bool = typer.Option(
+        True, "--weak/--derivative", help="Averages over windows, or differences for clean series."
+    ),
+    window: str = typer.Option(
+        "",
+        metavar="TIME",
+        help='Half of a window, such as "2 s"; default three quarters of L/V. Of a bench: within it a command is steady.',
+    ),
+    asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
+    fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
+    accelerations: str = typer.Option(
+        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
+    ),
+    optimizer: str = typer.Option(
+        "stlsq", metavar="NAME", autocompletion=complete.optimizers, help="stlsq or sr3 of pysindy."
+    ),
+    resamples: int = typer.Option(200, metavar="COUNT", help="How often stretches of the series are drawn."),
+    seed: int = typer.Option(1, metavar="NUMBER", help="Of the draws."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for CSV, JSON and SVG; without it nothing is written."
+    ),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Identify coefficients from time series of motions.
+
+    They are compared with those of a parameter file. The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
+    which terms the series cannot tell. Exit code 1 when nothing was identified.
+
+    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command; with
+    --out a copy of the parameter file has the new curves.
+    """
+    if thruster:
+        _bench(series, params, thruster, window, out, json)
+        return
+    from coeflab.api.parameters import read_parameters
+    from coeflab.identify import identified_tables
+    from coeflab.identify.identify import identify_from
+
+    options: dict[str, object] = {
+        "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
+        "added_mass": "fit" if fit_added_mass else "known", "optimizer": optimizer, "resamples": resamples, "seed": seed,
+        "accelerations": accelerations,
+    }  # fmt: skip
+    if window:
+        options["window"] = window
+    with show.progress(json) as say:
+        say(f"reading {len(series)} time series")
+        found = identify_from(series, read_parameters(params), options)
+    written = [] if out is None else _write(found, out)
+    if json:
+        show.json_object({**as_json(found), "files": [str(p) for p in written]})
+    else:
+        show.found(found.findings)
+        show.table(identified_tables.terms(found))
+        show.table(identified_tables.balances(found))
+        for path in written:
+            show.path(path)
+    if not found.found:
+        raise typer.Exit(1)
+
+
+def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Path | None, json: bool) -> None:
+    """Curves of a thruster from its bench tests."""
+    from json import dumps
+
+    from coeflab.api.parameters import read_parameters
+    from coeflab.api.vehicle import Vehicle
+    from coeflab.cli.as_json import findings
+    from coeflab.core.files import write_all
+    from coeflab.core.units import quantity
+    from coeflab.core.wording import file_stem
+    from coeflab.identify.identified_figures import bench_figure
+    from coeflab.identify.thruster import WINDOW, bench_test, with_curves
+    from coeflab.report.figures.svg import sheet
+
+    within = quantity(window, "time", key="--window") if window else WINDOW
+    checks: Sequence[Check] = ()
+    found = bench_test(series, read_parameters(params), thruster, within)
+    content = {
+        f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
+        f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
+    }
+    if out is not None:
+        made = with_curves(read_parameters(params), found)
+        content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
+        checks = Vehicle(made).checks()
+    written = [] if out is None else [out / name for name in content]
+    if out is not None:
+        write_all(out, content)
+    if json:
+        show.json_object({**found.as_json(), "findings": findings(checks), "files": [str(p) for p in written]})
+    else:
+        show.table(found.table())
+        for path in written:
+            show.path(path)
+        show.file_findings(params.stem, checks)
+    if show.failed(checks):
+        raise typer.Exit(1)
+
+
+def as_json(found: Identified) -> dict[str, Any]:
+    """Every candidate with its values, absent ones null, and the works that the method rests on."""
+    from coeflab.core.provenance import work
+    from coeflab.identify.identify import citations
+
+    return {
+        "name": found.name,
+        "series": list(found.series),
+        "method": found.method,
+        "half_window": found.half,
+        "seed": found.seed,
+        "resamples": found.resamples,
+        "terms": [
+            {
+                "symbol": t.symbol, "outcome": t.outcome.value, "why": t.why or None, "value": t.value, "low": t.low,
+                "high": t.high, "inclusion_frequency": t.frequency, "file_value": t.file_value, "file_u95": t.file_u95,
+                "file_source": t.file_source or None, "verdict": t.verdict.value or None,
+            }
+            for t in found.terms
+        ],
+        "balances": [
+            {
+                "component": b.component,  "stretches": b.stretches, "threshold": b.threshold,
+                "unexplained": b.left,
+            }
+            for b in found.balances
+        ],
+        "statements": list(found.statements),
+        "citations": [work(key) for key in citations],
+    }  # fmt: skip
+
+
+def _write(found: Identified, folder: Path) -> list[Path]:
+    """CSV, JSON and SVG; none where one cannot be made."""
+    import json
+
+    from coeflab.core.files import write_all
+    from coeflab.identify.identified_figures import identified_figure
+    from coeflab.identify.identified_tables import terms_csv
+    from coeflab.report.figures.svg import sheet
+
+    content = {
+        f"{found.name}.identified.csv": terms_csv(found),
+        f"{found.name}.identified.json": (json.dumps(as_json(found), indent=2, allow_nan=False) + "\n").encode(),
+        f"{found.name}.identified.svg": sheet([(identified_figure(found, "identified"),)]),
+    }
+    write_all(folder, content)
+    return [folder / name for name in content]

@@ -1,1 +1,0 @@
-"""Parameters tuned to measured motions."""

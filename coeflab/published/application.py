@@ -1,0 +1,3 @@
+"""Published systems, reproduced."""
+
+VALIDATIONS = "acceptance"

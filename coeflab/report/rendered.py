@@ -1,0 +1,56 @@
+"""The files of a study, and of a merge, by name; nothing is written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from coeflab.core.machine import one_thread
+from coeflab.formats.exporting import parameter_files_rendered
+from coeflab.report.content import document
+from coeflab.report.document import Document, Section, digest_of
+from coeflab.report.formats import REPORTERS
+from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
+
+if TYPE_CHECKING:
+    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.study.study import Study
+    from coeflab.vehicle.merge import Merged
+
+
+@one_thread()
+def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
+    """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
+    files: dict[str, bytes] = {}
+    report = document(study, full=False)
+    for name in formats:
+        with REPORTERS.guarded(name):
+            files.update(REPORTERS.load(name).render(report))
+    files.update(parameter_files_rendered(study.parameter_files.values()))
+    for made in study.exports:
+        files.update(
+            {f"{made.folder}/{name}" if made.folder else name: content for name, content in made.files.items()}
+        )
+    return files
+
+
+@one_thread()
+def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
+    """The merged parameter file with its tables, and a report of it, by name.
+
+    Parameters
+    ----------
+    made : Merged
+    moves : sequence of Simulation
+    carried : sequence of Carried
+        Of `replaced`.
+    """
+    p = made.parameters
+    moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
+    page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,
+                    digest_of(p.provenance.inputs), answer=answer_of_merge(made, moves, carried))  # fmt: skip
+    files = parameter_files_rendered([p])
+    with REPORTERS.guarded("html"):
+        files.update(REPORTERS.load("html").render(page))
+    return files

@@ -1,0 +1,340 @@
+"""The main path: tables -> fits -> comparisons -> parameter files -> checks, one study.
+
+What a plan names, read: tables about one reference point, bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.files import stem
+from coeflab.core.machine import one_thread
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.fits.joint.rows import joint_name, one_length
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.symbols import derivative
+from coeflab.study.checking import checked
+from coeflab.study.fitting import FEWEST, fitted
+from coeflab.study.study import Conversion, Plan, Study
+from coeflab.tables.reading import read_tables, table_at
+from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
+from coeflab.vehicle.reference import compare, compare_set, read_references
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.triangulation import Triangulation
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.formats.export import Export, Refused
+    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.study.study import PlannedConversion, PlannedJoint
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+
+def settled(table: ForceTable, plan: Plan) -> ForceTable:
+    """The table about the plan's reference point."""
+    if plan.include_uncertain:
+        table = table.with_uncertain_cells()
+    if plan.reference_point is None:
+        return table
+    if plan.datum and plan.datum != table.datum:
+        raise ScalingMismatchError(
+            f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "
+            "state the reference point from one datum. A body names its own as datum under [body] of its body.toml; that of a mesh is its origin."
+        )
+    return table.about(plan.reference_point)
+
+
+def conversions(planned: PlannedConversion, plan: Plan, tables: Sequence[ForceTable]) -> Iterator[Conversion]:
+    """The tables of a copy, each beside the one of the same place in its original.
+
+    Parameters
+    ----------
+    planned : PlannedConversion
+    plan : Plan
+    tables : sequence of ForceTable
+        Of the plan, settled; those of the original are among them.
+
+    Raises
+    ------
+    InputError
+        Another number of tables or of rows than the original has.
+    """
+    copies = [settled(t, plan) for t in read_tables(table_at(planned.campaign))]
+    originals = [t for t in tables if t.campaign == planned.of]
+    if len(copies) != len(originals):
+        raise InputError(
+            f"{len(copies)} tables, and {len(originals)} of {shown(planned.of)}", "as many as the campaign that it is a copy of",
+            column="conversion.of",
+        )  # fmt: skip
+    for copy, original in zip(copies, originals, strict=True):
+        if len(copy) != len(original):
+            raise InputError(
+                f"{len(copy)} rows in {copy.name}, {len(original)} in {original.name}",
+                "one row for each",
+                column="conversion.of",
+            )
+        yield Conversion(copy, original)
+
+
+def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
+    """All tables of a joint fit, each once."""
+    read = [settled(t, plan) for planned in joint.tables for t in read_tables(planned)]
+    names = [t.name for t in read]
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise InputError(f"the table {shown(twice)} twice", "every table once, and campaigns of different names",
+                         column="campaigns", advice="A row that counts twice makes every interval too narrow.")  # fmt: skip
+    return read
+
+
+Progress = Callable[[str], None]
+
+
+@one_thread()
+def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
+    """Carry out a plan.
+
+    Parameters
+    ----------
+    plan : Plan, str or Path
+        A plan, the path of a plan.toml or of its folder, or the name of a shipped one: ``coeflab.run("suboff")``.
+    progress : callable, optional
+        Means in words what happens.
+
+    Returns
+    -------
+    Study
+        Nothing has been written.
+
+    Raises
+    ------
+    CoeflabError
+        Input that cannot be used.
+    """
+    if not isinstance(plan, Plan):
+        return _of_file(plan, progress)
+    if plan.exports:
+        from coeflab.formats.exporting import refuse_unknown
+
+        refuse_unknown(plan.exports)
+    if not plan.tables and not plan.joint:
+        return checked(_of_shape(plan, progress), progress)
+    tables: list[ForceTable] = []
+    fits: list[FitResult] = []
+    budgets: list[Budget] = []
+    unfitted: dict[str, str] = {}
+    ours = [t.added for t in plan.tows if t.added is not None]
+    for planned in plan.tables:
+        read = [settled(t, plan) for t in read_tables(planned)]
+        progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
+        scaling = plan.scaling or read[0].scaling
+        is_ours = planned.campaign in ours
+        enough = [t for t in read if _has_points(t)] if is_ours else read
+        for name in planned.fits if enough else ():
+            try:
+                made, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+            except InputError as why:
+                if not is_ours:
+                    raise
+                unfitted.setdefault(read[0].campaign, why.found)
+                continue
+            budgets += found
+            fits.append(made)
+            progress(f"fitted {read[0].campaign} by {name}")
+        tables += read
+    for joint in plan.joint:
+        read = together(joint, plan)
+        progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
+        made, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        budgets += found
+        fits.append(made)
+        progress(f"fitted {made.campaign} by {joint.fit}")
+        tables += [t for t in read if t.name not in {known.name for known in tables}]
+    body = _body(plan)
+    references = tuple(r for path in plan.references for r in read_references(path))
+    groups = plan.parameter_files or _groups(fits, plan)
+    missing = tuple(c for g in groups for c in _missing(g, fits, tables, plan.wanted))
+    first = plan.scaling or fits[0].coefficients.scaling
+    conditions = plan.conditions or tables[0].conditions
+    hulls = _hulls(groups, conditions.density, progress)
+    inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
+    files = {}
+    for g in groups:
+        with refusals_told(f"parameter_file.{g.name}"[:80]):
+            files[g.name] = assemble(
+                g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
+            )
+            if g.base is not None:
+                from coeflab.vehicle.merge import merged
+
+                files[g.name] = merged(read_parameter_file(g.base), files[g.name], g.name).parameters
+    exports, refused, manoeuvres = _used(plan, files, progress)
+    study = Study(
+        plan=plan,
+        tables=tuple(tables),
+        fits=tuple(fits),
+        missing=missing,
+        body=body,
+        references=references,
+        comparisons=tuple(c for f in fits for c in compare_set(f.coefficients, references))
+        + compare(missing, references, first),
+        parameter_files=files,
+        hulls=hulls,
+        inputs=inputs,
+        budgets=tuple(budgets),
+        exports=exports,
+        refused=refused,
+        manoeuvres=manoeuvres,
+        unfitted=unfitted,
+        conversions=tuple(c for planned in plan.conversions for c in conversions(planned, plan, tables)),
+    )
+    return checked(study, progress)
+
+
+def _hulls(
+    groups: Sequence[PlannedParameterFile], density: float, progress: Callable[[str], None]
+) -> dict[str, Triangulation]:
+    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once.
+
+    Parameters
+    ----------
+    groups : sequence of PlannedParameterFile
+    density : float
+        kg/m^3.
+    progress : callable
+        Takes what is being done, in words.
+    """
+    if all(g.hull is None for g in groups):
+        return {}
+    from coeflab.bodies.added_masses import added_masses
+    from coeflab.bodies.readers import read_body
+
+    known: dict[tuple[Path, str], Triangulation] = {}
+    out = {}
+    for group in groups:
+        if group.hull is None:
+            continue
+        key = (group.hull, group.method)
+        if key not in known:
+            body = read_body(group.hull / "body.toml" if group.hull.is_dir() else group.hull)
+            progress(f"added mass of {body.name}")
+            known[key] = added_masses(body, density, group.method, reproducible=True)
+        out[group.name] = known[key]
+    return out
+
+
+def _used(
+    plan: Plan, files: Mapping[str, ParameterFile], progress: Progress
+) -> tuple[tuple[Export, ...], tuple[Refused, ...], tuple[Simulation, ...]]:
+    """What a plan does with its parameter files; what it does not ask for is not imported."""
+    exports: tuple[Export, ...] = ()
+    refused: tuple[Refused, ...] = ()
+    manoeuvres: tuple[Simulation, ...] = ()
+    if plan.exports:
+        from coeflab.formats.exporting import exports_of
+
+        exports, refused = exports_of(plan.exports, files.values(), progress)
+    if plan.manoeuvres:
+        from coeflab.motion.simulation import manoeuvres_of
+
+        manoeuvres = manoeuvres_of(plan.manoeuvres, files, progress)
+    return exports, refused, manoeuvres
+
+
+def _of_file(place: str | Path, progress: Progress) -> Study:
+    """The study of the plan at a path; what an option of a fit is to blame for names the file."""
+    if not isinstance(place, (str, Path)):
+        raise InputError(
+            f"run({type(place).__name__})", "a Plan, the path of a plan.toml, or the name of a shipped plan",
+            advice="A publication that coeflab.validation reproduces is done already; a campaign or a body goes into a Plan.",
+        )  # fmt: skip
+    from coeflab.study.plan import plan_at, read_plan
+
+    file = plan_at(place)
+    try:
+        return run(read_plan(file), progress)
+    except InputError as why:
+        if why.file is None:
+            why.file = file
+        raise
+
+
+def _of_shape(plan: Plan, progress: Progress) -> Study:
+    """The study of a body alone."""
+    from coeflab.study.estimated_vehicle import from_shape
+
+    body = _body(plan)
+    if body is None:
+        raise InputError("no table and no body", "a table, or a body to estimate from", column="table")
+    return from_shape(plan, body, progress=progress)
+
+
+def _body(plan: Plan) -> Body | None:
+    """What the plan names; a shipped name is a folder."""
+    if plan.body is None:
+        return None
+    from coeflab.bodies.readers import read_body
+
+    return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
+
+
+def _has_points(table: ForceTable) -> bool:
+    """Whether a component of a tow has points enough for a fit, as runs that did not converge do not count."""
+    return any(len(np.unique(table.setting[mask])) >= FEWEST for mask in table.usable.values())
+
+
+def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ...]:
+    """One parameter file per body when the plan names none."""
+    bodies: dict[str, list[str]] = {}
+    for f in fits:
+        bodies.setdefault(f.body, []).append(f.campaign)
+    names = [stem(b) for b in bodies]
+    numbered = [n if names.count(n) == 1 else f"{n}_{names[:i].count(n) + 1}" for i, n in enumerate(names)]
+    groups = zip(numbered, bodies.items(), strict=True)
+    return tuple(
+        PlannedParameterFile(n, b, tuple(dict.fromkeys(c)), (), plan.hull, plan.method) for n, (b, c) in groups
+    )
+
+
+def _missing(
+    group: PlannedParameterFile, fits: list[FitResult], tables: list[ForceTable], wanted: tuple[str, ...]
+) -> list[Coefficient]:
+    """Wanted coefficients that no table of a group gives, or one with too few runs."""
+    names = {f.campaign for f in fits}
+    for campaign in group.campaigns:
+        if campaign not in names:
+            raise InputError(
+                f"no campaign {shown(campaign)} in the plan", f"one of {', '.join(sorted(names))}",
+                column=f"parameter_file.{group.name}",
+            )  # fmt: skip
+    if not any(f.sweeps for f in fits if f.campaign in group.campaigns):
+        return []
+    have = {s for f in fits if f.campaign in group.campaigns for s in f.coefficients.symbols}
+    mine = [t for t in tables if t.campaign in group.campaigns]
+
+    def status(symbol: str) -> Status:
+        factors = set(derivative(symbol).factors)
+        varied = any(symbol[0] in t.forces and factors <= set(t.varies) for t in mine)
+        return Status.TOO_FEW_POINTS if varied else Status.NO_TABLE
+
+    return [
+        Coefficient(s, None, None, status(s), group.body, campaign=", ".join(group.campaigns))
+        for s in wanted
+        if s not in have
+    ]
+
+
+def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[InputFile, ...]:
+    files = [plan.file] if plan.file else []
+    files += [f for t in tables for f in t.files]
+    files += [f for b in bodies for f in b.files]
+    files += [InputFile(p.name, sha256_of(p)) for p in plan.references]
+    return tuple(dict.fromkeys(files))
