@@ -13,9 +13,7 @@ from scipy import special, stats
 from coeflab.core.types import Array
 from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
 from coeflab.fits.statistics.slope_mixture import (
-    PARTS,
     POWER,
-    REMAINDERS,
     SIZES,
     estimate_many,
     prepare,
@@ -341,15 +339,3 @@ def test_more_noise_leaves_a_smaller_tail_out() -> None:
     y = SLOPE * X + np.abs(SLOPE) * X[-1] * np.array([[1e-4], [3e-2]]) * SHOCKS
     s = estimate_many(replace(prepare(X), shapes=()), y, deletions=False)
     assert np.all(np.diff(s.u95 / s.sd) > 0.0)
-
-
-def test_a_part_that_may_not_be_there_is_not_there():
-    """Of a line with a cubic part: without it the slope is the secant's, without what is not there it hardly moves."""
-    x = np.linspace(-0.3, 0.3, 13)
-    y = -0.03 * x - 0.3 * x**3 + 1e-5 * np.cos(7.0 * np.arange(13))
-    whole = estimate(x, y)
-    line = estimate(x, y, without=PARTS)
-    assert line.value == pytest.approx(np.polyfit(x, y, 1)[0], rel=0.02)
-    assert estimate(x, y, without=("v|v|", "even")).value == pytest.approx(whole.value, abs=whole.u95)
-    assert not {kind for m in line.design.members for kind in m.kinds} & REMAINDERS
-    assert estimate(x, y, without=()).value == whole.value

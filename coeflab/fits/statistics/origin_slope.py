@@ -80,9 +80,7 @@ class OriginSlope:
 
 
 @remembered(24)
-def estimate(
-    x: Array, y: Array, se: Array | None = None, *, odd: bool = False, without: tuple[str, ...] = ()
-) -> OriginSlope:
+def estimate(x: Array, y: Array, se: Array | None = None, *, odd: bool = False) -> OriginSlope:
     """Slope of one campaign at x = 0.
 
     Parameters
@@ -94,8 +92,6 @@ def estimate(
     odd : bool
         The curve is odd by declaration, and not by what rows show: no constant, no even part. Rows at rest say nothing of it
         and should be left out.
-    without : tuple of str
-        Of `PARTS`, for a what-if; see `prepare`.
 
     Returns
     -------
@@ -109,20 +105,20 @@ def estimate(
     rows = rows_of(x, y, se, odd=odd)
     few = condensed_rows(x, y, se, odd=odd)
     if few is None:
-        return _estimate(rows, odd, without)
-    found = estimate_condensed(few, odd=odd, without=without)
+        return _estimate(rows, odd)
+    found = estimate_condensed(few, odd=odd)
     used, wrong = few.rows(found.used.astype(float), 0.0) > 0.5, few.rows(found.wrong, 1.0)
     return replace(found, used=used, wrong=wrong, without=np.full(len(rows.x), np.nan))
 
 
-def estimate_condensed(few: Condensed, *, odd: bool = False, without: tuple[str, ...] = ()) -> OriginSlope:
+def estimate_condensed(few: Condensed, *, odd: bool = False) -> OriginSlope:
     """Slope of one campaign of very many rows, every array by the strips."""
     used = np.ones(len(few.x), dtype=bool)
     rows = Rows(few.x, few.y, few.variance, few.stated, used, few.mirrored, few.notes, few.strips)
-    return _estimate(rows, odd, without)
+    return _estimate(rows, odd)
 
 
-def _estimate(rows: Rows, odd: bool, without_parts: tuple[str, ...]) -> OriginSlope:
+def _estimate(rows: Rows, odd: bool) -> OriginSlope:
     x, y, variance, stated, notes = rows.x, rows.y, rows.variance, rows.stated, rows.notes
     used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
@@ -137,8 +133,7 @@ def _estimate(rows: Rows, odd: bool, without_parts: tuple[str, ...]) -> OriginSl
                 None, y[kept], np.zeros(0),
             )  # fmt: skip
         design = prepare(
-            x[kept], None if variance is None else variance[kept], strips=strips and strips.of(kept), odd=odd,
-            without=without_parts,
+            x[kept], None if variance is None else variance[kept], strips=strips and strips.of(kept), odd=odd
         )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]
@@ -171,7 +166,7 @@ def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
     """The fitted curve at ``at`` and the half-width of its 95 % band, (m,) each; NaN without a value."""
     if slope.design is None:
         return np.full(len(at), np.nan), np.full(len(at), np.nan)
-    mean, covariance, _ = joint(slope.design, slope.y, slope.weights, at)
+    mean, covariance = joint(slope.design, slope.y, slope.weights, at)
     factor = special.stdtrit(len(slope.y) - slope.design.flat, 0.975)
     return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
 
@@ -190,7 +185,7 @@ def next_points(
     d = slope.design
     low, high = (min(0.0, d.x.min()), max(0.0, d.x.max())) if d.flat == 1 else (-d.largest, d.largest)
     at = np.linspace(low, high, 73) if candidates is None else np.asarray(candidates, float)
-    _, c, _ = joint(d, slope.y, slope.weights, at)
+    _, c = joint(d, slope.y, slope.weights, at)
     start, chosen, after = c[0, 0], [], []
     free = np.ones(len(at), dtype=bool)
     if taken is not None:

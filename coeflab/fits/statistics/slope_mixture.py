@@ -53,8 +53,6 @@ WRONG = 0.005
 PINNED = ((1e-4, 1.0),)
 # Smallest noise (of the largest force), leverage that is rounding.
 ROUNDING, WEIGHTLESS = 3e-8, 1e-10
-# What a what-if may take out of the curve: then a term is at most a tenth of the noise, and there is no remainder.
-PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, MOST_LIKELY = 0.8, 16, 2.0, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 REMAINDERS = {(name, True) for name in ODD} | {(name, False) for name in SIDES}
@@ -124,7 +122,7 @@ class Design:
     strips : Strips or None
         Of what the rows are means.
     shapes : tuple of Shapes
-        One-signed sums, rows weighed by their variance; none in a what-if.
+        One-signed sums, rows weighed by their variance.
     """
 
     x: Array
@@ -254,7 +252,6 @@ def prepare(
     *,
     strips: Strips | None = None,
     odd: bool = False,
-    without: tuple[str, ...] = (),
 ) -> Design:
     """Factorise a sweep.
 
@@ -267,8 +264,6 @@ def prepare(
         Rows are means over several settings.
     odd : bool
         The curve is odd by declaration: no constant, no even part, whichever sides have rows.
-    without : tuple of str
-        Of `PARTS`, for a what-if: the interval then covers no curve that has them.
 
     Returns
     -------
@@ -281,27 +276,23 @@ def prepare(
     ratios = np.ones(n) if variance is None else variance
     labels = np.unique(np.round(t, 9), return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
-    even = not one_sided and not odd and "even" not in without
+    even = not one_sided and not odd
     nodes = t if strips is None else strips.nodes.ravel()
     terms, bent = _terms(nodes, even), one_signed.curved(nodes)
     if strips is not None:
         terms, bent = strips.mean(terms, 0), strips.mean(bent, 0)
     p, root_weights = terms.shape[1], 1.0 / np.sqrt(ratios)[:, None]
     free = terms[:, [] if odd else [0, 2] if even else [0]]
-    shapes = () if without else one_signed.prepare(*(root_weights * z for z in (free, terms[:, 1:2], bent)))
+    shapes = one_signed.prepare(*(root_weights * z for z in (free, terms[:, 1:2], bent)))
     specifications = _specifications(t, even, labels, variance is not None, strips)
-    if "remainder" in without:
-        specifications = [s for s in specifications if s[0] not in ODD and s[0] not in SIDES]
     total = sum(s[4] for s in specifications)
     nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
     order = (0, *range(2, p), 1)
     members = []
     for alone in (True, False):
         some = [s for s in specifications if (s[0] == "none") is alone]
-        if not some:
-            continue
         kinds = tuple((s[0], float(size), s[4] / total) for s in some for size in s[2])
-        curved = tuple((NOTHING,) if w in without else SIZES if alone else COARSE for w in ("v|v|", "cubic"))
+        curved = (SIZES if alone else COARSE,) * 2
         kernel = np.concatenate([s[2][:, None, None] ** 2 * s[3] for s in some])
         factor = np.linalg.cholesky(np.diag(ratios) + kernel)
         root = np.linalg.solve(factor, np.broadcast_to(np.eye(n), factor.shape))
@@ -456,14 +447,14 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     return Slopes(value, low, high, half * unit, sd * unit, noise * size, middle * unit, wrong, without, weights)
 
 
-def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array, Array]:
-    """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``, mean polynomial terms (p,)."""
+def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array]:
+    """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``."""
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
     p, nu = design.terms.shape[1], len(t) - design.flat
     basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
     shares = weights[best] / weights[best].sum()
-    mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
+    mean, second = np.zeros(len(basis)), np.zeros((len(basis), len(basis)))
     first = 0
     for m in design.members:
         many = m.log_prior.shape[1]  # remainders and their sizes
@@ -497,5 +488,5 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
         known = known.reshape(-1, len(basis))
         second += half.T @ half - known.T @ known + np.einsum("j,jab->ab", of_size, own)
         second += (centre * share[:, None]).T @ centre
-        mean, terms = mean + share @ centre, terms + share @ b
-    return mean, second - np.outer(mean, mean), terms
+        mean = mean + share @ centre
+    return mean, second - np.outer(mean, mean)
