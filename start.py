@@ -62,7 +62,7 @@ def test(arguments: list[str]) -> int:
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # processes of tests compile coeflab once, not each
     sources = ["coeflab", "tests", "benchmarks", "cfd_data", "geometry", "reports", "start.py"]
     fast = ["-m", "not slow"] if "--fast" in arguments else []
-    more = [a for a in arguments if a != "--fast"] or ["-n", WORKERS, "--dist", "worksteal"]
+    more = [a for a in arguments if a != "--fast"] or ["-n", WORKERS, "--dist", "worksteal", "--durations=20"]
     for gate in (["ruff", "check", *sources], ["ruff", "format", "--check", *sources]):
         if code := subprocess.run([str(PYTHON), "-m", *gate], cwd=ROOT, env=environment, check=False).returncode:
             return code

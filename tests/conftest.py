@@ -13,26 +13,21 @@ from collections.abc import Callable, Generator, Iterator
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
-from coeflab.api.validations import validation
 from coeflab.core.files import shipped
 from coeflab.core.types import locked
-from coeflab.report.content import document
-from coeflab.report.document import Document
-from coeflab.report.formats import REPORTERS
-from coeflab.study.plan import read_plan
-from coeflab.study.run import run
-from coeflab.study.study import Study
-from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import PlannedTable
-from coeflab.tables.reading import read_tables
 from tests.cli.forked import Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
+
+if TYPE_CHECKING:  # a test of the core imports nothing above it by what stands here
+    from coeflab.report.document import Document
+    from coeflab.study.study import Study
+    from coeflab.tables.force_table import ForceTable
 
 # How long an example takes says how busy the machine is, not whether it is right.
 settings.register_profile("unhurried", deadline=None)
@@ -85,6 +80,8 @@ def write_campaign(tmp_path: Path) -> Callable[..., Path]:
 @pytest.fixture
 def read_table(write_campaign: Callable[..., Path]) -> Callable[..., ForceTable]:
     """Write a campaign and read its one table."""
+    from coeflab.tables.importers import PlannedTable
+    from coeflab.tables.reading import read_tables
 
     def read(csv: str | bytes = DRIFT, **pieces: Any) -> ForceTable:
         return read_tables(PlannedTable(write_campaign(csv, **pieces), ()))[0]
@@ -181,6 +178,9 @@ def once(factory: pytest.TempPathFactory, name: str, make: Callable[[], Any]) ->
 @pytest.fixture(scope="session")
 def suboff(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """The SUBOFF study, run once for all workers."""
+    from coeflab.study.plan import read_plan
+    from coeflab.study.run import run
+
     plan = shipped("cfd_data") / "suboff" / "plan.toml"
     found: Study = once(tmp_path_factory, "suboff", lambda: run(read_plan(plan)))
     return found
@@ -189,6 +189,8 @@ def suboff(tmp_path_factory: pytest.TempPathFactory) -> Study:
 @pytest.fixture(scope="session")
 def suboff_document(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Document:
     """Its report, whole, drawn once for all workers; those that only look at it need no study."""
+    from coeflab.report.content import document
+
     found: Document = once(tmp_path_factory, "suboff_document", lambda: document(request.getfixturevalue("suboff")))
     return found
 
@@ -196,12 +198,16 @@ def suboff_document(request: pytest.FixtureRequest, tmp_path_factory: pytest.Tem
 @pytest.fixture(scope="session")
 def suboff_page(suboff_document: Document) -> bytes:
     """Its report as a page."""
+    from coeflab.report.formats import REPORTERS
+
     return REPORTERS.load("html").render(suboff_document)["report.html"]
 
 
 @pytest.fixture(scope="session")
 def publication() -> Callable[[str], Any]:
     """A publication as it comes out, by the name of its validation, computed once."""
+    from coeflab.api.validations import validation
+
     return cache(validation)
 
 

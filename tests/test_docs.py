@@ -55,7 +55,12 @@ def test_every_command_of_a_page_exists_with_its_options(page: str) -> None:
 
 
 def test_the_command_reference_is_that_of_the_command_line() -> None:
-    assert (DOCS / "commands.md").read_text(encoding="utf-8") == PAGES["reference"](), "python docs/pages.py"
+    reference = PAGES["reference"]()
+    assert (DOCS / "commands.md").read_text(encoding="utf-8") == reference, "python docs/pages.py"
+    commands = re.split(r"\n(?=##+ )", reference)[1:]
+    assert len(commands) > 30
+    without_example = [c.partition("\n")[0] for c in commands if "```sh\ncoeflab" not in c]
+    assert without_example == ["## coeflab params"]  # its verbs have theirs
 
 
 @pytest.mark.slow

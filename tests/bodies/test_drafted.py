@@ -133,8 +133,13 @@ def test_a_body_without_fins_says_so(tmp_path: Path) -> None:
 RIGHT = [d for d in permutations(DIRECTIONS, 3) if np.linalg.det([DIRECTIONS[k] for k in d]) > 0.5]
 
 
-@pytest.mark.parametrize("axes", [*(",".join(d) for d in RIGHT), "flu", "FRD", "CFD"])
-@pytest.mark.parametrize(("unit", "name"), [("mm", "a hull.stl"), ("in", "Rumpf_ä'1.stl"), ("ft", "0.9 m#2.stl")])
+WRITTEN = (("mm", "a hull.stl"), ("in", "Rumpf_ä'1.stl"), ("ft", "0.9 m#2.stl"))
+
+
+@pytest.mark.parametrize(
+    ("axes", "unit", "name"),
+    [(a, *WRITTEN[k % 3]) for k, a in enumerate([*(",".join(d) for d in RIGHT), "flu", "FRD", "CFD"])],
+)
 def test_whatever_axes_unit_and_name_a_draft_has_it_reads_as_the_mesh_did(
     tmp_path: Path, axes: str, unit: str, name: str
 ) -> None:

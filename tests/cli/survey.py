@@ -21,8 +21,8 @@ ROOT = Path(__file__).parents[2]
 HUUV = str(ROOT / "cfd_data" / "huuv" / "huuv.parameters.json")
 FILE = "reports/suboff/suboff_fully_appended.parameters.json"  # after ``validate suboff``
 _ESCAPE = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07)")
-# What is text for machines is not among them: schema, table, --json. The widths of `validate suboff` and `added-mass suboff_bare_hull` are
-# looked at where test_commands and test_added_mass run them.
+# What is text for machines is not among them: schema, table, --json. The widths of validations and of `added-mass suboff_bare_hull` are
+# looked at where test_commands, test_bad_input and test_added_mass run them.
 QUICK = (
     "new mine",
     "fit --fit surface --help-options",
@@ -46,7 +46,6 @@ QUICK = (
     "mass nothing",
 )
 SLOW = (
-    "validate huuv",
     "validate urv",
     "validate estimates",
     "vehicle suboff_bare_hull --out made",

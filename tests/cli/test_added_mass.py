@@ -86,10 +86,6 @@ def test_json_of_the_panel_method_has_its_error(coeflab: Run) -> None:
     assert said["density"] == 1025.0
 
 
-def test_help_has_an_example(coeflab: Run) -> None:
-    assert "Example: coeflab added-mass" in coeflab("added-mass", "--help").stdout
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

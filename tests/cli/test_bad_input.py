@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import COEFLAB, Run, flat
+from tests.cli.survey import too_long
 
 
 def spoil(file: Path, old: str, new: str) -> None:
@@ -157,7 +158,9 @@ def test_an_export_that_is_refused_leaves_the_study_standing(coeflab: Run, study
 def test_a_publication_writes_its_parameter_file_beside_the_report(
     coeflab: Run, tmp_path: Path, name: str, files: list[str]
 ) -> None:
-    assert coeflab("validate", name).returncode == 0
+    done = coeflab("validate", name)
+    assert done.returncode == 0
+    assert too_long(done.stdout) == []
     folder = tmp_path / "reports" / name
     assert sorted(p.name for p in folder.glob("*.parameters.json")) == [f"{f}.parameters.json" for f in files]
     assert (folder / "report.html").is_file()

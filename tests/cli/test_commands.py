@@ -123,14 +123,6 @@ def test_fit_on_another_length_scales_by_its_powers(coeflab: Run) -> None:
     assert loa[0]["scaling"].startswith("LOA")
 
 
-@pytest.mark.parametrize("command", ["validate", "run", "fit", "inspect", "new", "formats", "params"])
-def test_help_has_an_example(coeflab: Run, command: str) -> None:
-    done = coeflab(command, "--help")
-    assert done.returncode == 0
-    text = done.stdout if command != "params" else coeflab("params", "check", "--help").stdout
-    assert f"Example: coeflab {command}" in text
-
-
 def test_inspect_and_formats(coeflab: Run) -> None:
     assert "excluded, grid B" in coeflab("inspect", "suboff_cfd_barehull").stdout
     assert "slope_at_origin" in coeflab("formats").stdout

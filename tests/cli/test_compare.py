@@ -254,10 +254,6 @@ def test_bad_input_exits_two_with_one_message(
         assert "Traceback" not in done.stderr
 
 
-def test_help_has_an_example(coeflab: Run) -> None:
-    assert "Example: coeflab compare" in coeflab("compare", "--help").stdout
-
-
 def test_a_file_that_was_written_is_within_itself(write: Callable[[ParameterFile, str], Path]) -> None:
     p = read_parameter_file(write(made(VALUES), "a.json"))
     assert {r.verdict for r in compare(p, p).rows} == {Verdict.WITHIN}

@@ -277,7 +277,3 @@ def test_wrong_input(coeflab: Run, tmp_path: Path, arguments: tuple[str, ...], s
     assert "Traceback" not in done.stderr
     assert done.stdout == ""
     assert {p.name for p in tmp_path.iterdir()} == {"huuv.stl", "cut.stl", "open.stl"}
-
-
-def test_help_has_an_example(coeflab: Run) -> None:
-    assert "Example: coeflab simplify huuv_mesh" in coeflab("simplify", "--help").stdout

@@ -47,11 +47,8 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("workers", ["1", "2"])
-def test_killed_and_started_again(
-    torpedo: Path, tmp_path: Path, workers: str, undisturbed: tuple[str, dict[str, bytes]]
-) -> None:
-    command = [str(COEFLAB), "uncertainty", str(torpedo), *MANY, "--cores", workers]
+def test_killed_and_started_again(torpedo: Path, tmp_path: Path, undisturbed: tuple[str, dict[str, bytes]]) -> None:
+    command = [str(COEFLAB), "uncertainty", str(torpedo), *MANY, "--cores", "2"]
     store = tmp_path / "store"
     with subprocess.Popen(
         [*command, "--state", str(store)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL

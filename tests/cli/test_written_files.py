@@ -28,7 +28,6 @@ FAST = {
     "run": ("run", WATER, "--out", "out"),
 }
 SLOW = {
-    "validate thauv": ("validate", "thauv", "--out", "out"),
     "vehicle": ("vehicle", "myring_auv", "--out", "out"),
     "tune": ("tune", TUNE, "--out", "out"),
 }

@@ -578,20 +578,21 @@ def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], V
                     )
                 ),
             )
-    yield "pitch_damping", polar(pitch_damping=factor)
-    yield from (
-        (name, mass(**{name: factor})) for name in ("surge", "heave", "pitch_inertia", "moment_ahead", "moment_below")
-    )
-    yield "gravity", glider(lambda g: replace(g, gravity=g.gravity * factor))
-    yield "engine.ahead", glider(lambda g: replace(g, engine=replace(g.engine, ahead=g.engine.ahead * factor)))
-    yield (
-        "sliding_mass.mass",
-        glider(lambda g: replace(g, sliding_mass=replace(g.sliding_mass, mass=g.sliding_mass.mass * factor))),
-    )
-    yield (
-        "net masses of the phases",
-        glider(lambda g: replace(g, phases=tuple(replace(p, net_mass=p.net_mass * factor) for p in g.phases))),
-    )
+    # Of what all cases share the first flies alone.
+    shared: dict[str, Callable[[Glider], Glider]] = {
+        "pitch_damping": lambda g: replace(g, polar=replace(g.polar, pitch_damping=g.polar.pitch_damping * factor)),
+        "gravity": lambda g: replace(g, gravity=g.gravity * factor),
+        "engine.ahead": lambda g: replace(g, engine=replace(g.engine, ahead=g.engine.ahead * factor)),
+        "sliding_mass.mass": lambda g: replace(
+            g, sliding_mass=replace(g.sliding_mass, mass=g.sliding_mass.mass * factor)
+        ),
+        "net masses of the phases": lambda g: replace(
+            g, phases=tuple(replace(p, net_mass=p.net_mass * factor) for p in g.phases)
+        ),
+    }
+    for name in ("surge", "heave", "pitch_inertia", "moment_ahead", "moment_below"):
+        shared[name] = lambda g, n=name: replace(g, mass=replace(g.mass, **{n: getattr(g.mass, n) * factor}))  # type: ignore[misc]
+    yield from ((name, glider(change, (0,))) for name, change in shared.items())
 
 
 def _printed_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:

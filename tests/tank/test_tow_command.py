@@ -172,7 +172,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
 
 @pytest.mark.slow
 def test_ctrl_c_stops_and_says_how_to_go_on(tmp_path: Path, environment: dict[str, str]) -> None:
-    tank_file(tmp_path, pace=0.1)
+    tank_file(tmp_path, pace=0.4)
     with begun(tmp_path, environment, "tow_spheroid", "--matrix", "tank.toml", "--out", "x") as process:
         until(lambda: "running" in [s for n, s in states(tmp_path / "x").items() if "medium" not in n])
         until(lambda: any((tmp_path / "x").glob("*/history.csv")))

@@ -69,6 +69,12 @@ def simulate(
         Options of the command that were typed.
     options : mapping of str to value
         Further ones, of the manoeuvre and of its motion.
+    to : str
+        Format of the table.
+    out : Path or None
+        Folder of the files; None to print alone.
+    json : bool
+        Print one JSON object.
 
     Raises
     ------
