@@ -99,7 +99,6 @@ FAMILIES = {
     "asymmetric": sums((-0.02, line), (-0.03, square), (-0.1, cube), (-0.05, starboard), slope=-0.02),
     "even part": sums((0.0003, one), (-0.025, line), (0.02, square), (-0.04, vv), (0.1, lambda v: v**4), slope=-0.025),
 }
-POLYNOMIAL = ("linear", "cubic", "v|v|", "v|v| + v3", "small slope", "opposed signs")
 STUDY = ("tanh", "stall", "onset")
 
 

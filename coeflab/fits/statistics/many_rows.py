@@ -127,8 +127,6 @@ class Condensed:
     strips : Strips
     strip : (n,) integer array
         Where each row went; -1 for one that does not count.
-    scatter : float
-        Standard deviation of a row of unit variance about its neighbours.
     notes : tuple of str
     stated : float or None
         Variance of a row of unit relative variance, where the table states it.
@@ -141,7 +139,6 @@ class Condensed:
     variance: Array
     strips: Strips
     strip: NDArray[np.intp]
-    scatter: float
     notes: tuple[str, ...]
     stated: float | None = None
     mirrored: bool = False
@@ -172,7 +169,7 @@ def condensed(x: Array, y: Array, used: NDArray[np.bool_], variance: Array | Non
     near = by_neighbours(x[kept], y[kept])
     far = near.probability < LEVEL / len(kept)
     order = np.argsort(x[kept[~far]], kind="stable")
-    gone, expected, kept = kept[far], near.expected[~far][order], kept[~far][order]
+    gone, kept = kept[far], kept[~far][order]
     t, largest = x[kept], float(np.abs(x).max())
     w = np.ones(len(kept)) if variance is None else 1.0 / variance[kept]
     distinct, labels = np.unique(np.round(t / largest, 9), return_inverse=True)
@@ -191,12 +188,11 @@ def condensed(x: Array, y: Array, used: NDArray[np.bool_], variance: Array | Non
     weight = np.bincount(node, w, NODES * len(total))
     nodes = np.bincount(node, w * t, NODES * len(total)) / np.where(weight > 0.0, weight, 1.0)
     strips = Strips(nodes.reshape(-1, NODES), weight.reshape(-1, NODES) / total[:, None])
-    left = (y[kept] - expected) * np.sqrt(w)
     note = f"{len(x)} rows count as means over {what}"
     if len(gone):
         note += f"; {len(gone)} rows do not fit their neighbours and are left out"
     middle, mean = (np.asarray(np.bincount(labels, w * z) / total) for z in (t, y[kept]))
-    return Condensed(middle, mean, 1.0 / total, strips, strip, float(1.4826 * np.median(np.abs(left))), (note,))
+    return Condensed(middle, mean, 1.0 / total, strips, strip, (note,))
 
 
 def copies(rows: Array) -> tuple[NDArray[np.bool_], bool]:

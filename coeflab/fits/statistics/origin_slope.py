@@ -43,8 +43,8 @@ class OriginSlope:
     reason : str
     notes : tuple of str
         Duplicates, mirror images, one-sided sweep.
-    noise, pure_error : float
-        Standard deviation of one reading: by the model, and by replicates alone (NaN without).
+    noise : float
+        Standard deviation of one reading.
     wrong, without : (n,) array
         Per row: probability that it is wrong; slope without it.
     used : (n,) boolean array
@@ -64,7 +64,6 @@ class OriginSlope:
     reason: str
     notes: tuple[str, ...]
     noise: float
-    pure_error: float
     wrong: Array
     without: Array
     used: NDArray[np.bool_]
@@ -75,34 +74,13 @@ class OriginSlope:
     with_all_u95: float = float("nan")
 
     @property
-    def shares(self) -> dict[str, float]:
-        """Parts of the secant to the largest |x|: linear, v|v|, cubic, smooth remainder; they add up to one; empty without a value."""
-        return {} if self.design is None else _shares(self.design, self.y, self.weights)
-
-    @property
     def u95_with_all(self) -> float:
         """95 % half-width with every row, wrong or not."""
         return self.u95 if np.isnan(self.with_all_u95) else self.with_all_u95
 
 
-def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
-    end = design.largest * np.array([-1.0, 1.0])
-    mean, _, terms = joint(design, y, weights, np.array([0.0, *end]))
-    if design.flat == 1:
-        sign = np.sign(design.x[np.argmax(np.abs(design.x))])
-        secant = sign * ((mean[3] if sign > 0.0 else mean[2]) - mean[1])
-    else:
-        secant = 0.5 * (mean[3] - mean[2])
-    parts = [mean[0], terms[-2], terms[-1], secant - mean[0] - terms[-2] - terms[-1]]
-    names = ("linear", "v|v|", "cubic", "remainder")
-    return {n: float(v / secant) if secant else np.nan for n, v in zip(names, parts)}
-
-
 @remembered(24)
-def estimate(
-    x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None,
-    odd: bool = False, without: tuple[str, ...] = (),
-) -> OriginSlope:  # fmt: skip
+def estimate(x: Array, y: Array, se: Array | None = None, *, odd: bool = False) -> OriginSlope:
     """Slope of one campaign at x = 0.
 
     Parameters
@@ -111,15 +89,9 @@ def estimate(
         Regressor and force.
     se : (n,) array, optional
         Stated standard errors; those that are not positive are replaced by the median.
-    symmetric : bool
-        No even part.
-    groups : (n,) array, optional
-        Rows of one label are replicates of one setting; equal x without it.
     odd : bool
         The curve is odd by declaration, and not by what rows show: no constant, no even part. Rows at rest say nothing of it
         and should be left out.
-    without : tuple of str
-        Of `PARTS`, for a what-if; see `prepare`.
 
     Returns
     -------
@@ -133,24 +105,20 @@ def estimate(
     rows = rows_of(x, y, se, odd=odd)
     few = condensed_rows(x, y, se, odd=odd)
     if few is None:
-        return _estimate(rows, symmetric, groups, odd, without)
-    found = estimate_condensed(few, symmetric=symmetric, odd=odd, without=without)
+        return _estimate(rows, odd)
+    found = estimate_condensed(few, odd=odd)
     used, wrong = few.rows(found.used.astype(float), 0.0) > 0.5, few.rows(found.wrong, 1.0)
     return replace(found, used=used, wrong=wrong, without=np.full(len(rows.x), np.nan))
 
 
-def estimate_condensed(
-    few: Condensed, *, symmetric: bool = False, odd: bool = False, without: tuple[str, ...] = ()
-) -> OriginSlope:
+def estimate_condensed(few: Condensed, *, odd: bool = False) -> OriginSlope:
     """Slope of one campaign of very many rows, every array by the strips."""
     used = np.ones(len(few.x), dtype=bool)
     rows = Rows(few.x, few.y, few.variance, few.stated, used, few.mirrored, few.notes, few.strips)
-    return replace(_estimate(rows, symmetric, None, odd, without), pure_error=few.scatter)
+    return _estimate(rows, odd)
 
 
-def _estimate(
-    rows: Rows, symmetric: bool, groups: Array | None, odd: bool, without_parts: tuple[str, ...] = ()
-) -> OriginSlope:
+def _estimate(rows: Rows, odd: bool) -> OriginSlope:
     x, y, variance, stated, notes = rows.x, rows.y, rows.variance, rows.stated, rows.notes
     used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
@@ -161,13 +129,11 @@ def _estimate(
         if len(np.unique(x[kept])) < 3 or not np.any(x):
             nan, reason = float("nan"), f"{len(np.unique(x[kept]))} different settings, at least 3 are needed"
             return OriginSlope(
-                nan, nan, nan, nan, nan, Status.TOO_FEW, reason, notes, nan, nan, wrong, without, used, nan,
+                nan, nan, nan, nan, nan, Status.TOO_FEW, reason, notes, nan, wrong, without, used, nan,
                 None, y[kept], np.zeros(0),
             )  # fmt: skip
         design = prepare(
-            x[kept], None if variance is None else variance[kept], symmetric=symmetric,
-            settings=None if groups is None else np.asarray(groups)[kept], strips=strips and strips.of(kept), odd=odd,
-            without=without_parts,
+            x[kept], None if variance is None else variance[kept], strips=strips and strips.of(kept), odd=odd
         )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]
@@ -189,13 +155,9 @@ def _estimate(
         reason = f"{what} {', '.join(map(str, left_out))} (from 0) do not fit the others; with them the value is {with_all:.4g}"
     elif status is Status.OPEN:
         reason = "the 95 % interval contains zero"
-    replicate = np.bincount(design.settings)
-    means = np.bincount(design.settings, y[kept]) / replicate
-    freedom = len(kept) - len(replicate)
-    pure = float(np.sqrt(np.sum((y[kept] - means[design.settings]) ** 2) / freedom)) if freedom else float("nan")
     return OriginSlope(
         value, lower, upper, u95, widen * float(many.sd[0]), status, reason, notes,
-        float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
+        float(many.noise[0]), wrong, without, used, with_all if left_out else value,
         design, y[kept], many.weights[0], all_u95,
     )  # fmt: skip
 
@@ -204,7 +166,7 @@ def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
     """The fitted curve at ``at`` and the half-width of its 95 % band, (m,) each; NaN without a value."""
     if slope.design is None:
         return np.full(len(at), np.nan), np.full(len(at), np.nan)
-    mean, covariance, _ = joint(slope.design, slope.y, slope.weights, at)
+    mean, covariance = joint(slope.design, slope.y, slope.weights, at)
     factor = special.stdtrit(len(slope.y) - slope.design.flat, 0.975)
     return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
 
@@ -223,7 +185,7 @@ def next_points(
     d = slope.design
     low, high = (min(0.0, d.x.min()), max(0.0, d.x.max())) if d.flat == 1 else (-d.largest, d.largest)
     at = np.linspace(low, high, 73) if candidates is None else np.asarray(candidates, float)
-    _, c, _ = joint(d, slope.y, slope.weights, at)
+    _, c = joint(d, slope.y, slope.weights, at)
     start, chosen, after = c[0, 0], [], []
     free = np.ones(len(at), dtype=bool)
     if taken is not None:

@@ -27,6 +27,7 @@ import numpy as np
 from scipy import special
 
 from coeflab.core.types import Array, locked, remembered
+from coeflab.fits.statistics import one_signed
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.many_rows import Strips
 from coeflab.fits.statistics.prior_grid import Rotations, rotated
@@ -52,8 +53,6 @@ WRONG = 0.005
 PINNED = ((1e-4, 1.0),)
 # Smallest noise (of the largest force), leverage that is rounding.
 ROUNDING, WEIGHTLESS = 3e-8, 1e-10
-# What a what-if may take out of the curve: then a term is at most a tenth of the noise, and there is no remainder.
-PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, MOST_LIKELY = 0.8, 16, 2.0, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 REMAINDERS = {(name, True) for name in ODD} | {(name, False) for name in SIDES}
@@ -122,17 +121,19 @@ class Design:
     members : tuple of Members
     strips : Strips or None
         Of what the rows are means.
+    shapes : tuple of Shapes
+        One-signed sums, rows weighed by their variance.
     """
 
     x: Array
     largest: float
     variance: Array
     flat: int
-    settings: Index
     terms: Array
     order: tuple[int, ...]
     members: tuple[Members, ...]
-    strips: Strips | None = None
+    strips: Strips | None
+    shapes: tuple[one_signed.Shapes, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,9 +143,10 @@ class Slopes:
     Attributes
     ----------
     value, lower, upper, sd, noise : (b,) array
-        Median, ends with the same tail beyond each, standard deviation, standard deviation of one reading.
+        Median, ends with the same tail beyond each or as far as one-signed curves reach, standard deviation, that of one reading.
     u95 : (b,) array
-        What is printed: value +- u95 has the probability of [lower, upper], 1 - 2 tail, also where the mixture is skewed.
+        What is printed: value +- u95 has the probability 1 - 2 tail, also where the mixture is skewed, and holds every slope that a
+        one-signed curve allows.
     mean : (b,) array
         Mean if no row is wrong, the like of ``without``.
     wrong : (b, n) array
@@ -248,11 +250,8 @@ def prepare(
     x: Array,
     variance: Array | None = None,
     *,
-    symmetric: bool = False,
-    settings: Array | None = None,
     strips: Strips | None = None,
     odd: bool = False,
-    without: tuple[str, ...] = (),
 ) -> Design:
     """Factorise a sweep.
 
@@ -261,16 +260,10 @@ def prepare(
     x : (n,) array
     variance : (n,) array, optional
         Stated variance of each row; only its ratios count here.
-    symmetric : bool
-        No even part.
-    settings : (n,) array, optional
-        Rows of one label are replicates of one setting; equal x without it.
     strips : Strips, optional
         Rows are means over several settings.
     odd : bool
         The curve is odd by declaration: no constant, no even part, whichever sides have rows.
-    without : tuple of str
-        Of `PARTS`, for a what-if: the interval then covers no curve that has them.
 
     Returns
     -------
@@ -281,24 +274,25 @@ def prepare(
     t, n = x / largest, len(x)
     strips = strips and strips.over(largest)
     ratios = np.ones(n) if variance is None else variance
-    labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
+    labels = np.unique(np.round(t, 9), return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
-    even = not symmetric and not one_sided and not odd and "even" not in without
-    terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
-    p = terms.shape[1]
+    even = not one_sided and not odd
+    nodes = t if strips is None else strips.nodes.ravel()
+    terms, bent = _terms(nodes, even), one_signed.curved(nodes)
+    if strips is not None:
+        terms, bent = strips.mean(terms, 0), strips.mean(bent, 0)
+    p, root_weights = terms.shape[1], 1.0 / np.sqrt(ratios)[:, None]
+    free = terms[:, [] if odd else [0, 2] if even else [0]]
+    shapes = one_signed.prepare(*(root_weights * z for z in (free, terms[:, 1:2], bent)))
     specifications = _specifications(t, even, labels, variance is not None, strips)
-    if "remainder" in without:
-        specifications = [s for s in specifications if s[0] not in ODD and s[0] not in SIDES]
     total = sum(s[4] for s in specifications)
     nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
     order = (0, *range(2, p), 1)
     members = []
     for alone in (True, False):
         some = [s for s in specifications if (s[0] == "none") is alone]
-        if not some:
-            continue
         kinds = tuple((s[0], float(size), s[4] / total) for s in some for size in s[2])
-        curved = tuple((NOTHING,) if w in without else SIZES if alone else COARSE for w in ("v|v|", "cubic"))
+        curved = (SIZES if alone else COARSE,) * 2
         kernel = np.concatenate([s[2][:, None, None] ** 2 * s[3] for s in some])
         factor = np.linalg.cholesky(np.diag(ratios) + kernel)
         root = np.linalg.solve(factor, np.broadcast_to(np.eye(n), factor.shape))
@@ -319,7 +313,7 @@ def prepare(
                 precision, _log_prior(kinds, nuisance, curved), log_det + rotations.log_det().reshape(log_det.shape),
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, order, tuple(members), strips)
+    return Design(x, largest, ratios, 1 if one_sided or odd else 2, terms, order, tuple(members), strips, shapes)
 
 
 def _log_density(freedom: float) -> float:
@@ -442,18 +436,25 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
     ends, half, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
+    if design.shapes:
+        weighed = y / size[:, None] / np.sqrt(design.variance)
+        low, high = one_signed.ends(
+            design.shapes, weighed, 0.0 if stated is None else STATED_FREEDOM, noise, floor, least
+        )
+        half = np.max([half, high - ends[:, 1], ends[:, 1] - low], axis=0)
+        ends[:, 0], ends[:, 2] = np.minimum(ends[:, 0], low), np.maximum(ends[:, 2], high)
     low, value, high = ends.T * unit
     return Slopes(value, low, high, half * unit, sd * unit, noise * size, middle * unit, wrong, without, weights)
 
 
-def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array, Array]:
-    """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``, mean polynomial terms (p,)."""
+def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array]:
+    """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``."""
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
     p, nu = design.terms.shape[1], len(t) - design.flat
     basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
     shares = weights[best] / weights[best].sum()
-    mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
+    mean, second = np.zeros(len(basis)), np.zeros((len(basis), len(basis)))
     first = 0
     for m in design.members:
         many = m.log_prior.shape[1]  # remainders and their sizes
@@ -487,5 +488,5 @@ def joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, A
         known = known.reshape(-1, len(basis))
         second += half.T @ half - known.T @ known + np.einsum("j,jab->ab", of_size, own)
         second += (centre * share[:, None]).T @ centre
-        mean, terms = mean + share @ centre, terms + share @ b
-    return mean, second - np.outer(mean, mean), terms
+        mean = mean + share @ centre
+    return mean, second - np.outer(mean, mean)

@@ -212,11 +212,8 @@ def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
 
 
 def by_largest(
-    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False, odd: bool = False
+    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, odd: bool = False
 ) -> tuple[tuple[float, OriginSlope], ...]:
     """The slope had the sweep ended at each of ``caps`` (largest |x|)."""
     inside = [(c, np.abs(x) <= c * (1.0 + 1e-9)) for c in caps]
-    return tuple(
-        (c, origin_slope.estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric, odd=odd))
-        for c, i in inside
-    )
+    return tuple((c, origin_slope.estimate(x[i], y[i], None if se is None else se[i], odd=odd)) for c, i in inside)
