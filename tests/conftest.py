@@ -8,6 +8,7 @@ import io
 import os
 import pickle
 import shutil
+import subprocess
 import tempfile
 from collections.abc import Callable, Generator, Iterator
 from functools import cache
@@ -21,7 +22,7 @@ from hypothesis import settings
 
 from coeflab.core.files import shipped
 from coeflab.core.types import locked
-from tests.cli.forked import Forks
+from tests.cli.forked import COEFLAB, Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
 
 if TYPE_CHECKING:  # a test of the core imports nothing above it by what stands here
@@ -131,6 +132,27 @@ def forks() -> Iterator[Forks]:
     forks = Forks()
     yield forks
     forks.close()
+
+
+@pytest.fixture
+def fresh(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run ``coeflab`` as a user does: an interpreter of its own, which imports what the command imports and no more."""
+
+    def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
+        command = [str(COEFLAB), *map(str, arguments)]
+        return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
+
+    return run
+
+
+@pytest.fixture
+def coeflab(tmp_path: Path, forks: Forks) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run ``coeflab`` in an empty folder."""
+
+    def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
+        return forks.run(arguments, cwd)
+
+    return run
 
 
 def _read_only(found: dict[Any, Any]) -> MappingProxyType[Any, Any]:

@@ -6,9 +6,10 @@ import difflib
 from functools import cache
 from pathlib import Path
 
+from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
-from coeflab.core.registry import declared, of_application
+from coeflab.core.registry import of_application
 from coeflab.report.acceptance import Acceptance
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan
@@ -27,7 +28,13 @@ def _systems() -> dict[str, tuple[str, str]]:
 
 
 def validations() -> tuple[str, ...]:
-    """Names of the shipped validations; plans of synthetic tables validate nothing."""
+    """Names of the shipped validations; plans of synthetic tables validate nothing.
+
+    Examples
+    --------
+    >>> validations()
+    ('estimates', 'flyingfish', 'huuv', 'suboff', 'tank', 'thauv', 'urv')
+    """
     plans = (p.parent.name for p in shipped("cfd_data").glob(f"*/{PLAN}"))
     return tuple(sorted((*(name for name in plans if not name.endswith("_synthetic")), *_systems())))
 

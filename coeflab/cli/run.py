@@ -131,16 +131,16 @@ def _moved(study: Study) -> None:
 
     rows = []
     without: dict[str, list[str]] = {}
-    for made in study.manoeuvres:
-        name = made.manoeuvre.name.replace("_", " ")
-        found = figure_table(made.figures, f"{name} of {made.vehicle.name}", made.vehicle.length)
+    for result in study.manoeuvres:
+        name = result.manoeuvre.name.replace("_", " ")
+        found = figure_table(result.figures, f"{name} of {result.vehicle.name}", result.vehicle.length)
         if show.whole():
             show.table(found)
-        known = [row for row, figure in zip(found.rows, made.figures, strict=True) if figure.value is not None]
+        known = [row for row, figure in zip(found.rows, result.figures, strict=True) if figure.value is not None]
         if not known:
-            without.setdefault(f"of {made.vehicle.name}, no value: {_why(made)}", []).append(name)
+            without.setdefault(f"of {result.vehicle.name}, no value: {_why(result)}", []).append(name)
         rows += [
-            (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
+            (result.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
         ]
     for why, names in without.items():
@@ -189,7 +189,7 @@ def _tows(study: Study) -> None:
 
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
-    from coeflab.formats import loss_tables
+    from coeflab.formats.loss_tables import at_points
     from coeflab.report.acceptance import headline_of_study
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
@@ -211,7 +211,7 @@ def _every_table(study: Study) -> None:
         show.table(each)
     show.table(model_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
-        show.table(loss_tables.at_points(points_of(parameters), f"Force law of {name}"))
+        show.table(at_points(points_of(parameters), f"Force law of {name}"))
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:

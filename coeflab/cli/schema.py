@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from coeflab.cli import complete, show
-from coeflab.core.registry import declared
+from coeflab.core.applications import declared
 
 EXAMPLE = "coeflab schema plan > plan.schema.json"
 KINDS = {

@@ -10,11 +10,12 @@ import pkgutil
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from functools import cache, cached_property
+from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
+from coeflab.core.applications import declared
 from coeflab.core.errors import CoeflabError, PluginError, shown
 from coeflab.core.options import NoOptions
 from coeflab.core.version import VERSION
@@ -23,27 +24,9 @@ Port = TypeVar("Port")
 OURS = f"coeflab {VERSION}"
 
 
-@cache
-def applications() -> tuple[str, ...]:
-    """Names of the applications: folders of coeflab with a module ``application``; without any of them the core still runs."""
-    return tuple(sorted(p.parent.name for p in Path(__file__).parents[1].glob("*/application.py")))
-
-
 def of_application(name: str, module: str) -> Any:
     """A module of an application, imported."""
     return importlib.import_module(f"coeflab.{name}.{module}")
-
-
-def declared(member: str) -> dict[str, Any]:
-    """What every application that has it declares under a name, by application.
-
-    Examples
-    --------
-    >>> declared("COMMANDS")["glider"]
-    {'glide': 'Motion'}
-    """
-    found = {name: of_application(name, "application") for name in applications()}
-    return {name: getattr(module, member) for name, module in found.items() if hasattr(module, member)}
 
 
 class Registry(Generic[Port]):
@@ -96,7 +79,7 @@ class Registry(Generic[Port]):
         claims: dict[str, dict[tuple[str, str], EntryPoint]] = {}
         for point in entry_points(group=self.package):
             claims.setdefault(point.name, {})[_distribution(point), point.value] = point
-        kept, refused = {}, []
+        selected, refused = {}, []
         for name, points in sorted(claims.items()):
             owners = sorted({owner for owner, _ in points})
             if name in self._shipped:
@@ -105,10 +88,10 @@ class Registry(Generic[Port]):
             elif len(points) > 1:
                 refused.append((name, f"the {self.kind} {shown(name)} is refused: {' and '.join(owners)} claim it"))
             else:
-                kept[name] = next(iter(points.values()))
+                selected[name] = next(iter(points.values()))
         for _, reason in refused:
             logging.getLogger("coeflab").warning("%s.", reason)
-        return kept, tuple(refused)
+        return selected, tuple(refused)
 
     def names(self) -> tuple[str, ...]:
         """Names of all plugins, sorted; nothing is imported."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.forked import COEFLAB, Forks
+from tests.cli.forked import COEFLAB
 from tests.conftest import once
 
 __all__ = ["COEFLAB", "Run", "Validated", "files", "flat"]
@@ -47,24 +47,3 @@ def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
 
     found: Validated = once(tmp_path_factory, "validated", made)
     return found
-
-
-@pytest.fixture
-def fresh(tmp_path: Path) -> Run:
-    """Run ``coeflab`` as a user does: an interpreter of its own, which imports what the command imports and no more."""
-
-    def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
-        command = [str(COEFLAB), *map(str, arguments)]
-        return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
-
-    return run
-
-
-@pytest.fixture
-def coeflab(tmp_path: Path, forks: Forks) -> Run:
-    """Run ``coeflab`` in an empty folder."""
-
-    def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
-        return forks.run(arguments, cwd)
-
-    return run

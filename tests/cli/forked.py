@@ -79,7 +79,7 @@ class Forks:
 
     def __init__(self) -> None:
         self._server: subprocess.Popen[bytes] | None = None
-        self._at_import: dict[str, str] = {}
+        self._at_import = _at_import()
 
     def run(
         self,
@@ -101,14 +101,13 @@ class Forks:
             After two minutes.
         """
         command = [str(COEFLAB), *map(str, arguments)]
+        if _at_import() != self._at_import:
+            return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
         if self._server is None:
-            self._at_import = _at_import()
             self._server = subprocess.Popen(
                 [sys.executable, "-c", SERVER],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0,
             )  # fmt: skip
-        if _at_import() != self._at_import:
-            return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
             self._say(
                 json.dumps(

@@ -67,3 +67,17 @@ def test_a_process_that_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch, for
         with pytest.raises(subprocess.TimeoutExpired):
             forks.run(("serve", tmp_path, "--port", "0"), tmp_path)
     assert forks.run(("--version",), tmp_path).returncode == 0
+
+
+def test_what_one_test_sets_for_an_interpreter_does_not_slow_the_next(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The interpreter that waits is one of the session, not of the test that asks first."""
+    own = Forks()
+    with monkeypatch.context() as once:
+        once.setenv("PYTHONSAFEPATH", "1")
+        assert own.run(("--version",), tmp_path).returncode == 0
+        assert own._server is None
+    assert own.run(("--version",), tmp_path).returncode == 0
+    assert own._server is not None
+    own.close()

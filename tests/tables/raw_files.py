@@ -64,6 +64,6 @@ def plain_stub() -> Any:
     )
     patch = pytest.MonkeyPatch()
     patch.setitem(sys.modules, module.__name__, module)
-    patch.setitem(IMPORTERS.__dict__, "_shipped", IMPORTERS._shipped | {NAME})
+    patch.setitem(IMPORTERS.__dict__, "_shipped", {**IMPORTERS._shipped, NAME: "coeflab.tables.importers"})
     yield module
     patch.undo()

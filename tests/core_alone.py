@@ -1,0 +1,73 @@
+"""The core without any application: a copy of the sources from which their folders are deleted, its fast tests, and the validation.
+
+``python tests/core_alone.py`` prints what it ran and ends with the code of the first that fails.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+COPIED = ("coeflab", "cfd_data", "geometry", "tests", "pyproject.toml")
+TESTED = ("law", "fits", "formats", "motion", "vehicle")
+
+
+def applications(root: Path) -> set[str]:
+    """Names of the folders that are applications."""
+    return {p.parent.name for p in root.glob("coeflab/*/application.py")}
+
+
+def reached(file: Path) -> set[str]:
+    """Modules that a file imports, hidden in functions too."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {a.name for a in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module, *(f"{node.module}.{a.name}" for a in node.names)}
+    return found
+
+
+def need_applications(root: Path, names: set[str]) -> set[Path]:
+    """Test modules that import an application, themselves or through another module of the tests."""
+    imports = {p: reached(p) for p in root.glob("tests/**/*.py")}
+    dotted = {".".join(p.relative_to(root).with_suffix("").parts): p for p in imports}
+    theirs = tuple(f"coeflab.{name}" for name in names)
+    need = {p for p, found in imports.items() if any(f == t or f.startswith(f"{t}.") for f in found for t in theirs)}
+    while more := {p for p, found in imports.items() if p not in need and any(dotted.get(f) in need for f in found)}:
+        need |= more
+    return need
+
+
+def main() -> int:
+    """Copy, delete, run."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name in COPIED:
+            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+            copy(ROOT / name, root / name)  # type: ignore[operator]
+        names = applications(root)
+        for file in need_applications(root, names):
+            file.unlink()
+        for name in names:
+            shutil.rmtree(root / "coeflab" / name)
+        environment = os.environ | {"PYTHONPATH": folder}
+        tests = [f"tests/{name}" for name in TESTED]
+        for command in (
+            ["-m", "coeflab", "validate", "suboff", "--json"],
+            ["-m", "pytest", "-q", "-m", "not slow", "-p", "no:cacheprovider", *tests],
+        ):
+            code = subprocess.run([sys.executable, *command], cwd=root, env=environment, check=False).returncode
+            if code:
+                return code
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
