@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-COPIED = ("coeflab", "cfd_data", "geometry", "tests", "pyproject.toml")
+COPIED = ("coeflab", "cfd_data", "docs", "geometry", "reports", "tests", "pyproject.toml")
 TESTED = ("law", "fits", "formats", "motion", "vehicle")
 
 

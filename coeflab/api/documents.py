@@ -55,8 +55,8 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
     if isinstance(found, Plan):
         return run(found, progress)
     progress(f"computing {found}")
-    made = validation(found)
-    return run(made, progress) if isinstance(made, Plan) else made
+    result = validation(found)
+    return run(result, progress) if isinstance(result, Plan) else result
 
 
 @one_thread()
@@ -74,8 +74,8 @@ def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = Fa
     if isinstance(found, Study):
         if short:
             return Report(_one_page(study_summary(found)), found.failed)
-        made = content.document(found, full=full)
-        return Report(_commanded(made) if full else made, found.failed)
+        result = content.document(found, full=full)
+        return Report(_commanded(result) if full else result, found.failed)
     whole = acceptance_document.document(found, _inputs(found.name))
     if short:
         return Report(_one_page(acceptance_summary(found, whole)), not found.holds)
@@ -107,8 +107,8 @@ def _parted(whole: Document, found: Acceptance) -> Document:
             for s in section.subsections
         )
         long = f"Tables of more than {LONGEST} rows whose every number holds: coeflab report {found.name} --full."
-        said = (long,) if any(s.appendix for s in parts) else ()
-        return replace(section, paragraphs=(*section.paragraphs, *said), subsections=parts)
+        words = (long,) if any(s.appendix for s in parts) else ()
+        return replace(section, paragraphs=(*section.paragraphs, *words), subsections=parts)
 
     return replace(whole, sections=tuple(map(marked, whole.sections)))
 

@@ -56,5 +56,5 @@ def estimate(
         FRESH_WATER.density if density is None else si(density, "density", "density"),
         FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
     )  # fmt: skip
-    made = estimated(Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method), hull)
-    return Result(tuple(made.fits))
+    result = estimated(Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method), hull)
+    return Result(tuple(result.fits))

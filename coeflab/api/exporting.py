@@ -11,8 +11,8 @@ from coeflab.core.files import write_all
 from coeflab.formats import EXPORTERS
 from coeflab.formats.export import Export, Kind
 from coeflab.formats.exporting import export as rendered
+from coeflab.formats.lacking_law import without_law
 from coeflab.formats.loss_tables import in_short
-from coeflab.formats.unspoken import without_law
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Export", "ParameterFile", "export", "refusal", "require_targets", "without_law"]
@@ -60,12 +60,12 @@ def export(
     'remus100.coefficients.csv'
     """
     parameters = parameters_of(vehicle)
-    made = rendered(parameters, to, accelerations, accept_loss=accept_loss)
+    result = rendered(parameters, to, accelerations, accept_loss=accept_loss)
     if out is not None:
-        if not accept_loss and not made.lossless:
-            raise refusal(made, parameters, "accept_loss=True, to write the rest", place=f"{to}, ")
-        write_all(Path(out), made.files)
-    return made
+        if not accept_loss and not result.lossless:
+            raise refusal(result, parameters, "accept_loss=True, to write the rest", place=f"{to}, ")
+        write_all(Path(out), result.files)
+    return result
 
 
 def refusal(

@@ -22,8 +22,8 @@ from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
 from coeflab.tables.mapping import assigned
 from coeflab.tables.parts import Part, own, read_parts, require_parts, stated_together, with_shared_words
-from coeflab.tables.parts_together import complaints_of, form_together, is_pending, settled_together
 from coeflab.tables.settings import assumed
+from coeflab.tables.several_tables import complaints_of, form_together, is_pending, settled_together
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -146,12 +146,12 @@ def read_table(
     >>> len(drift), drift.varies, [float(x) for x in drift.reference_point]
     (9, ('v',), [-1.0, 0.0, 0.0])
     """
-    said = {
+    words = {
         k: v
         for k, v in locals().items()
         if k not in ("source", "columns", "name", "table", "importer", "options", "accept")
     }
-    found = tables_from(source, said, columns or {}, name, importer, options or {}, accept)
+    found = tables_from(source, words, columns or {}, name, importer, options or {}, accept)
     if table is not None:
         own_names = [t.name.rpartition("/")[2] for t in found]
         chosen = [t for t, n in zip(found, own_names, strict=True) if table in (n, Path(n).stem, t.name)]

@@ -229,12 +229,12 @@ class Result(Mapping[str, Coefficient]):
         import pandas as pd
 
         every, covariance = self._all(), self.covariance
-        kept = [i for i, c in enumerate(every) if c.value is not None and np.isfinite(covariance[i, i])]
+        selected = [i for i, c in enumerate(every) if c.value is not None and np.isfinite(covariance[i, i])]
         drawn = np.random.default_rng(seed).multivariate_normal(
-            [float(every[i].value or 0.0) for i in kept], covariance[np.ix_(kept, kept)], n, method="eigh"
+            [float(every[i].value or 0.0) for i in selected], covariance[np.ix_(selected, selected)], n, method="eigh"
         )
-        out = pd.DataFrame(drawn, columns=[self.symbols[i] for i in kept])
-        out.attrs["without_u95"] = [self.symbols[i] for i in range(len(every)) if i not in kept]
+        out = pd.DataFrame(drawn, columns=[self.symbols[i] for i in selected])
+        out.attrs["without_u95"] = [self.symbols[i] for i in range(len(every)) if i not in selected]
         return out
 
     def checks(self) -> tuple[Check, ...]:

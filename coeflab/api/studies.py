@@ -76,9 +76,9 @@ class Study(plain.Study):
         file = Path(path) / "report.html" if Path(path).is_dir() else Path(path)
         if file.suffix not in FORMATS:
             raise InputError(shown(file.name), f"a name that ends in {', '.join(FORMATS)}", column="path")
-        _, made, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short)
-        own = next(name for name in made if name.endswith(file.suffix))
-        write_all(file.parent, {file.name if name == own else name: content for name, content in made.items()})
+        _, result, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short)
+        own = next(name for name in result if name.endswith(file.suffix))
+        write_all(file.parent, {file.name if name == own else name: content for name, content in result.items()})
         return file
 
     def plot(self, symbol: str | None = None, ax: Axes | None = None) -> Axes:
@@ -124,14 +124,14 @@ def report_files(
     from coeflab.report.figures.files import styled
 
     with styled(style):
-        made = report_of(found, short=short, full=full or bool(sections))
-        document = only(made.document, sections)
+        result = report_of(found, short=short, full=full or bool(sections))
+        document = only(result.document, sections)
         files: dict[str, bytes] = {}
         for name in formats:
             files.update(written(document, [name]))
     if short:
         files = {name.replace("report", "summary", 1): content for name, content in files.items()}
-    return document, files, made.failed
+    return document, files, result.failed
 
 
 def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> plain.Study | Acceptance:

@@ -322,8 +322,8 @@ def vehicle(
         None if inertia is None else np.diag(np.asarray(inertia, dtype=float)),
     )
     called = stem(name or hull.name)
-    made = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
-    base = next(iter(made.parameter_files.values())).model_copy(update={"name": called})
+    result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
+    base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
     if coefficients is None:
         return Vehicle(base)
     other = _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)

@@ -113,7 +113,7 @@ def read_arm(path: Path, manoeuvre: str = PHASES, options: Mapping[str, Any] | N
         thrusters=thrusters,
         density=rho,
         gravity=file.arm.gravity,
-        statements=(*assumed, *(f"{key}: {said}" for key, said in file.basis.items())),
+        statements=(*assumed, *(f"{key}: {words}" for key, words in file.basis.items())),
         assumed=tuple(assumed),
         datum=-origin,
     )

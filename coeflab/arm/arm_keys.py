@@ -351,9 +351,9 @@ class ArmKeys(takes.Declaration):
     @property
     def turn(self) -> Array:
         """(3, 3) axes of frame 0 as columns, FRD."""
-        made = rotation(*self.mount)
-        near = np.round(made)
-        return near if np.max(np.abs(made - near)) < 1e-12 else made
+        result = rotation(*self.mount)
+        near = np.round(result)
+        return near if np.max(np.abs(result - near)) < 1e-12 else result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

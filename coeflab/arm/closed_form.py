@@ -116,25 +116,25 @@ class Derivation:
         inertia = of.square(f"I_{k}", body.inertia, "kg m^2", f"{name}, inertia about the centre of mass")
         added = None
         if np.any(body.added_mass):
-            water, said = (body.added_mass + body.added_mass.T) / 2.0, f"{name}, added mass"
+            water, words = (body.added_mass + body.added_mass.T) / 2.0, f"{name}, added mass"
             added = (
-                of.square(f"A_{k}_", water[:3, :3], "kg", said, "123"),
-                of.square(f"A_{k}_", water[:3, 3:], "kg m", said, "123", "456"),
-                of.square(f"A_{k}_", water[3:, 3:], "kg m^2", said, "456"),
+                of.square(f"A_{k}_", water[:3, :3], "kg", words, "123"),
+                of.square(f"A_{k}_", water[:3, 3:], "kg m", words, "123", "456"),
+                of.square(f"A_{k}_", water[3:, 3:], "kg m^2", words, "456"),
             )
         volume = of(f"V_{k}", body.volume, "m^3", f"{name}, displaced volume")
         lifted = of.vector(f"b_{k}", body.centre_of_buoyancy, f"{name}, centre of buoyancy")
         strips = []
         for i, strip in enumerate(link.strips if link else (), 1):
-            mark, said = f"{k}_{i}", f"{name}, strip {i}"
-            start = of.vector(f"r_{mark}", strip.start, f"{said}, start")
+            mark, words = f"{k}_{i}", f"{name}, strip {i}"
+            start = of.vector(f"r_{mark}", strip.start, f"{words}, start")
             whole = bool(np.any(np.abs(np.abs(strip.axis) - 1.0) < 1e-12))
             axis: Sequence[Any] = [number(float(np.round(v) if whole else v)) for v in strip.axis]
             if of.symbols and not whole:
-                axis = [of(f"u_{mark}{x}", float(v), "-", f"{said}, axis, {x}") for x, v in zip("xyz", strip.axis)]
-            length = of(f"l_{mark}", strip.length, "m", f"{said}, length")
-            width = of(f"D_{mark}", strip.diameter, "m", f"{said}, diameter")
-            drag = of(f"C_{mark}", strip.coefficient, "-", f"{said}, C_D")
+                axis = [of(f"u_{mark}{x}", float(v), "-", f"{words}, axis, {x}") for x, v in zip("xyz", strip.axis)]
+            length = of(f"l_{mark}", strip.length, "m", f"{words}, length")
+            width = of(f"D_{mark}", strip.diameter, "m", f"{words}, diameter")
+            drag = of(f"C_{mark}", strip.coefficient, "-", f"{words}, C_D")
             half = self.density * drag * width * length * sp.Float(0.5)
             strips.append((start, (axis[0], axis[1], axis[2]), length, half))
         out = composite.Body(mass, centre, inertia, added, self.density * volume, lifted, tuple(strips))
@@ -448,8 +448,8 @@ def link_motion(chain: Chain, link: int, *, symbols: bool = True) -> dict[str, s
         found = {key: step.inward(t, t.vector(vector)) for key, vector in found.items()}
         centre = plus(step.inward(t, t.vector(centre)), step.shift)
     outputs = {key: (sp.Matrix(list(vector)), "") for key, vector in {"p": centre, **found}.items()}
-    made = t.function("link_motion", "", ("q", "s"), outputs)
-    return {key: made.expanded(key) for key in outputs}
+    result = t.function("link_motion", "", ("q", "s"), outputs)
+    return {key: result.expanded(key) for key in outputs}
 
 
 Outputs = dict[str, tuple[sp.Matrix, str]]
@@ -494,10 +494,10 @@ def derive(chain: Chain, *, symbols: bool = False, say: Say = lambda _: None) ->
     if not chain.count:
         raise InputError("a vehicle without links", "one link or more", column="link")
     one = Derivation(chain, symbols)
-    made = []
-    for name, (said, arguments, quantity) in QUANTITIES.items():
+    result = []
+    for name, (words, arguments, quantity) in QUANTITIES.items():
         say(name.replace("_", " "))
-        made.append(one.tape.function(name, said, arguments, quantity(one)))
+        result.append(one.tape.function(name, words, arguments, quantity(one)))
     links = tuple((link.name, link.joint.kind) for link in chain.links)
     found = {p.symbol: p for p in one.of.found}
-    return ClosedForm(chain.name, links, tuple(made), tuple(found.values()))
+    return ClosedForm(chain.name, links, tuple(result), tuple(found.values()))

@@ -132,8 +132,8 @@ def poses_figure(motion: ArmMotion, anchor: str, title: str, caption: str) -> Fi
     room = (WIDTH - 4.0 * MARGIN) / len(rows)
     scale = float(min(room / np.ptp(flat[:, 0]), TALLEST / np.ptp(flat[:, 1])))
     height = scale * float(np.ptp(flat[:, 1])) + HEAD + 2.0 * MARGIN
-    said = ", ".join(f"{motion.time[row]:.3g} s" for row in rows)
-    description = f"Vehicle and arm at {said}; a line shows the path of the end effector."
+    words = ", ".join(f"{motion.time[row]:.3g} s" for row in rows)
+    description = f"Vehicle and arm at {words}; a line shows the path of the end effector."
     with settings():
         figure, axes = _paper(height)
         for k, (row, shape) in enumerate(zip(rows, shapes, strict=True)):
@@ -352,12 +352,12 @@ def station_figure(runs: Sequence[tuple[str, ControlledRun]], anchor: str, title
     )
     plots = [
         Plot(
-            name, "time  [s]", tuple(Trace(said, r.time, value(r), i % len(STYLES)) for i, (said, r) in enumerate(runs)), 84.0,
+            name, "time  [s]", tuple(Trace(words, r.time, value(r), i % len(STYLES)) for i, (words, r) in enumerate(runs)), 84.0,
             is_scaled=k == len(rows) - 1,
         )
         for k, (name, value) in enumerate(rows)
     ]  # fmt: skip
-    description = f"Three panels over time for {', '.join(said for said, _ in runs)}."
+    description = f"Three panels over time for {', '.join(words for words, _ in runs)}."
     return laws_figure(anchor, title, caption, description, plots)
 
 
@@ -365,8 +365,8 @@ def thrust_figure(run: ControlledRun, anchor: str, title: str, caption: str) -> 
     """Thrusts given, and those asked for as dots: the first half of the thrusters above the others."""
     names = [one.name for one in run.chain.thrusters]
     plots = _thrust_plots(names, run.time, run.thrust, run.ordered)
-    said = f"Thrusts of {len(names)} thrusters over time: {', '.join(names).replace('_', ' ')}."
-    return laws_figure(anchor, title, caption, said, plots)
+    words = f"Thrusts of {len(names)} thrusters over time: {', '.join(names).replace('_', ' ')}."
+    return laws_figure(anchor, title, caption, words, plots)
 
 
 def _thrust_plots(names: Sequence[str], time: Array, thrust: Array, ordered: Array) -> list[Plot]:
@@ -396,8 +396,8 @@ def path_figure(found: Array, asked: Array | None, anchor: str, title: str, capt
             there = np.flatnonzero(np.isfinite(asked[:, k]))[::6]
             traces.append(Trace("asked for", asked[there, across], asked[there, k], -1, "filled"))
         plots.append(Plot(f"{names[k]}  [m]", f"{names[across]}  [m]", tuple(traces), is_scaled=k == 2))
-    said = f"The path of the end effector: {names[others[0]]} and {names[others[1]]} over {names[across]}."
-    return laws_figure(anchor, title, caption, said, plots)
+    words = f"The path of the end effector: {names[others[0]]} and {names[others[1]]} over {names[across]}."
+    return laws_figure(anchor, title, caption, words, plots)
 
 
 def simulated(chain: Chain, hull: Array, trajectory: Trajectory) -> ArmMotion:
@@ -415,17 +415,17 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
     """
     joints, t = motion.chain.joints, motion.time
     columns = trajectory.controls
-    kept = "end.north.wanted [m]" in columns
-    dots = ", with dots where the controller asks for them" if kept else ""
+    selected = "end.north.wanted [m]" in columns
+    dots = ", with dots where the controller asks for them" if selected else ""
 
     def stacked(names: Sequence[str]) -> Array:
         return np.column_stack([columns[name] for name in names])
 
     named = [f"{j.name}{{}} [{'rad' if j.turns else 'm'}]" for j in joints]
     efforts = stacked([EFFORT[j.turns].format(j.name) for j in joints])
-    asked = stacked([name.format(".wanted") for name in named]) if kept else None
+    asked = stacked([name.format(".wanted") for name in named]) if selected else None
     plots = joint_plots(joints, t, stacked([name.format("") for name in named]), efforts, asked)
-    to = stacked([f"end.{axis}.wanted [m]" for axis in ("north", "east", "down")]) if kept else None
+    to = stacked([f"end.{axis}.wanted [m]" for axis in ("north", "east", "down")]) if selected else None
     figures = [
         poses_figure(
             motion,
@@ -433,7 +433,7 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
             "Poses, and the path of the end effector",
             "At the beginning, halfway in time and at the end.",
         ),
-        _vehicle_figure(trajectory, kept),
+        _vehicle_figure(trajectory, selected),
         laws_figure(
             "arm-joints",
             "Joints",
@@ -446,12 +446,12 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
     names = [one.name for one in motion.chain.thrusters]
     thrust = stacked([f"{name} [N]" for name in names]) if names else np.zeros((len(t), 0))
     if np.any(thrust != 0.0):
-        wanted = stacked([f"{name}.wanted [N]" for name in names]) if kept else np.full(thrust.shape, np.nan)
+        wanted = stacked([f"{name}.wanted [N]" for name in names]) if selected else np.full(thrust.shape, np.nan)
         pushed = _thrust_plots(names, t, thrust, wanted)
         density = motion.chain.density
         most = np.array([most_thrust(one, gain_of(one, density), density) for one in motion.chain.thrusters])
         caption = f"Thrusts over time{dots}."
-        if kept and np.isfinite(most).all():
+        if selected and np.isfinite(most).all():
             share = Trace("largest of all", t, np.max(100.0 * np.abs(wanted) / most, axis=1), 0)
             pushed[-1] = replace(pushed[-1], is_scaled=False)
             pushed.append(Plot("asked for  [% of largest]", "time  [s]", (share,), 84.0))

@@ -102,7 +102,7 @@ def _folded(text: str, before: str, behind: str = "") -> list[str]:
 def _head(form: ClosedForm, origin: Origin) -> list[str]:
     """What stands above every file."""
     joints = ", ".join(f"{name} ({'rad' if kind == 'revolute' else 'm'})" for name, kind in form.links)
-    said = [
+    words = [
         f"Equations of motion of {form.name}, a vehicle with an arm of {len(form.links)} link{'s' * (len(form.links) > 1)}, by Kane's method.",
         f"Written by coeflab {VERSION} with sympy {sp.__version__} from {origin.file}, sha256 {origin.sha256}.",
         *FRAMES,
@@ -112,7 +112,7 @@ def _head(form: ClosedForm, origin: Origin) -> list[str]:
         *([STAY] if form.parameters else []),
         *origin.statements,
     ]
-    return [one_line(line) for line in said]
+    return [one_line(line) for line in words]
 
 
 def _comment(lines: Sequence[str], mark: str) -> list[str]:
@@ -157,8 +157,8 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             ),
             "typedef struct {",
         ]
-        said = [one_line(p.said).replace("*/", "* /") for p in form.parameters]
-        header += [f"    double {p.symbol.name}; /* {s}, {p.unit} */" for p, s in zip(form.parameters, said)]
+        words = [one_line(p.said).replace("*/", "* /") for p in form.parameters]
+        header += [f"    double {p.symbol.name}; /* {s}, {p.unit} */" for p, s in zip(form.parameters, words)]
         header += [f"}} {name}_parameters;", f"extern const {name}_parameters {name}_of_file;", ""]
         source += [f"const {name}_parameters {name}_of_file = {{"]
         source += [f"    {p.value!r}, /* {p.symbol.name} */" for p in form.parameters] + ["};", ""]

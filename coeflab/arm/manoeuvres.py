@@ -123,7 +123,7 @@ def ordered(name: str, file: File, chain: Chain, options: Mapping[str, Any]) -> 
         phases = [(Phase("free motion", {HELD: 0.0}, o.lasts), "")]
     else:
         ways = _ways(name, o, file, chain)
-        phases = [(Phase(said, {KEPT: 1.0, **orders}, o.lasts), place) for said, orders, place in ways]
+        phases = [(Phase(words, {KEPT: 1.0, **orders}, o.lasts), place) for words, orders, place in ways]
         if o.stays or not phases:
             phases.append((Phase("stays", {KEPT: 1.0}, o.stays or o.lasts), ""))
     rates, velocity = file.rates(), np.array(file.start.velocity)
@@ -133,8 +133,8 @@ def ordered(name: str, file: File, chain: Chain, options: Mapping[str, Any]) -> 
         velocity = np.array(_listed("velocity", o.velocity, ["speed"] * 3 + ["rate"] * 3))
     started = {f"{j.name}.rate": value for j, value in zip(chain.joints, rates, strict=False)}
     written = "arm_motion" if name == PHASES else name
-    made = Manoeuvre(written, tuple(phase for phase, _ in phases), velocity, orders=started)
-    return made, tuple(place for _, place in phases)
+    result = Manoeuvre(written, tuple(phase for phase, _ in phases), velocity, orders=started)
+    return result, tuple(place for _, place in phases)
 
 
 def _options(name: str, given: Mapping[str, Any]) -> Any:

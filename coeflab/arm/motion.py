@@ -321,8 +321,8 @@ def _at_a_limit(chain: Chain, inside: Callable[[float], Array], begins: float, e
             if sign * (before[7 + k] - limit) < 0.0:
                 time = float(brentq(_beyond, begins, ends, (inside, 7 + k, limit), xtol=1e-12))
             if first is None or time < first[0]:
-                said = f"{np.degrees(limit):.4g} deg" if joint.turns else f"{limit:.4g} m"
-                first = time, f"joint {joint.name} is at its limit of {said}"
+                words = f"{np.degrees(limit):.4g} deg" if joint.turns else f"{limit:.4g} m"
+                first = time, f"joint {joint.name} is at its limit of {words}"
     return first
 
 

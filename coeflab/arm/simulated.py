@@ -70,8 +70,8 @@ def pictures(body: Path, chain: Chain, name: str, moved: Trajectory) -> dict[str
     """Joints, torques, thrusts and the path of the end effector as a drawing, and a page that plays the motion."""
     motion = simulated(chain, hull_of(read(body / "body.toml" if body.is_dir() else body)), moved)
     what = "motion" if name == "arm_motion" else name.replace("_", " ")
-    said = f"{what.capitalize()} of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
+    words = f"{what.capitalize()} of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
     return {
         f"{name}.svg": simulated_sheet(motion, moved),
-        f"{name}.html": animation(motion, f"{what.capitalize()} of {chain.name}", said),
+        f"{name}.html": animation(motion, f"{what.capitalize()} of {chain.name}", words),
     }

@@ -188,10 +188,12 @@ class Tape:
     def strip(self, start: Vector, more: Vector) -> tuple[Vector, Vector]:
         """Integrals over t from 0 to 1 of |u| u and of t |u| u, u = start + t more."""
         k = len(self.lines)
-        made = tuple(sp.Symbol(f"strip{k}_{i}") for i in range(6))
-        self.lines.append(Line(made, (*start, *more), self.stage))
+        result = tuple(sp.Symbol(f"strip{k}_{i}") for i in range(6))
+        self.lines.append(Line(result, (*start, *more), self.stage))
         still = [a == 0 and b == 0 for a, b in zip(start, more, strict=True)]
-        first, second = ([sp.S.Zero if s else e for s, e in zip(still, m, strict=True)] for m in (made[:3], made[3:]))
+        first, second = (
+            [sp.S.Zero if s else e for s, e in zip(still, m, strict=True)] for m in (result[:3], result[3:])
+        )
         return (first[0], first[1], first[2]), (second[0], second[1], second[2])
 
     def function(
@@ -217,7 +219,7 @@ class Tape:
                     count(e)
         put: dict[Any, Any] = {}
         seen: dict[Any, Any] = {}
-        kept: list[Line] = []
+        selected: list[Line] = []
         strips = many = 0
         for line in reversed(needed):
             of = tuple(e.xreplace(put) if e.args or e.is_Symbol else e for e in line.of)
@@ -233,9 +235,9 @@ class Tape:
                 names = (sp.Symbol(f"x{many}") if own.name.startswith("x") else own,)
                 seen[of[0]] = names[0]
             put.update(zip(line.names, names, strict=True))
-            kept.append(Line(names, of, line.stage))
+            selected.append(Line(names, of, line.stage))
         final = {key: (matrix.xreplace(put), what) for key, (matrix, what) in outputs.items()}
-        return Function(name, said, arguments, tuple(kept), final)
+        return Function(name, said, arguments, tuple(selected), final)
 
 
 def cross(a: Sequence[Any], b: Sequence[Any]) -> Vector:

@@ -218,8 +218,8 @@ def lost_directions(matrix: Array) -> tuple[str, ...]:
     # Reduced to echelon form, so that a direction that is lost by itself stands by itself.
     rows = _echelon(lost.T)
     for row in rows:
-        kept = [k for k in range(6) if abs(row[k]) > 1e-6]
-        out.append(DIRECTIONS[kept[0]] if len(kept) == 1 else _together(row, kept))
+        selected = [k for k in range(6) if abs(row[k]) > 1e-6]
+        out.append(DIRECTIONS[selected[0]] if len(selected) == 1 else _together(row, selected))
     return tuple(out)
 
 
@@ -230,9 +230,9 @@ def _together(row: Array, kept: Sequence[int]) -> str:
     for k in others:
         unit = " m" if k < 3 <= last else ""  # no moment stands before a force
         terms.append(f"{-row[k] / row[last]:+.3g}{unit} {LETTERS[k]}")
-    said = " ".join(terms).removeprefix("+")
+    words = " ".join(terms).removeprefix("+")
     first, *rest = (DIRECTIONS[k] for k in kept)
-    return f"{first} apart from {' and '.join(rest)} ({LETTERS[last]} = {said})"
+    return f"{first} apart from {' and '.join(rest)} ({LETTERS[last]} = {words})"
 
 
 def _echelon(rows: Array) -> Array:

@@ -239,8 +239,8 @@ def _original(body: Body) -> Body | None:
     """The mesh for which the parts of a body stand, as a body with the same names, datum and reference point."""
     if body.mesh is None:
         return None
-    surface, said = body.mesh.read()
-    return replace(body, shape=surface, mesh=None, configurations=(computed(surface, said), *body.configurations[1:]))
+    surface, words = body.mesh.read()
+    return replace(body, shape=surface, mesh=None, configurations=(computed(surface, words), *body.configurations[1:]))
 
 
 def _file(body: Body) -> str:
@@ -249,5 +249,5 @@ def _file(body: Body) -> str:
 
 def _stood_in(found: AddedMass, shape: Parts) -> AddedMass:
     """What was computed of parts that stand for a mesh: as rough as they are."""
-    said = "parts stand for a mesh" + (f", a rough guide to it: {'; '.join(shape.rough)}" if shape.rough else "")
-    return replace(found, statements=(*found.statements, said), rough=found.rough or bool(shape.rough))
+    words = "parts stand for a mesh" + (f", a rough guide to it: {'; '.join(shape.rough)}" if shape.rough else "")
+    return replace(found, statements=(*found.statements, words), rough=found.rough or bool(shape.rough))

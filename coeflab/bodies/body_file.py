@@ -391,7 +391,7 @@ class ShapedBodyFile(BodyFile):
             raise toml.fail("mass", "masses of a body that displaces nothing", "a shape with a volume")
         try:
             water = self.water or WaterKeys()
-            made = modelled(self.mass, pieces, water.density, computed.volume, computed.centre_of_buoyancy)
-            return replace(made, assumed=self.water is None)
+            result = modelled(self.mass, pieces, water.density, computed.volume, computed.centre_of_buoyancy)
+            return replace(result, assumed=self.water is None)
         except InputError as why:
             raise toml.fail(why.column or "mass", why.found, why.expected, why.advice) from None

@@ -108,8 +108,8 @@ def _wall(x: float, polygon: Polygon) -> tuple[Wall | None, Polygon]:
     if radius - reach > WALL * radius:
         return None, polygon
     inner = CrossSection.circle((1.0 - FACETS) * reach, ROUND).translate((float(centre[0]), float(centre[1])))
-    kept = [p for p in (polygon ^ inner).decompose() if p.area() > SPECK * disc]
-    return Wall(x, centre, (radius + reach) / 2.0, radius - reach), CrossSection.compose(kept)
+    selected = [p for p in (polygon ^ inner).decompose() if p.area() > SPECK * disc]
+    return Wall(x, centre, (radius + reach) / 2.0, radius - reach), CrossSection.compose(selected)
 
 
 def _area(ring: Array) -> float:

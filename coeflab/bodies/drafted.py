@@ -117,8 +117,8 @@ def is_untouched(text: str) -> bool:
 
 def _stated(axes: Axes) -> str:
     """As TOML has them."""
-    said = axes.declared
-    return quoted(said) if isinstance(said, str) else f"[{', '.join(map(quoted, said))}]"
+    words = axes.declared
+    return quoted(words) if isinstance(words, str) else f"[{', '.join(map(quoted, words))}]"
 
 
 def _digest(text: str) -> str:

@@ -239,14 +239,14 @@ class MassModel:
         share = self.mass / displaced - 1.0
         does = "neutral" if abs(share) < EVEN else f"{'sinks' if share > 0.0 else 'floats'}, {share:+.2%}"
         assumed = ", assumed: no [water] density in its body.toml" if self.assumed else ""
-        said = [
+        phrases = [
             f"displaces {displaced:.5g} kg of water of {self.density:g} kg/m^3{assumed}: {does}",
             f"BG = [{', '.join(map(_place, self.bg))}] m",
             "inertia about G: "
             + ", ".join(f"{n} {v:.4g}" for n, v in zip(("Ix", "Iy", "Iz"), np.diag(self.inertia), strict=True))
             + " kg m^2",
         ]
-        return (*said, rest_words(self.trim, self.bg))
+        return (*phrases, rest_words(self.trim, self.bg))
 
     def as_json(self) -> dict[str, Any]:
         """For machines: SI, FRD, from the datum; absent values are null."""
@@ -409,8 +409,8 @@ class MassKeys(takes.Declaration):
             centre = np.zeros(3) if self.centre is None else self.centre
             volume, second = 0.0, np.zeros((3, 3))
             if self.form != "point":
-                made = {"box": Box, "cylinder": Cylinder}.get(self.form)
-                form = Ellipsoid(*self.sizes * 3) if made is None else made(*self.sizes)
+                result = {"box": Box, "cylinder": Cylinder}.get(self.form)
+                form = Ellipsoid(*self.sizes * 3) if result is None else result(*self.sizes)
                 turn = rotation(*self.rotation)
                 volume, second = form.volume, form.volume * turn @ np.diag(form.spread) @ turn.T
         mass = self.mass if self.mass is not None else 0.0 if self.ballast else (density or 0.0) * volume
@@ -519,9 +519,9 @@ def _weighed(part: MassPart, mass: float, keys: MassKeys) -> MassPart:
     """Ballast with its mass, spread evenly over its form."""
     inertia = np.zeros((3, 3))
     if part.volume:
-        made: Callable[..., Any] = {"box": Box, "cylinder": Cylinder}.get(keys.form, lambda r: Ellipsoid(r, r, r))
+        result: Callable[..., Any] = {"box": Box, "cylinder": Cylinder}.get(keys.form, lambda r: Ellipsoid(r, r, r))
         turn = rotation(*keys.rotation)
-        own = mass * turn @ np.diag(made(*keys.sizes).spread) @ turn.T
+        own = mass * turn @ np.diag(result(*keys.sizes).spread) @ turn.T
         inertia = np.trace(own) * np.eye(3) - own
     return MassPart(part.name, part.made_of, mass, part.centre, inertia, part.volume, part.u95)
 

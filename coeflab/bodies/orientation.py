@@ -51,10 +51,10 @@ def doubt(body: Body) -> Finding | None:
     outline = body.outline
     hulls = outline is not None and bool(outline.hulls)
     if spread[widest] > (FAR_LONGER if hulls else LONGER) * spread[0]:
-        turn, told = _laid_along(shape, widest)
+        turn, phrases = _laid_along(shape, widest)
         ratio = float(spread[widest] / spread[0])
         return _finding(
-            "orientation.across", body, axes, turn, ratio, LONGER, either=not told, along=DIRECTIONS[widest]
+            "orientation.across", body, axes, turn, ratio, LONGER, either=not phrases, along=DIRECTIONS[widest]
         )
     if outline is None:
         return None

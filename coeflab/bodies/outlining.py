@@ -158,17 +158,17 @@ def with_controls(foils: Iterable[Foil], controls: Iterable[Control]) -> tuple[t
         Named as the pieces that they are, or as these followed by ``_image``.
     controls : iterable of Control
     """
-    made: list[Foil] = []
+    result: list[Foil] = []
     left: list[str] = []
     known = tuple(controls)
     for foil in foils:
         own = [c for c in known if foil.name.removesuffix("_image") in c.parts]
         way = (foil.tip - foil.root)[1:] / foil.span
-        made.append(replace(foil, control=own[0].name, sign=float(own[0].axis[1:] @ way)) if own else foil)
+        result.append(replace(foil, control=own[0].name, sign=float(own[0].axis[1:] @ way)) if own else foil)
         left += [f"{foil.name} turns by {other.name} too, and counts with {own[0].name} alone" for other in own[1:]]
-    named = {foil.name.removesuffix("_image") for foil in made}
+    named = {foil.name.removesuffix("_image") for foil in result}
     left += [f"{part}, which {c.name} turns, is no foil" for c in known for part in c.parts if part not in named]
-    return tuple(made), tuple(left)
+    return tuple(result), tuple(left)
 
 
 def with_propellers(outline: Outline, thrusters: Iterable[Thruster]) -> Outline:
@@ -179,7 +179,7 @@ def with_propellers(outline: Outline, thrusters: Iterable[Thruster]) -> Outline:
     outline : Outline
     thrusters : iterable of Thruster
     """
-    made: list[Propeller] = []
+    result: list[Propeller] = []
     left: list[str] = []
     for one in thrusters if outline.hulls else ():
         if abs(one.axis[0]) < ALONG:
@@ -190,10 +190,12 @@ def with_propellers(outline: Outline, thrusters: Iterable[Thruster]) -> Outline:
         elif any(_within(ring, one.place) for ring in outline.rings):
             left.append(f"{one.name}: force across of its propeller, which turns in a duct")
         else:
-            made.append(
+            result.append(
                 Propeller(one.name, one.place, screw.diameter, screw.blades, screw.pitch_ratio, screw.area_ratio)
             )
-    return replace(outline, propellers=tuple(made), left_out=(*outline.left_out, *left)) if made or left else outline
+    return (
+        replace(outline, propellers=tuple(result), left_out=(*outline.left_out, *left)) if result or left else outline
+    )
 
 
 def _within(ring: RingWing, place: Array) -> bool:
@@ -468,9 +470,9 @@ def fins_along(outline: Outline) -> FinsAlong | None:
             groups[-1].append(x)
         else:
             groups.append([x])
-    said = []
+    words = []
     for g in groups:
         x = sum(g) / len(g)
         many = f"{len(g)} fins" if len(g) > 1 else "1 fin"
-        said.append(f"{many} at x = {x:.3g} m, {100.0 * (bow - x) / (bow - stern):.0f} % of the length from the bow")
-    return FinsAlong("; ".join(said), min(at) > (bow + stern) / 2.0)
+        words.append(f"{many} at x = {x:.3g} m, {100.0 * (bow - x) / (bow - stern):.0f} % of the length from the bow")
+    return FinsAlong("; ".join(words), min(at) > (bow + stern) / 2.0)

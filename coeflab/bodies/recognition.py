@@ -127,11 +127,11 @@ def _words(way: Array) -> str:
     tall, wide = abs(way[1]) > 0.38, abs(way[0]) > 0.38  # sine of 22.5 deg
     return "_".join(
         word
-        for word, said in (
+        for word, words in (
             (("upper", "lower")[int(way[1] > 0.0)], tall),
             (("port", "starboard")[int(way[0] > 0.0)], wide),
         )
-        if said
+        if words
     )
 
 
@@ -462,11 +462,11 @@ def _appendages(
                 if not of_hull or bit.inscribed < 0.5 * min(n.inscribed for n in of_hull):
                     fine.rest[step].append(bit)
                     bit.core = False
-        kept = [[bit for bit in here if bit.core] for here in fine.cores]
-        cores = [bit for here in kept for bit in here]
+        selected = [[bit for bit in here if bit.core] for here in fine.cores]
+        cores = [bit for here in selected for bit in here]
         found_here = [merged(c) for c in clusters_of(fine.rest)]
         for cluster in _put_together(
-            [c for c in found_here if len(c) >= FEWEST and _counts(c, tracks, kept)], tracks, hulls
+            [c for c in found_here if len(c) >= FEWEST and _counts(c, tracks, selected)], tracks, hulls
         ):
             if _joins(cluster, tracks):
                 y, z = (round(float(c), 9) + 0.0 for c in centre_of(cluster[len(cluster) // 2].polygon))

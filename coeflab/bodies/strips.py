@@ -513,8 +513,8 @@ def _definite(matrices: Array, points: Array) -> Array:
     unit = np.ones((len(size), 3))
     unit[:, 2] = size
     values, ways = np.linalg.eigh(matrices / (unit[:, :, None] * unit[:, None, :]))
-    kept = np.einsum("sij,sj,skj->sik", ways, np.maximum(values, 0.0), ways)
-    return np.asarray(kept * unit[:, :, None] * unit[:, None, :])
+    selected = np.einsum("sij,sj,skj->sik", ways, np.maximum(values, 0.0), ways)
+    return np.asarray(selected * unit[:, :, None] * unit[:, None, :])
 
 
 def _summed(x: Array, weight: Array, matrices: Array) -> Array:

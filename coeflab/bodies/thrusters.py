@@ -81,10 +81,10 @@ def bollard_squares(
     [0.0, 15.0]
     """
     back = ahead if astern is None else astern
-    made = [Squares(-rate, -dead_zone, -back / rate**2)] if back > 0.0 else []
-    if not made and dead_zone > 0.0:
-        made = [Squares(0.0, dead_zone, 0.0)]  # a curve holds the end of its first segment below it
-    return (*made, Squares(dead_zone, rate, ahead / rate**2))
+    result = [Squares(-rate, -dead_zone, -back / rate**2)] if back > 0.0 else []
+    if not result and dead_zone > 0.0:
+        result = [Squares(0.0, dead_zone, 0.0)]  # a curve holds the end of its first segment below it
+    return (*result, Squares(dead_zone, rate, ahead / rate**2))
 
 
 @brief
@@ -155,10 +155,10 @@ class Thruster:
         if s is None or s.highest_rpm is None:
             raise InputError(f"{self.name} without a curve", "a curve, or a propeller with highest_rpm", column="curve")
         inflow = ahead * float(self.axis[0])
-        made = thrust_over_speed(
+        result = thrust_over_speed(
             s.diameter, s.pitch_ratio, s.area_ratio, s.blades, s.highest_rpm / 60.0, inflow, density
         )
-        return np.asarray(made * np.array([60.0, 1.0]))
+        return np.asarray(result * np.array([60.0, 1.0]))
 
 
 CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")

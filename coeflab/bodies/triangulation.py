@@ -172,8 +172,8 @@ class Triangulation:
         noise = self.vanishing()[0] & (np.abs(found.matrix) < NOISE * np.sqrt(np.outer(diagonal, diagonal)))
         if not np.any(found.matrix[noise]):
             return found
-        said = f"entries up to {NOISE:.1%} that symmetry makes vanish were left by the mesh and are set to zero"
-        return replace(found, matrix=np.where(noise, 0.0, found.matrix), statements=(*found.statements, said))
+        words = f"entries up to {NOISE:.1%} that symmetry makes vanish were left by the mesh and are set to zero"
+        return replace(found, matrix=np.where(noise, 0.0, found.matrix), statements=(*found.statements, words))
 
     @property
     def caution(self) -> str:

@@ -67,11 +67,11 @@ def open_water(advance: Array, pitch: float, area: float, blades: int) -> tuple[
         if not low <= value <= high:
             raise InputError(f"{name} = {value:g}", f"{low:g} to {high:g}, as the series has it")
     j = np.asarray(advance, dtype=float)[:, None]
-    made = []
+    result = []
     for terms in (THRUST, TORQUE):
         c, s, t, u, v = terms.T
-        made.append(np.asarray(np.sum(c * j**s * pitch**t * area**u * float(blades) ** v, axis=1)))
-    return made[0], made[1]
+        result.append(np.asarray(np.sum(c * j**s * pitch**t * area**u * float(blades) ** v, axis=1)))
+    return result[0], result[1]
 
 
 def thrust_over_speed(

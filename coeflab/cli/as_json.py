@@ -78,8 +78,8 @@ def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, An
                 for x, after in next_tables.next_runs(s, sweep, count)
             ]
             if runs:
-                said = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}
-                out.append(said | {"u95_now": sweep.u95, "runs": runs})
+                words = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}
+                out.append(words | {"u95_now": sweep.u95, "runs": runs})
     return out
 
 
@@ -318,7 +318,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
         },
         "checks": [finding(c) for c in s.checks],
-        "exports": [export(made) for made in s.exports],
+        "exports": [export(result) for result in s.exports],
         "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
         "files": files,
     }

@@ -123,8 +123,8 @@ def _comparable(table: Table, differ: Sequence[bool]) -> Table:
     for row in table.rows:
         if row not in rows:
             equal = row[column] == Verdict.EQUAL.value
-            said = f"{row[column].capitalize()}{';' if equal else ','} {row[-1]}".rstrip(",; ")
-            reasons.setdefault(said, []).append(row[0])
+            words = f"{row[column].capitalize()}{';' if equal else ','} {row[-1]}".rstrip(",; ")
+            reasons.setdefault(words, []).append(row[0])
     if not rows:
         for line in (table.title, *(f"  {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes):
             show.sentence(line)
@@ -149,7 +149,7 @@ def _print(found: Comparison) -> None:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
         if verdicts:
-            said = [
+            words = [
                 v for v in Verdict if v in verdicts or v not in (Verdict.EQUAL, Verdict.OTHER_SIGN, Verdict.OTHER_SIZE)
             ]
-            show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in said) + ".")
+            show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in words) + ".")

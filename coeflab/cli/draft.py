@@ -20,19 +20,19 @@ from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.form import Line, Typed, of_campaign, open_lines, screen, typed
 from coeflab.tables.imported import Filled
+from coeflab.tables.interpretation import Interpretation, accepted_without_source
 from coeflab.tables.mapping import assigned
 from coeflab.tables.parts import JOIN, Part, alike, own, read_parts, require_parts, stated_together, with_shared_words
-from coeflab.tables.parts_together import (
+from coeflab.tables.settings import Setting, read_in, require_one_datum, saved_mapping
+from coeflab.tables.settings_in_files import doubtful_setting
+from coeflab.tables.several_tables import (
     columns_by_name,
     complaints_of,
     form_together,
+    interpreted_together,
     is_pending,
     settled_together,
-    understood_together,
 )
-from coeflab.tables.settings import Setting, read_in, require_one_datum, saved_mapping
-from coeflab.tables.stated_settings import doubtful_setting
-from coeflab.tables.understood import Understood, accepted_without_source
 from coeflab.tables.words.points import POINT_OF
 
 
@@ -59,7 +59,7 @@ class Draft:
     left: tuple[str, ...] = ()
     numbers: dict[str, int] = field(default_factory=dict)
     parts: tuple[Part, ...] = ()
-    founds: tuple[Understood, ...] = ()
+    founds: tuple[Interpretation, ...] = ()
     settings: dict[str, Setting] = field(default_factory=dict)
 
     @property
@@ -88,7 +88,7 @@ class Draft:
 
     def understand(self) -> None:
         """What follows from what is said so far; `founds` is of it."""
-        self.founds = understood_together(self.parts, self.said.columns, self.settings)
+        self.founds = interpreted_together(self.parts, self.said.columns, self.settings)
 
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
@@ -139,12 +139,12 @@ class Draft:
                     if not open_lines(self.lines()):
                         return
                 else:
-                    said = typed(answer, lines, columns_by_name(self.parts), [one.key for one in self.chosen])
-                    for one in said.explain:
+                    given = typed(answer, lines, columns_by_name(self.parts), [one.key for one in self.chosen])
+                    for one in given.explain:
                         show.sentence(f"  {one.key}: {one.about}")
-                    if not (said.columns or said.settings or said.options):
+                    if not (given.columns or given.settings or given.options):
                         continue
-                    self.take(said)
+                    self.take(given)
             except InputError as wrong:
                 for complaint in wrong.lines:
                     show.error(f"  {complaint}")
@@ -174,7 +174,7 @@ class Draft:
         if POINT_OF not in said.settings:
             require_one_datum(self.settings, {k: one.value for k, one in said.settings.items()})
         columns, settings = self.said.columns | said.columns, self.said.settings | said.settings
-        founds = understood_together(self.parts, columns, self.settings | said.settings)
+        founds = interpreted_together(self.parts, columns, self.settings | said.settings)
         if complaints := complaints_of(founds):
             raise together(complaints)
         self.said.columns, self.said.settings, self.founds = columns, settings, founds
@@ -212,9 +212,9 @@ class Draft:
             show.sentence(FOLLOWS)
         if inertia := [one.key for one in missing if one.key.endswith("table.contains_inertia")]:
             inside = {**self.settings, **dict.fromkeys(inertia, Setting(True, ""))}
-            asked = [q for f in understood_together(self.parts, self.said.columns, inside) for q in f.questions]
+            asked = [q for f in interpreted_together(self.parts, self.said.columns, inside) for q in f.questions]
             more = {q.key: q.default or "..." for q in asked if q.key.startswith("inertia.")}
-            show.sentence("# if true: add " + " ".join(f"--set {key}={said}" for key, said in more.items()))
+            show.sentence("# if true: add " + " ".join(f"--set {key}={phrases}" for key, phrases in more.items()))
         show.command_line(
             "coeflab import", " ".join([*words, *(one.argument for one in missing), "--accept"]), separator=" "
         )
@@ -257,12 +257,12 @@ class Draft:
         return beyond_ends(str(datum.value), quantity(point.value[0], "length"), size)
 
 
-def described(part: Part, found: Understood, *, whole: bool = True) -> None:
+def described(part: Part, found: Interpretation, *, whole: bool = True) -> None:
     """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not."""
     raw = part.raw
-    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
+    words = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     name = f"{part.name}: " * bool(part.name)
-    show.sentence(f"{name}{raw.path}: read by {part.importer}" + (f"; {said}" if said else ""))
+    show.sentence(f"{name}{raw.path}: read by {part.importer}" + (f"; {words}" if words else ""))
     if runs := runs_shown(raw, MOST if whole else FEW):
         show.table(runs)
     if whole:
@@ -299,15 +299,15 @@ def said_on_command_line(mapping: Path | None, set_: Sequence[str], option: Sequ
     out.importer = as_ or out.importer
     complaints: list[InputError] = []
     for text in set_:
-        key, equals, said = text.partition("=")
-        if equals and "?" in said:
+        key, equals, words = text.partition("=")
+        if equals and "?" in words:
             out.left.append(key.strip())
             continue
         if not equals:
             complaints.append(InputError(shown(text), "KEY=VALUE, such as axes.frame=CFD", column="--set"))
             continue
         try:
-            read = read_in(key.strip(), said.strip())
+            read = read_in(key.strip(), words.strip())
             require_one_datum(out.settings, read)
             out.settings |= {k: Setting(v, "confirmed") for k, v in read.items()}
         except InputError as why:
@@ -327,7 +327,7 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
     if wrong:
         raise together([InputError(shown(t), "NAME=VALUE, such as sheet=Drift", column="--option") for t in wrong])
     pairs = (text.partition("=") for text in texts)
-    return {key.strip(): _number(said.strip()) for key, _, said in pairs}
+    return {key.strip(): _number(words.strip()) for key, _, words in pairs}
 
 
 def of_runs(name: Sequence[str], runs: Path | None, state: Path | None = None) -> list[str]:

@@ -63,24 +63,24 @@ def command(
     parameters = vehicle.file
     if not json:
         show.not_used(parameters)
-    made, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
+    result, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = vehicle.checks()
     if not json:
         show.file_findings(parameters.name, found)
     gone = {target for target, _ in refused}
-    kept = [one for one in made if one.target not in gone]
-    files = _placed(kept, file, out, len(targets) > 1)
-    if len(targets) == 1 or not kept:
-        if refused and json and made:
-            show.json_object({"files": [], **export_json(made[0]), "findings": findings_json(found)})
+    selected = [one for one in result if one.target not in gone]
+    files = _placed(selected, file, out, len(targets) > 1)
+    if len(targets) == 1 or not selected:
+        if refused and json and result:
+            show.json_object({"files": [], **export_json(result[0]), "findings": findings_json(found)})
         if refused:
             raise together([why for _, why in refused])
     write_all(Path(), {str(path): content for path, content in files.items()})
     paths = [str(path) for path in files]
     if json and len(targets) == 1:
-        show.json_object({"files": paths, **export_json(made[0]), "findings": findings_json(found)})
+        show.json_object({"files": paths, **export_json(result[0]), "findings": findings_json(found)})
     elif json:
-        exports = [{**export_json(one), "refused": one.target in gone} for one in made]
+        exports = [{**export_json(one), "refused": one.target in gone} for one in result]
         show.json_object({"files": paths, "exports": exports, "findings": findings_json(found)})
     else:
         for path in files:
@@ -110,7 +110,7 @@ def _made(
     from coeflab.api.exporting import export
     from coeflab.core.errors import InputError
 
-    made: list[Export] = []
+    result: list[Export] = []
     refused: list[tuple[str, InputError]] = []
     for target in targets:
         try:
@@ -129,10 +129,10 @@ def _made(
             continue
         if not json:
             _print_loss(one, parameters)
-        made.append(one)
+        result.append(one)
         if one.loss is not None and not one.lossless and (strict or not accept_loss):
             refused.append((target, _refusal(one, parameters, file, strict, f"{target}, " if len(targets) > 1 else "")))
-    return made, refused
+    return result, refused
 
 
 def _print_loss(made: Export, parameters: ParameterFile) -> None:
@@ -148,8 +148,8 @@ def _print_loss(made: Export, parameters: ParameterFile) -> None:
         else f"{made.target} does not hold all of {parameters.name}:"
     )
     show.text(whole + ("" if made.lossless else f" {in_short(loss)}."))
-    for said in without_law(parameters):
-        show.sentence(f"The file has {said}.")
+    for words in without_law(parameters):
+        show.sentence(f"The file has {words}.")
     show.text()
     show.table(forces(loss))
     show.table(at_points(loss.at_points, f"Force law of {made.target}", controls=False))

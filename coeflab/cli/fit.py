@@ -295,9 +295,9 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
         c = fit.coefficients[symbol]
         if c.value is not None:
             parts = {"random": c.parts.random, "form": c.parts.model_form, "input": c.parts.input}
-            made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
+            result = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
-            show.sentence(f"{points}; U95: {made}." if made else f"{points}.")
+            show.sentence(f"{points}; U95: {result}." if result else f"{points}.")
         show.text()
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
             show.table(content)

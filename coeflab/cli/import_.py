@@ -93,8 +93,8 @@ def command(
     readable(file)
     if not force and out.exists() and not _may_be_written(out, accept):
         raise OutputError(f"{out} exists and is not empty. {OTHER_OUT}")
-    said = said_on_command_line(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
-    draft = Draft(file, said, assumed(out), map_)
+    phrases = said_on_command_line(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
+    draft = Draft(file, phrases, assumed(out), map_)
     draft.read()
     if sys.stdin.isatty():
         draft.asked()
@@ -103,9 +103,9 @@ def command(
             _typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept
         )
     filled = draft.filled()
-    made = contents(filled, of_campaign(draft.settings), file)
-    tables = checked(made, filled)
-    write_all(out, made, new=not force, otherwise=OTHER_OUT)
+    result = contents(filled, of_campaign(draft.settings), file)
+    tables = checked(result, filled)
+    write_all(out, result, new=not force, otherwise=OTHER_OUT)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
     print_list("Not taken", draft.left)  # travels with what was written: the form may not have been shown
@@ -140,8 +140,14 @@ def _typed_so_far(
     from coeflab.tables.form import quoted
 
     typed = [quoted(path)]
-    for flag, said in (("--as", as_), ("--words", words), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
-        typed += [f"{flag} {quoted(str(said))}"] if said else []
+    for flag, phrases in (
+        ("--as", as_),
+        ("--words", words),
+        ("--runs", runs),
+        ("--state", state),
+        ("--mapping", mapping),
+    ):
+        typed += [f"{flag} {quoted(str(phrases))}"] if phrases else []
     typed += [f"--name {quoted(text)}" for text in name]
     for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
         typed += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]
@@ -163,8 +169,8 @@ def _written(out: Path, filled: Sequence[Filled], tables: Sequence[ForceTable]) 
             f"  {of}varies: {', '.join(table.varies) or _speed_alone(table)}; in SI and FRD: {', '.join(table.forces)}"
         )
     for t in filled:
-        for said in without_a_setting(t.raw, t.columns):
-            show.sentence(f"{f'{t.file}: ' * several}Rows {said}.")
+        for words in without_a_setting(t.raw, t.columns):
+            show.sentence(f"{f'{t.file}: ' * several}Rows {words}.")
     show.sentence(unused(tables))
     show.text()
 
@@ -211,7 +217,7 @@ def _first_slopes(folder: Path) -> bool:
         show.sentence(f"No slopes: {why}")
     else:
         found = tables.coefficients_in(study, show.width())
-        kept = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
+        selected = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
         without = Status.NOT_DETERMINED.replace("_", " ")
         lacking = [row[0] for row in found.rows if row[1] == without] if fit == MODEL else []
         notes = [
@@ -223,8 +229,8 @@ def _first_slopes(folder: Path) -> bool:
         notes += [*tables.resistances(study), tables.primed_about(study), *tables.lost_by_move(study)]
         first = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(
-            found, title=f"{first}, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
-            notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
+            found, title=f"{first}, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in selected),
+            notes=tuple(notes), rows=tuple(tuple(row[i] for i in selected) for row in found.rows if row[0] not in lacking),
             left=frozenset({0}),
         ))  # fmt: skip
         checks = [c for c in study.checks if c.name != "law at points"]  # as in `coeflab fit`

@@ -109,7 +109,7 @@ def command(
             *(("--option", o) for o in option),
             ("--words", str(words or "")),
         ]
-        _raw(table, as_, every, json, [(flag, said) for flag, said in given if said])
+        _raw(table, as_, every, json, [(flag, phrases) for flag, phrases in given if phrases])
         return
     _tables(table, json, strict, rows)
 
@@ -151,9 +151,9 @@ def _proposal(table: str, unit: str, axes: str, json: bool) -> None:
         found = proposed(located(table, "geometry"), unit, axes)
     following = " ".join(["coeflab vehicle", shlex.quote(table), *found.options]) if found.closed else ""
     if json:
-        told = {"unit": found.unit, "axes": found.axes, "repair": found.repair, "sizes": list(found.sizes)}
+        words = {"unit": found.unit, "axes": found.axes, "repair": found.repair, "sizes": list(found.sizes)}
         show.json_object(
-            {"proposed": told, "findings": [finding_as_data(f) for f in found.findings], "next": following}
+            {"proposed": words, "findings": [finding_as_data(f) for f in found.findings], "next": following}
         )
         return
     show.found(found.findings)
@@ -187,7 +187,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     from coeflab.core.wording import identifier
     from coeflab.tables.form import open_lines, screen
     from coeflab.tables.parts import read_parts, stated_together, with_shared_words
-    from coeflab.tables.parts_together import form_together, understood_together
+    from coeflab.tables.several_tables import form_together, interpreted_together
 
     path = located(table, "cfd_data")
     options = options_of(option)
@@ -201,10 +201,10 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
         raise
     parts = with_shared_words(parts)
     settings = stated_together(parts)
-    founds = understood_together(parts, {}, settings)
+    founds = interpreted_together(parts, {}, settings)
     lines = form_together(parts, founds, settings, [one.line for one in chosen], whole=path.resolve().name)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
-    words = ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given)]
+    words = ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(phrases)}" for flag, phrases in given)]
     still = [one.argument for one in open_lines(lines)]
     following = " ".join([*words, f"--out {out}", *still, *(["--accept"] if still else [])])
     if json:
@@ -256,9 +256,9 @@ def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, miss
         run = read(path, {name: value for name, value in options.items() if name not in OF_RUNS})
     tables = raw_tables.of_run(run)
     if json:
-        told = {t.title: [dict(zip(t.headers, row, strict=True)) for row in t.rows] for t in tables}
+        words = {t.title: [dict(zip(t.headers, row, strict=True)) for row in t.rows] for t in tables}
         about = {"path": str(path), "importer": importer, "ended": str(run.ended), "why": run.why}
-        show.json_object(about | told | {"missing": list(missing.lines)})
+        show.json_object(about | words | {"missing": list(missing.lines)})
         return
     ended = f"{run.ended}: {run.why}" if run.why else str(run.ended)
     show.sentence(f"{path}: a run, read by {importer}; ended {ended}")

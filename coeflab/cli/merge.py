@@ -97,23 +97,23 @@ class Done:
         """Print it."""
         from coeflab.report.sections import estimates as tables
 
-        made, carried = self.made, self.carried
-        words = tables.interval_in_words(carried, made.parameters.conditions.speed).removesuffix(", estimate")
-        many = sum(r.after is not None for r in made.replaced)
-        left = len(made.estimates)
+        result, carried = self.made, self.carried
+        words = tables.interval_in_words(carried, result.parameters.conditions.speed).removesuffix(", estimate")
+        many = sum(r.after is not None for r in result.replaced)
+        left = len(result.estimates)
         show.sentence(
-            f"{made.parameters.name}: {many} number{'s' * (many != 1)} from {self.source}, {left} estimate{'s' * (left != 1)} left"
+            f"{result.parameters.name}: {many} number{'s' * (many != 1)} from {self.source}, {left} estimate{'s' * (left != 1)} left"
             f"{f'; {words}' if words else ''}."
         )
         show.text()
-        if made.lengths:
-            show.marked("warn", f"{made.lengths}.")
+        if result.lengths:
+            show.marked("warn", f"{result.lengths}.")
             show.text()
-        show.table(tables.merged_table(made))
-        show.table(tables.estimates_table(made.parameters, carried))
+        show.table(tables.merged_table(result))
+        show.table(tables.estimates_table(result.parameters, carried))
         for path in self.paths:
             show.path(path)
-        show.file_findings(made.parameters.name, self.found)
+        show.file_findings(result.parameters.name, self.found)
 
 
 def carried_out(
@@ -149,12 +149,12 @@ def carried_out(
         given_by(other, first, run) if isinstance(other, str) else (stated_beside(first, other), first.scaling)
     )
     say("merging, and moving what came out")
-    made, moves, carried = replaced(first, second, name or f"{first.name}_merged", own, alone=by_hand)
-    files = replaced_files(made, moves, carried)
+    result, moves, carried = replaced(first, second, name or f"{first.name}_merged", own, alone=by_hand)
+    files = replaced_files(result, moves, carried)
     write_all(folder, files)
     # a tow bears the name of its body, as the estimates do
     source = second.name if by_hand or second.name != first.name else str(other)
-    return Done(made, carried, source, tuple(folder / n for n in sorted(files)), plausibility(made.parameters))
+    return Done(result, carried, source, tuple(folder / n for n in sorted(files)), plausibility(result.parameters))
 
 
 def as_json(made: Any, carried: Any) -> dict[str, Any]:

@@ -179,7 +179,7 @@ def new(
     from coeflab.vehicle.own_numbers import typed_file
     from coeflab.vehicle.plausibility import plausibility
 
-    made = typed_file(
+    result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
         inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster,
     )  # fmt: skip
@@ -188,19 +188,19 @@ def new(
     path = typed(out) / f"{name}.parameters.json"
     if path.exists():
         raise OutputError(f"{path} exists. Name another, or change it: coeflab merge {path} --set SYMBOL=VALUE.")
-    write_all(path.parent, {path.name: made.to_json()})
-    found = plausibility(made)
+    write_all(path.parent, {path.name: result.to_json()})
+    found = plausibility(result)
     if json:
         from coeflab.cli.as_json import findings
 
         show.json_object({
-            "name": made.name, "coefficients": [c.symbol for c in made.coefficients], "findings": findings(found), "files": [str(path)],
+            "name": result.name, "coefficients": [c.symbol for c in result.coefficients], "findings": findings(found), "files": [str(path)],
         })  # fmt: skip
     else:
-        show.table(contents(made, "coeflab"))
+        show.table(contents(result, "coeflab"))
         show.path(path)
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
-        show.file_findings(made.name, found)
+        show.file_findings(result.name, found)
     if show.failed(found):
         raise typer.Exit(1)
 

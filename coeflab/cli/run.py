@@ -131,16 +131,16 @@ def _moved(study: Study) -> None:
 
     rows = []
     without: dict[str, list[str]] = {}
-    for made in study.manoeuvres:
-        name = made.manoeuvre.name.replace("_", " ")
-        found = figure_table(made.figures, f"{name} of {made.vehicle.name}", made.vehicle.length)
+    for result in study.manoeuvres:
+        name = result.manoeuvre.name.replace("_", " ")
+        found = figure_table(result.figures, f"{name} of {result.vehicle.name}", result.vehicle.length)
         if show.whole():
             show.table(found)
-        known = [row for row, figure in zip(found.rows, made.figures, strict=True) if figure.value is not None]
+        known = [row for row, figure in zip(found.rows, result.figures, strict=True) if figure.value is not None]
         if not known:
-            without.setdefault(f"of {made.vehicle.name}, no value: {_why(made)}", []).append(name)
+            without.setdefault(f"of {result.vehicle.name}, no value: {_why(result)}", []).append(name)
         rows += [
-            (made.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
+            (result.vehicle.name if not i else "", name if not i else "", *row[:3], row[-2])
             for i, row in enumerate(known[:FIRST_FIGURES])
         ]
     for why, names in without.items():

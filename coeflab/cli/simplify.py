@@ -82,8 +82,8 @@ def command(
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
     with show.narrated():
-        made = simplify(mesh_body(mesh, unit, axes, repair, fill, sheets), named, parts, split == "convex")
-        found = against_mesh(made, panels=panels)
+        result = simplify(mesh_body(mesh, unit, axes, repair, fill, sheets), named, parts, split == "convex")
+        found = against_mesh(result, panels=panels)
     name = found.body.name
     folder = out if out is not None else Path(name)
     figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")

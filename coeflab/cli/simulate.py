@@ -96,28 +96,33 @@ def command(
         show.not_used(parameters, tables)
     given = {"integrator": integrator, "step": step, "record": record}
     how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
-    made = simulate(
+    result = simulate(
         parameters, manoeuvre, of_manoeuvre(manoeuvre, ctx.args), how, listed(free), listed(hold),
         simulator=simulator, tables=tables, accelerations=accelerations,
     )  # fmt: skip
-    written = [] if out is None or made.undetermined else _write(made, out, to)
+    written = [] if out is None or result.undetermined else _write(result, out, to)
     found = plausibility(parameters)
     if json:
         from coeflab.cli.as_json import findings, simulation
 
-        show.json_object({**simulation(made), "findings": findings(found), "files": [str(p) for p in written]})
-    elif made.undetermined:
-        name = made.manoeuvre.name.replace("_", " ")
+        show.json_object({**simulation(result), "findings": findings(found), "files": [str(p) for p in written]})
+    elif result.undetermined:
+        name = result.manoeuvre.name.replace("_", " ")
         show.text(
-            f"The file determines nothing of the {name} of {made.vehicle.name}, so that nothing is drawn or written."
+            f"The file determines nothing of the {name} of {result.vehicle.name}, so that nothing is drawn or written."
         )
-        show.text(made.undetermined)
+        show.text(result.undetermined)
     else:
-        _print(made, written)
+        _print(result, written)
         show.text()
     if not json:
         show.file_findings(parameters.name, found)
-    if show.failed(found) or made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
+    if (
+        show.failed(found)
+        or result.trajectory.why
+        or result.undetermined
+        or all(f.value is None for f in result.figures)
+    ):
         raise typer.Exit(1)
 
 

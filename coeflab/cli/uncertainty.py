@@ -87,13 +87,13 @@ def command(
     if not json:
         show.not_used(parameters, tables)
     with show.narrated():
-        made = uncertainty(parameters, question, cores, scheduler, folder)
-    written = [] if out is None or made.undetermined else _write(made, out)
+        result = uncertainty(parameters, question, cores, scheduler, folder)
+    written = [] if out is None or result.undetermined else _write(result, out)
     if json:
-        show.json_object({**as_json(made), "files": [str(p) for p in written]})
+        show.json_object({**as_json(result), "files": [str(p) for p in written]})
     else:
-        _print(made, written)
-    if made.undetermined:
+        _print(result, written)
+    if result.undetermined:
         raise typer.Exit(1)
 
 

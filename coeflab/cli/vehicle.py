@@ -115,7 +115,7 @@ def command(
             say(f"fitting {campaign}")
             merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / "merged", say)
     show.step("drawing the report", json)
-    draft, kept = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
+    draft, selected = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
     files = rendered(study) | draft
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
@@ -123,7 +123,7 @@ def command(
         more = {} if merged is None else {"merged": merged.as_json()}
         show.json_object({**as_json(study), **more, "files": [str(p) for p in paths]})
     else:
-        _print(study, folder, sorted(files), changed, merged is None, _on_draft(folder, draft, kept))
+        _print(study, folder, sorted(files), changed, merged is None, _on_draft(folder, draft, selected))
         if merged is not None:
             merged.print()
     for refused in study.refused:
@@ -205,7 +205,10 @@ def summarise(study: Study, folder: Path) -> None:
 def for_simulators(study: Study) -> list[str]:
     """Names of the files that simulators load, without the loss reports."""
     return [
-        f"{made.folder}/{n}" if made.folder else n for made in study.exports for n in made.files if not n.endswith(LOSS)
+        f"{result.folder}/{n}" if result.folder else n
+        for result in study.exports
+        for n in result.files
+        if not n.endswith(LOSS)
     ]
 
 
@@ -214,14 +217,16 @@ def _exported(study: Study, folder: Path) -> None:
     from coeflab.core.wording import file_stem
     from coeflab.formats.loss_tables import in_short
 
-    for made in study.exports:
-        if made.loss is None:
+    for result in study.exports:
+        if result.loss is None:
             continue
-        if made.lossless:
-            show.text(f"{made.target} holds all of {made.parameters}.")
+        if result.lossless:
+            show.text(f"{result.target} holds all of {result.parameters}.")
             continue
-        report = folder / made.folder / f"{file_stem(made.parameters)}.{made.target}{LOSS}"
-        show.text(f"{made.target} does not hold all of {made.parameters}: {in_short(made.loss)}. All of it: {report}")
+        report = folder / result.folder / f"{file_stem(result.parameters)}.{result.target}{LOSS}"
+        show.text(
+            f"{result.target} does not hold all of {result.parameters}: {in_short(result.loss)}. All of it: {report}"
+        )
     if study.exports:
         show.text()
 

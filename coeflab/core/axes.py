@@ -235,8 +235,8 @@ class Datum:
             Free words; those of `SHIPPED` unless given.
         """
         text = text.strip()
-        known, said = SHIPPED.get(text, (text.casefold() if _ID.fullmatch(text) else text, ""))
-        return cls(known, note or said)
+        known, words = SHIPPED.get(text, (text.casefold() if _ID.fullmatch(text) else text, ""))
+        return cls(known, note or words)
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id

@@ -162,7 +162,7 @@ class Declaration:
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         reference = handler(core)
         content = handler.resolve_ref_schema(reference)
-        said = meanings(cls)
+        words = meanings(cls)
         content["description"] = " ".join((inspect.getdoc(cls) or "").partition("\n\n")[0].replace("``", "").split())
         content["properties"] = {key_of(name): field for name, field in content["properties"].items()}
         content["required"] = [key_of(name) for name in content.get("required", ())]
@@ -175,7 +175,7 @@ class Declaration:
                 field.update(given[0])
             elif given:
                 field["anyOf"] = given
-            field["description"] = said.get(name, "")
+            field["description"] = words.get(name, "")
         return reference
 
 
@@ -194,8 +194,8 @@ def meanings(kind: type) -> dict[str, str]:
     out: dict[str, str] = {}
     for cls in reversed(kind.__mro__):
         body = inspect.cleandoc(cls.__doc__ or "").partition("Attributes\n----------\n")[2]
-        for head, said in re.findall(r"^(\S[^\n]*)\n?((?:[ ]+[^\n]*\n?|\n)*)", body, re.MULTILINE):
-            flat = " ".join(textwrap.dedent(said).split()).replace("``", "")
+        for head, words in re.findall(r"^(\S[^\n]*)\n?((?:[ ]+[^\n]*\n?|\n)*)", body, re.MULTILINE):
+            flat = " ".join(textwrap.dedent(words).split()).replace("``", "")
             out |= dict.fromkeys((n.strip() for n in head.partition(" : ")[0].split(",")), flat)
     return out
 

@@ -249,7 +249,7 @@ def _alone(folder: Path) -> Iterator[None]:
     handle = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
     try:
         begun = time.monotonic()
-        told = False
+        words = False
         while True:
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -258,9 +258,9 @@ def _alone(folder: Path) -> Iterator[None]:
                 waited = time.monotonic() - begun
                 if waited > PATIENCE:
                     raise OutputError(f"{_holder(handle)} writes into {clipped(folder)}. Wait for it.") from None
-                if waited > PATIENCE / 60.0 and not told:
+                if waited > PATIENCE / 60.0 and not words:
                     stage(f"waiting for {_holder(handle)}, which writes into {clipped(folder)}")
-                    told = True
+                    words = True
                 time.sleep(0.01)
             except OSError:  # a file system without locks
                 break

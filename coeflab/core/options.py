@@ -106,8 +106,8 @@ def one_of(default: str, *choices: str) -> Any:
 
 def orders() -> Any:
     """A dataclass field that takes orders such as left=60 rotor1.tilt=1.5, a list of words, angles in rad; on the command line in deg."""
-    made = words()
-    return dataclasses.field(default=made.default, metadata={**made.metadata, "orders": True})
+    result = words()
+    return dataclasses.field(default=result.default, metadata={**result.metadata, "orders": True})
 
 
 def words(*default: str) -> Any:
@@ -155,15 +155,15 @@ class NoOptions:
 
 def described(kind: type) -> tuple[Described, ...]:
     """Every option of an options dataclass or a declaration, its meaning from the Attributes of the docstring."""
-    said = meanings(kind)
+    phrases = meanings(kind)
     if issubclass(kind, Declaration):
         keys = taken(kind)
         return tuple(
-            Described(key_of(f.name), _with_unit(keys[f.name]), _default_of(f), said.get(f.name, ""))
+            Described(key_of(f.name), _with_unit(keys[f.name]), _default_of(f), phrases.get(f.name, ""))
             for f in dataclasses.fields(cast(Any, kind))
         )
     return tuple(
-        Described(f.name, f.metadata["takes"].words, _default(f), said.get(f.name, ""))
+        Described(f.name, f.metadata["takes"].words, _default(f), phrases.get(f.name, ""))
         for f in dataclasses.fields(cast(Any, kind))
     )
 
@@ -179,10 +179,10 @@ def _with_unit(key: Takes) -> str:
 
 def _default_of(field: dataclasses.Field[Any]) -> str:
     """The default of a key as a file would have it; empty of one that must be given or is found by itself."""
-    made = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
-    if made is dataclasses.MISSING or made is None or isinstance(made, (Mapping, np.ndarray)):
+    result = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    if result is dataclasses.MISSING or result is None or isinstance(result, (Mapping, np.ndarray)):
         return ""
-    return toml_value(list(made) if isinstance(made, tuple) else made)
+    return toml_value(list(result) if isinstance(result, tuple) else result)
 
 
 def _default(field: dataclasses.Field[Any]) -> str:

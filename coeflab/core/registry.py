@@ -79,7 +79,7 @@ class Registry(Generic[Port]):
         claims: dict[str, dict[tuple[str, str], EntryPoint]] = {}
         for point in entry_points(group=self.package):
             claims.setdefault(point.name, {})[_distribution(point), point.value] = point
-        kept, refused = {}, []
+        selected, refused = {}, []
         for name, points in sorted(claims.items()):
             owners = sorted({owner for owner, _ in points})
             if name in self._shipped:
@@ -88,10 +88,10 @@ class Registry(Generic[Port]):
             elif len(points) > 1:
                 refused.append((name, f"the {self.kind} {shown(name)} is refused: {' and '.join(owners)} claim it"))
             else:
-                kept[name] = next(iter(points.values()))
+                selected[name] = next(iter(points.values()))
         for _, reason in refused:
             logging.getLogger("coeflab").warning("%s.", reason)
-        return kept, tuple(refused)
+        return selected, tuple(refused)
 
     def names(self) -> tuple[str, ...]:
         """Names of all plugins, sorted; nothing is imported."""

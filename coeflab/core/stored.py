@@ -234,11 +234,11 @@ def _in_si(annotation: Any) -> Any:
     if get_origin(annotation) is not Annotated:
         return annotation
     base, *more = get_args(annotation)
-    kept = [m for m in more if not isinstance(m, (declarations.Takes, declarations.Within))]
-    if len(kept) < len(more):
+    selected = [m for m in more if not isinstance(m, (declarations.Takes, declarations.Within))]
+    if len(selected) < len(more):
         number = Bounds((("gt", 0.0),) if declarations.ABOVE_ZERO in more else ())
-        kept.insert(0, number if base is float else Within(verbatim=True))
-    return Annotated[(_in_si(base), *kept)]
+        selected.insert(0, number if base is float else Within(verbatim=True))
+    return Annotated[(_in_si(base), *selected)]
 
 
 def _defaults(cls: Any) -> dict[str, Any]:

@@ -101,9 +101,14 @@ def folded(text: str, width: int, first: str = "", then: str = "", whole: bool =
     whole : bool
         A word longer than a line, such as a path, stays whole.
     """
-    kept = _TOGETHER.sub("\u00a0", text)
+    selected = _TOGETHER.sub("\u00a0", text)
     lines = wrap(
-        kept, width, initial_indent=first, subsequent_indent=then, break_long_words=not whole, break_on_hyphens=False
+        selected,
+        width,
+        initial_indent=first,
+        subsequent_indent=then,
+        break_long_words=not whole,
+        break_on_hyphens=False,
     )
     return [line.replace("\u00a0", " ") for line in lines] or [first]
 
@@ -126,8 +131,8 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
     for i in list(chosen):
         if _room(table, chosen, SPARED) > width and says_one(table, i):
             chosen.remove(i)
-            said = table.rows[0][i]
-            below += [f"All rows: {table.headers[i]} {said}"] if said not in ("", ABSENT) else []
+            phrases = table.rows[0][i]
+            below += [f"All rows: {table.headers[i]} {phrases}"] if phrases not in ("", ABSENT) else []
     gone = []
     for name in table.spare:
         if _room(table, chosen, COMFORT) <= width:

@@ -85,11 +85,11 @@ def in_angles(noun: object, said: str) -> str:
 def _in_a_line(noun: Any) -> str:
     shown, left = [], LONGEST_LINE
     names = getattr(type(noun), "model_fields", None) or [f.name for f in fields(noun) if f.repr]
-    kept = [name for name in names if not _is_empty(getattr(noun, name))]
-    for i, name in enumerate(kept):
+    selected = [name for name in names if not _is_empty(getattr(noun, name))]
+    for i, name in enumerate(selected):
         text = f"{name}={_in_short(getattr(noun, name))}"
         if len(text) > left:
-            shown.append(f"and {len(kept) - i} more")
+            shown.append(f"and {len(selected) - i} more")
             break
         shown.append(text)
         left -= len(text) + 2

@@ -386,8 +386,8 @@ def _symbols_of_bluff(symbols: tuple[str, ...]) -> tuple[str, ...]:
 
     Drag along x is u|u|, without what X0 V^2 needs beside it in drift; the products of the ideal fluid are of u, not of V.
     """
-    kept = (symbols[i] for i in _kept_of_bluff(symbols))
-    return (*("Xu|u|" if s == "X0" else s for s in kept), *(f"{s[0]}u{s[1:]}" for s in TURNED))
+    selected = (symbols[i] for i in _kept_of_bluff(symbols))
+    return (*("Xu|u|" if s == "X0" else s for s in selected), *(f"{s[0]}u{s[1:]}" for s in TURNED))
 
 
 def _kept_of_bluff(symbols: tuple[str, ...]) -> list[int]:
@@ -605,8 +605,8 @@ def _overall(body: Body, outline: Outline) -> Scaling:
 def _notes(outline: Outline, contributions: tuple[Contribution, ...], planes: Planes) -> tuple[str, ...]:
     """What is assumed and left out."""
     outside = [f"{c.part}, {c.kind}: {c.outside}" for c in contributions if c.outside]
-    said = ["Ahead only: no hull lift and no sidewash astern; foils do not stall."]
+    words = ["Ahead only: no hull lift and no sidewash astern; foils do not stall."]
     mirrored = [name for name, found in zip(NAMES[1:], planes[1:], strict=True) if found]
-    said += [f"Mirror planes of the solid: {', '.join(mirrored)}; what they forbid is zero."] if mirrored else []
-    said += ["Bluff parts: mean of shielded and not, across each axis and along the motion."] if outline.bluff else []
-    return tuple(dict.fromkeys([*said, *outside, *(f"left out: {x}" for x in outline.left_out)]))
+    words += [f"Mirror planes of the solid: {', '.join(mirrored)}; what they forbid is zero."] if mirrored else []
+    words += ["Bluff parts: mean of shielded and not, across each axis and along the motion."] if outline.bluff else []
+    return tuple(dict.fromkeys([*words, *outside, *(f"left out: {x}" for x in outline.left_out)]))

@@ -68,9 +68,9 @@ def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterIn
     that are not in the added mass it is given, and an added mass of another body.
     """
     tables = () if "tables" in holds else tuple(_table(s.model) for s in sources_of(parameters).tables)
-    unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
+    unheld = tuple(Lost(Kind.NOT_HELD, words) for words in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
-    out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, water))]
+    out = [*unheld, *(Lost(Kind.REPLACED, words) for words in _accelerations(parameters, water))]
     if hull is not None and hull.body != parameters.body:
         out.append(
             Lost(
@@ -353,11 +353,13 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
                 continue
             rates = [primes.get(r, 0.0) * at / length for r in "pqr"]
             rows.append([at * np.sqrt(1.0 - across), *(at * side), *rates])
-    said = [f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items() if n not in assumed]
+    phrases = [f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items() if n not in assumed]
     if assumed:
         bare = ", ".join(f"{n}'" for n in assumed)
-        said.append(f"{bare} -{ASSUMED:g} to {ASSUMED:g} (assumed: no data on {'it' if len(assumed) == 1 else 'them'})")
-    words = ", ".join(said) or "straight motion"
+        phrases.append(
+            f"{bare} -{ASSUMED:g} to {ASSUMED:g} (assumed: no data on {'it' if len(assumed) == 1 else 'them'})"
+        )
+    words = ", ".join(phrases) or "straight motion"
     words = "; ".join((words, *parameters.narrowed))
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
 
@@ -430,12 +432,12 @@ def loss_of(
     turned = steered_terms(parameters)
     names = tuple(n for n in CONTROLS if any(n in t.variables for t in turned))
     if steered is None or not names:
-        said: tuple[str, ...] = (
+        phrases: tuple[str, ...] = (
             (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
         )
         ours, theirs = law.force(nu), force(files, nu)
     else:
-        controls, said = _deflected(parameters, names, len(nu))
+        controls, phrases = _deflected(parameters, names, len(nu))
         nu = np.tile(nu, (len(controls) // len(nu), 1))
         ours, theirs = law.force(nu, controls), steered(files, nu, controls)
     if any(t.kind == "table" for t in law.terms):
@@ -451,7 +453,7 @@ def loss_of(
         controls=False,
     )
     return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found,
-                (*said, *control_signs(parameters)), apart(force(files, rare), law.force(rare)))  # fmt: skip
+                (*phrases, *control_signs(parameters)), apart(force(files, rare), law.force(rare)))  # fmt: skip
 
 
 def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:
@@ -463,8 +465,8 @@ def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -
              for n in names}  # fmt: skip
     rows = [np.zeros(3)]
     rows += [np.where(np.array(CONTROLS) == n, way * reach[n], 0.0) for n in names for way in (-1.0, 1.0)]
-    said = f"controls: each state also with {', '.join(f'{n} -{x:.3g} and {x:.3g} rad' for n, x in reach.items())}, one at a time"
-    return np.repeat(rows, states, axis=0), (said,)
+    words = f"controls: each state also with {', '.join(f'{n} -{x:.3g} and {x:.3g} rad' for n, x in reach.items())}, one at a time"
+    return np.repeat(rows, states, axis=0), (words,)
 
 
 def accelerations_apart(

@@ -70,8 +70,8 @@ def exported_law(parameters: ParameterFile) -> ExportedLaw:
     matrix, statements = water.matrix, water.statements
     if parameters.mass is None and not definiteness(matrix).holds:
         matrix = np.diag(np.maximum(np.diag(matrix), 0.0))
-        said = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
-        statements = (*statements, said)
+        words = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
+        statements = (*statements, words)
     form, taken = _nearest(second_order(law), law, parameters)
     return ExportedLaw(law, form, matrix, (*statements, *taken))
 
@@ -89,7 +89,7 @@ def _nearest(form: SecondOrder, law: ForceLaw, parameters: ParameterFile) -> tup
     if not parameters.law_holds:
         return form, ()
     speed, length = parameters.conditions.speed, parameters.scaling.length
-    signed, absolute, said = form.signed.copy(), form.absolute.copy(), list[str]()
+    signed, absolute, phrases = form.signed.copy(), form.absolute.copy(), list[str]()
     for name, reach in _reaches(parameters).items():
         j = MOTIONS.index(name)
         x = np.linspace(-reach, reach, STEPS)
@@ -102,15 +102,15 @@ def _nearest(form: SecondOrder, law: ForceLaw, parameters: ParameterFile) -> tup
         more = _least_worst(bent, left - left[STEPS // 2])
         for i, c in enumerate(COMPONENTS):
             largest = float(np.abs(wanted[:, i]).max())
-            kept = np.abs(more[:, i]) * np.abs(bent).max(axis=0) > LEAST * largest
-            absolute[i, j, j] += more[0, i] * kept[0]
-            signed[i, j, j] += more[1, i] * kept[1]
-            said += [f"{c}{name}|{name}|"] if kept[0] else []
-            said += [f"{c}{name}{name}"] if kept[1] else []
-    if not said:
+            selected = np.abs(more[:, i]) * np.abs(bent).max(axis=0) > LEAST * largest
+            absolute[i, j, j] += more[0, i] * selected[0]
+            signed[i, j, j] += more[1, i] * selected[1]
+            phrases += [f"{c}{name}|{name}|"] if selected[0] else []
+            phrases += [f"{c}{name}{name}"] if selected[1] else []
+    if not phrases:
         return form, ()
     words = (
-        f"{', '.join(said)}: fitted to include what this form cannot express (v^3 and its like, U for u), with the least largest difference over "
+        f"{', '.join(phrases)}: fitted to include what this form cannot express (v^3 and its like, U for u), with the least largest difference over "
         "the range in which the law holds"
     )
     return SecondOrder(form.linear, signed, absolute, form.resistance), (words,)
@@ -194,17 +194,17 @@ def afloat(parameters: ParameterFile, otherwise: float) -> Afloat:
     mass = parameters.mass.mass if parameters.mass is not None else otherwise if h is None else density * h.volume
     if h is None:
         volume, at, gravity = mass / density, centre, STANDARD_GRAVITY
-        said = "neutrally buoyant, the centre of buoyancy in the centre of gravity: the file states no buoyancy"
+        words = "neutrally buoyant, the centre of buoyancy in the centre of gravity: the file states no buoyancy"
         if parameters.mass is None:
-            said = f"neutrally buoyant at {mass:g} kg: the file states neither weight nor buoyancy; write mass and volume together"
+            words = f"neutrally buoyant at {mass:g} kg: the file states neither weight nor buoyancy; write mass and volume together"
     else:
         volume, at, gravity = h.volume, np.array(h.centre_of_buoyancy), h.gravity
         x, y, z = (f"{v:g}" for v in at)
-        said = f"displaced volume {volume:g} m^3 at ({x}, {y}, {z}) m, FRD from the reference point, of the file"
+        words = f"displaced volume {volume:g} m^3 at ({x}, {y}, {z}) m, FRD from the reference point, of the file"
         if parameters.mass is None:
             centre = at
-            said += f"; the file states no mass: {mass:.6g} kg, neutral, with its centre in that of buoyancy"
-    return Afloat(mass, centre, volume, at, gravity, max(length, (4.0 * volume / np.pi) ** (1.0 / 3.0)), said)
+            words += f"; the file states no mass: {mass:.6g} kg, neutral, with its centre in that of buoyancy"
+    return Afloat(mass, centre, volume, at, gravity, max(length, (4.0 * volume / np.pi) ** (1.0 / 3.0)), words)
 
 
 def states_buoyancy(parameters: ParameterFile, otherwise: str) -> str:
@@ -408,10 +408,10 @@ def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: 
     """
     water = water_inertia(parameters)
     products = any(t.kind == "potential" for t in written_terms(parameters))
-    said = f"; products of the ideal fluid without a measured coefficient are written as {ideal}" if products else ""
+    words = f"; products of the ideal fluid without a measured coefficient are written as {ideal}" if products else ""
     return (
         "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
-        f"totals are written, for {target} adds no C_A(nu) nu{said}",
+        f"totals are written, for {target} adds no C_A(nu) nu{words}",
         f"{matrix}: {water.source}",
         *water.warnings,
     )

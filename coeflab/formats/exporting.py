@@ -17,8 +17,8 @@ from coeflab.formats import (
     SteeredExporter,
 )
 from coeflab.formats.export import Export, Kind, Lost, Refused, loss_of, lost_by_all
+from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
 from coeflab.formats.loss_tables import as_text, in_short
-from coeflab.formats.unspoken import found_in, lacking_tables, without_law
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def export(
         files |= _remarks(files, parameters, target, found_in(parameters))
         return Export(parameters.name, target, files, None, plugin.citations)
     left = _left_out(plugin, given, accept_loss)
-    missing = tuple(Lost(Kind.MISSING, said) for said in plugin.missing(given))
+    missing = tuple(Lost(Kind.MISSING, words) for words in plugin.missing(given))
     lost = (*left, *missing, *lost_by_all(parameters, plugin.holds, water))
     changes = (
         *dict.fromkeys((*plugin.changes(given), *water.warnings)),
@@ -92,7 +92,7 @@ def _remarks(
         return "".join(c for c in text if c.isalnum())
 
     written = letters("\n".join(content.decode(errors="ignore") for content in files.values()))
-    found = [said for said in due if letters(said) not in written]
+    found = [words for words in due if letters(words) not in written]
     if not found:
         return {}
     return {f"{file_stem(parameters.name)}.{target}.remarks.txt": ("\n".join(found) + "\n").encode()}
@@ -113,7 +113,7 @@ def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool
     if not accept_loss:
         advice = f"{why.advice} Or accept the loss: it is written without, and the loss report says of what."
         raise InputError(why.found, why.expected, file=why.file, column=why.column, advice=advice)
-    return tuple(Lost(Kind.LEFT_OUT, said) for said in words)
+    return tuple(Lost(Kind.LEFT_OUT, phrases) for phrases in words)
 
 
 def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
@@ -202,17 +202,17 @@ def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
         Names the plan's file and key.
     """
     try:
-        made = export(parameters, p.to, p.accelerations, accept_loss=p.accept_loss and not p.strict)
+        result = export(parameters, p.to, p.accelerations, accept_loss=p.accept_loss and not p.strict)
     except InputError as why:
         found = f"{why.found} in {parameters.name} for {p.to}"
         raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
-    if made.loss is not None and not made.lossless and (p.strict or not p.accept_loss):
+    if result.loss is not None and not result.lossless and (p.strict or not p.accept_loss):
         raise InputError(
-            f"{p.to} cannot hold all of {parameters.name}: {in_short(made.loss)}",
+            f"{p.to} cannot hold all of {parameters.name}: {in_short(result.loss)}",
             "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
             file=p.file,
             column=p.key("strict" if p.strict else "accept_loss"),
             advice=f"The study and its parameter file are written without this export; `coeflab export FILE --to {p.to}` "
             "prints the whole loss.",
         )
-    return made
+    return result

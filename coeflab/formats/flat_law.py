@@ -203,8 +203,8 @@ def flat_law(parameters: ParameterFile) -> FlatLaw:
         (i, j, k, float(law.ideal[i, j, k] * (1.0 if j == k else 2.0)))
         for i in range(6) for j in range(6) for k in range(j, 6) if law.ideal[i, j, k]
     )  # fmt: skip
-    kept = tuple(t for t in law.terms if t.hull is None)
-    return FlatLaw(law, kept, flat_tables(law), ideal, tuple(free), rigid, inverse, excess, lever)
+    selected = tuple(t for t in law.terms if t.hull is None)
+    return FlatLaw(law, selected, flat_tables(law), ideal, tuple(free), rigid, inverse, excess, lever)
 
 
 def free_motions(law: FlatLaw) -> str:

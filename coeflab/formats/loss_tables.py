@@ -69,8 +69,8 @@ def in_rare_states(loss: Loss) -> str:
     if loss.rare is None or not loss.rare.furthest[1] > LOSSLESS:
         return ""
     each = zip(COMPONENTS, loss.rare.worst, loss.rare.relative, strict=True)
-    said = [f"{c} {number(w, 3)} {'N*m' if c in 'KMN' else 'N'} ({percent(s)})" for c, w, s in each if s > LOSSLESS]
-    return f"{RARE}, which the rows above do not hold, the largest differences are {', '.join(said)}"
+    words = [f"{c} {number(w, 3)} {'N*m' if c in 'KMN' else 'N'} ({percent(s)})" for c, w, s in each if s > LOSSLESS]
+    return f"{RARE}, which the rows above do not hold, the largest differences are {', '.join(words)}"
 
 
 def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True) -> Table:
@@ -134,22 +134,22 @@ def percent(share: float) -> str:
 def in_short(loss: Loss) -> str:
     """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
     terms = [what.partition(" (")[0].partition(": ")[0] for what in loss.not_held]
-    said = [f"no {_some(terms, NAMED)}"] if terms else []
+    words = [f"no {_some(terms, NAMED)}"] if terms else []
     others: dict[str, list[str]] = {}
     for x in loss.lost:
         others.setdefault(x.kind, []).append(x.what.partition("; ")[0].partition(": ")[0])
-    said += [f"{kind}: {_some(whats, 1)}" for kind, whats in others.items()]
+    words += [f"{kind}: {_some(whats, 1)}" for kind, whats in others.items()]
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:
         found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
     if loss.rare is not None and loss.rare.furthest[1] > LOSSLESS and loss.furthest[1] <= LOSSLESS:
         i, share = loss.rare.furthest
-        said.append(f"{COMPONENTS[i]} differs {RARE} by up to {percent(share)} of its largest")
+        words.append(f"{COMPONENTS[i]} differs {RARE} by up to {percent(share)} of its largest")
     for i, share, names in found:
-        if share > LOSSLESS or not said:
+        if share > LOSSLESS or not words:
             by = percent(share).replace(">", "more than") if 100.0 * share > MOST_APART else f"up to {percent(share)}"
-            said.append(f"{names[i]} differs by {by} of its largest")
-    return ", and ".join(said)
+            words.append(f"{names[i]} differs by {by} of its largest")
+    return ", and ".join(words)
 
 
 def counted(loss: Loss) -> str:

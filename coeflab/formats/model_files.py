@@ -113,8 +113,8 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
         parameters = importer.read(path, density)
     except NoDensityError:
         parameters = importer.read(path, STAND_IN)
-        said = Finding.of("model.density", parameters.name, Severity.NOTE, statistic=STAND_IN, advice="--density 1025")
-        parameters = parameters.model_copy(update={"findings": (*parameters.findings, said)})
+        words = Finding.of("model.density", parameters.name, Severity.NOTE, statistic=STAND_IN, advice="--density 1025")
+        parameters = parameters.model_copy(update={"findings": (*parameters.findings, words)})
     findings += importer.examine(path)
     known = any(c.subject.startswith(DENSITY) for c in findings)
     asked = {_question(c) for c in findings if c.severity in (Severity.WARN, Severity.FAIL)}
@@ -158,11 +158,11 @@ def read_vehicle_file(path: Path, density: float | None = None) -> ParameterFile
     failed, warned = (sum(c.severity is s for c in found.findings) for s in (Severity.FAIL, Severity.WARN))
     if not failed + warned:
         return found.parameters
-    said = Finding.of(
+    words = Finding.of(
         "model.checks", found.parameters.name, Severity.WARN, statistic=float(failed + warned), threshold=0.0,
         advice=f"coeflab params check {shlex.quote(typed.name)}", format=found.format, failed=failed, warned=warned,
     )  # fmt: skip
-    return found.parameters.model_copy(update={"findings": (*found.parameters.findings, said)})
+    return found.parameters.model_copy(update={"findings": (*found.parameters.findings, words)})
 
 
 def recognised_or_own(path: Path) -> str:

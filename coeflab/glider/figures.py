@@ -54,12 +54,12 @@ def motion_figure(runs: Sequence[GlideRun], anchor: str) -> Figure:
                 figure, bottom, FIELD, across=limits(times, 0.02) or (0.0, 1.0), up=_up(name, values), name_up=name,
                 name_across="time  [s]" if i == len(columns) - 1 else "", most_up=4,
             )  # fmt: skip
-            told = []
+            words = []
             for k, ((run, style), y) in enumerate(zip(shown, values, strict=True)):
                 look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
                 tagged(axes.plot(run.time, y, **look), f"glider{k}")
-                told.append(plotted.curve(f"glider{k}", run.glider.name, run.time, y))
-            panels.append(numbers(axes, told, "time  [s]", name))
+                words.append(plotted.curve(f"glider{k}", run.glider.name, run.time, y))
+            panels.append(numbers(axes, words, "time  [s]", name))
         handles = [tagged(_line(s, r.glider.name), f"glider{k}") for k, (r, s) in enumerate(shown)]
         legend(figure, handles, above)
         svg = svg_text(figure, anchor, title, description)
@@ -83,15 +83,15 @@ def polar_figure(glider: Glider, steady: Sequence[SteadyGlide], anchor: str) -> 
         figure = drawing(above + 10.0 + LEGEND_ROW * ((len(masses) + 2) // 2))
         speeds = limits(np.concatenate([v for _, _, v in curves.values()]), 0.06) or (0.0, 1.0)
         upper = panel(figure, BOTTOM + TALL + ROOM, TALL, across=across, up=speeds, name_up="V  [m/s]")
-        told = []
+        words = []
         for k, ((_, zeta, speed), style) in enumerate(zip(curves.values(), STYLES, strict=False)):
             look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
             tagged(upper.plot(np.degrees(zeta), speed, **look), f"mass{k}")
-            told.append(plotted.curve(f"mass{k}", f"net mass {masses[k]:.4g} kg", np.degrees(zeta), speed))
+            words.append(plotted.curve(f"mass{k}", f"net mass {masses[k]:.4g} kg", np.degrees(zeta), speed))
         at, notes = np.degrees([s.zeta for s in dots]), [f"net mass {s.net_mass:.4g} kg" for s in dots]
         fast, steep = np.array([s.speed for s in dots]), np.degrees([s.alpha for s in dots])
         tagged(upper.plot(at, fast, **_DOT), "dots")
-        told.append(points("dots", BALANCED, at, fast, notes))
+        words.append(points("dots", BALANCED, at, fast, notes))
         angles = limits(np.degrees(np.concatenate([a for a, _, _ in curves.values()])), 0.06) or (-30.0, 30.0)
         lower = panel(
             figure, BOTTOM, TALL, across=across, up=angles, name_up="alpha  [deg]",
@@ -108,7 +108,7 @@ def polar_figure(glider: Glider, steady: Sequence[SteadyGlide], anchor: str) -> 
         handles = [tagged(h, f"mass{k}") for k, h in enumerate(handles)]
         legend(figure, [*handles, tagged(Line2D([], [], label=BALANCED, **_DOT), "dots")], above)
         panels = (
-            numbers(upper, told, "glide angle zeta  [deg]", "V  [m/s]"),
+            numbers(upper, words, "glide angle zeta  [deg]", "V  [m/s]"),
             numbers(lower, angled, "glide angle zeta  [deg]", "alpha  [deg]"),
         )
         svg = svg_text(figure, anchor, title, description)
@@ -133,8 +133,8 @@ def curve(glider: Glider, net_mass: float) -> tuple[Array, Array, Array]:
     """Angle of attack, glide angle, rad, and speed, m/s, of the glides ahead that are no steeper than 70 degrees."""
     alpha = np.linspace(*glider.polar.searched, FINE)
     speed, zeta = glide(glider.body.polar, net_mass * glider.gravity, alpha)
-    kept = np.abs(zeta) <= STEEPEST
-    return alpha[kept], zeta[kept], speed[kept]
+    selected = np.abs(zeta) <= STEEPEST
+    return alpha[selected], zeta[selected], speed[selected]
 
 
 def _up(name: str, values: Sequence[Array]) -> Range:

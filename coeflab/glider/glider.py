@@ -428,15 +428,15 @@ def read_glider(path: Path) -> Glider:
     toml = read_toml(path)
     file = takes.declared(GliderFile, toml)
     head = file.glider
-    for key, said in file.basis.items():
+    for key, words in file.basis.items():
         table, _, inner = key.partition(".")
         content = toml.content.get(table, {}) if table in TABLES else {}
         if not (table in TABLES and table in toml.content) or (
             inner and not (isinstance(content, dict) and inner in content)
         ):
             raise toml.fail(f"basis.{key}", shown(key), "a table of this file, or table.key")
-        if said.split()[0].rstrip(":,") not in KINDS:
-            raise toml.fail(f"basis.{key}", shown(said), "a text that begins with " + ", ".join(KINDS))
+        if words.split()[0].rstrip(":,") not in KINDS:
+            raise toml.fail(f"basis.{key}", shown(words), "a text that begins with " + ", ".join(KINDS))
     return Glider(
         head.name, head.title, head.citation, head.gravity, file.mass, file.sliding_mass, file.engine, file.polar,
         file.phase, tuple(file.basis.items()), file.masses, file.lateral, file.thrusters,

@@ -367,7 +367,7 @@ def march(
     times: list[float] = []
     states: list[Array] = []
     next_row, finite = 0, True
-    with warnings.catch_warnings(record=True) as told, np.errstate(all="ignore"):
+    with warnings.catch_warnings(record=True) as words, np.errstate(all="ignore"):
         warnings.simplefilter("always")
         solver = LSODA(of, leg.begins, start, leg.ends, rtol=tolerance, atol=1e-3 * tolerance)
         while solver.status == "running":
@@ -380,7 +380,7 @@ def march(
             if not why and solver.nfev > most:
                 why = "the motion is too stiff or too fast to integrate"
             if why:
-                return _march(times, states, False, str(told[-1].message) if told else why, finite)
+                return _march(times, states, False, str(words[-1].message) if words else why, finite)
             at = solver.dense_output()
             end = _crossed(at, solver.t_old, solver.t, depth)
             reached = int(

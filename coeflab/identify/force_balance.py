@@ -82,11 +82,11 @@ class Windows:
         -------
         (m, k) array, (m, r) array
         """
-        kept, moved = np.empty((len(self.centres), values.shape[1])), np.empty((len(self.centres), rates.shape[1]))
+        selected, moved = np.empty((len(self.centres), values.shape[1])), np.empty((len(self.centres), rates.shape[1]))
         for row, centre in enumerate(self.centres):
             rows, of_values, of_rates = self._weights(centre)
-            kept[row], moved[row] = of_values @ values[rows], of_rates @ rates[rows]
-        return kept, moved
+            selected[row], moved[row] = of_values @ values[rows], of_rates @ rates[rows]
+        return selected, moved
 
     def _weights(self, centre: float) -> tuple[slice, Array, Array]:
         """Rows of a window, and what each counts for in the average of a value and of a rate."""
@@ -257,8 +257,8 @@ def weak(
             values, momentum, nu = _sides(part, vehicle, component, terms)
             values = _unbiased(part, vehicle, component, terms, values, noise)
             time, fine = refined(part.time, np.column_stack([values, nu, momentum]), half)
-            kept, moved = Windows(time, middles, half).averages(*np.split(fine, [values.shape[1]], axis=1))
-            out.append(_joined(kept, moved[:, -1], moved[:, :-1], terms))
+            selected, moved = Windows(time, middles, half).averages(*np.split(fine, [values.shape[1]], axis=1))
+            out.append(_joined(selected, moved[:, -1], moved[:, :-1], terms))
         stretch.append(stretches(middles, half))
     return identification.products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
 
@@ -398,8 +398,8 @@ def candidate_terms(
         return [t for t in listed if not t.rate or (accelerations and t.component in driven)]
     out: list[Candidate] = []
     for c in components:
-        made = identification.candidates(c, ordered, symmetric)
-        out += [_named(_written(c, t, parameters), parameters) for t in made]
+        result = identification.candidates(c, ordered, symmetric)
+        out += [_named(_written(c, t, parameters), parameters) for t in result]
         if accelerations and c in driven:
             free = [m for m in MOTIONS if m in moving]
             dots = [m for m in free if not symmetric or identification.allowed(c, _one(m))]

@@ -127,11 +127,11 @@ def _values(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> Panel:
         np.array([np.nan if v is None else v for v in vs])
         for vs in zip(*((t.value, t.file_value) for t in rows), strict=True)
     )
-    told = (
+    words = (
         points("own", "identified", own / sizes, at - 0.14, [_said(t.symbol, t.value, t.low, t.high) for t in rows]),
         points("file", "parameter file", file / sizes, at + 0.14, [_of_file(t) for t in rows]),
     )
-    return numbers(axes, told, "over the file's size  [-]", "", bars="across")
+    return numbers(axes, words, "over the file's size  [-]", "", bars="across")
 
 
 def _said(symbol: str, value: float | None, low: float | None, high: float | None) -> str:
@@ -168,5 +168,5 @@ def _frequencies(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> Pa
         axes.barh(y, 100.0 * t.frequency, height=0.6, color=colour, zorder=2)
     figure.text((left + width / 2.0) / WIDTH, (BOTTOM - 27.5) / tall, "kept in  [%]", ha="center")
     shares = np.array([np.nan if t.frequency is None else 100.0 * t.frequency for t in rows])
-    told = points("kept", "resamples that keep it", shares, np.arange(len(rows))[::-1] + 0.0, [t.symbol for t in rows])
-    return numbers(axes, (told,), "kept in  [%]", "", bars="across")
+    words = points("kept", "resamples that keep it", shares, np.arange(len(rows))[::-1] + 0.0, [t.symbol for t in rows])
+    return numbers(axes, (words,), "kept in  [%]", "", bars="across")

@@ -70,11 +70,11 @@ def dependent_sets(data: Array, free: NDArray[np.bool_], largest: int = LARGEST_
     among = np.flatnonzero(free)[doubtful]
     sure = np.linalg.qr(data[:, np.setdiff1d(np.flatnonzero(free), among)])[0]
     triangle = np.asarray(np.linalg.qr(data - sure @ (sure.T @ data), mode="r"))
-    kept: list[Array] = []
+    selected: list[Array] = []
     for size in range(1, min(largest, len(among)) + 1):
         round_: list[tuple[float, Array]] = []
         for chosen in combinations(among.tolist(), size):
-            if any(set(np.flatnonzero(one).tolist()) <= set(chosen) for one in kept):
+            if any(set(np.flatnonzero(one).tolist()) <= set(chosen) for one in selected):
                 continue
             columns = triangle[:, list(chosen)]
             change = _least_seen(columns)
@@ -84,9 +84,9 @@ def dependent_sets(data: Array, free: NDArray[np.bool_], largest: int = LARGEST_
                 whole[list(chosen)] = change
                 round_.append((shift, whole))
         for _, whole in sorted(round_, key=lambda one: round(one[0], 3)):
-            if _is_new(whole, kept):
-                kept.append(whole)
-    return tuple(kept)
+            if _is_new(whole, selected):
+                selected.append(whole)
+    return tuple(selected)
 
 
 def _least_seen(columns: Array) -> Array:

@@ -174,12 +174,12 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
     for k, load in enumerate(LOADS, 2):
         if np.isfinite(table[:, k]).all():
             laws.append(_law(load, thruster, np.column_stack([command, squares]), table[:, k]))
-    said = [
+    words = [
         f"{len(command)} steady stretches of {min(counts)} to {max(counts)} rows, {command.min():.5g} to {command.max():.5g} "
         f"{thruster.curve.unit}; each counts once",
         "U95 from the scatter of the stretches about the law; errors that all share, of balance and of speed, are not in it",
     ]
-    said += [
+    words += [
         f"a constant fitted too is {law.rest:.2g} +- {law.rest_u95:.2g} {law.unit}: the balance reads a {law.load} at rest"
         for law in laws
         if law.biased
@@ -193,7 +193,7 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
         np.array(counts),
         loads,
         tuple(laws),
-        tuple(said),
+        tuple(words),
     )
 
 
@@ -215,7 +215,7 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
         A load that has not the sign of its command.
     """
     thruster = next(t for t in parameters.thrusters if t.name == found.thruster)
-    curves, said = {}, []
+    curves, words = {}, []
     for load, law in zip(found.loads, found.laws, strict=False):
         old = thruster.curve if load == "thrust" else thruster.torque_curve or thruster.curve
         low, high = float(np.min(found.command)), float(np.max(found.command))
@@ -226,20 +226,20 @@ def with_curves(parameters: ParameterFile, found: BenchTest) -> ParameterFile:
         if low < 0.0 < high or (load == "thrust" and curve.falls_at() is not None):
             sides = [_side(load, found, sign) for sign in (-1.0, 1.0) if np.any(sign * found.command > 0.0)]
             curve = ParameterCurve(command=old.command, unit=old.unit, segments=tuple(piece for piece, _ in sides))
-            said.append(
+            words.append(
                 f"{load} of {found.thruster} by n^2 on each side of zero: a n + b n^2 falls or the test goes through zero; "
                 + "; ".join(text for _, text in sides)
             )
         curves["curve" if load == "thrust" else "torque_curve"] = curve
-    made = thruster.model_copy(update=curves)
+    result = thruster.model_copy(update=curves)
     notes = (
         *parameters.provenance.notes,
         f"curve of {found.thruster} from its bench test: {', '.join(found.files)}",
-        *said,
+        *words,
     )
     return parameters.model_copy(
         update={
-            "thrusters": tuple(made if t.name == found.thruster else t for t in parameters.thrusters),
+            "thrusters": tuple(result if t.name == found.thruster else t for t in parameters.thrusters),
             "provenance": parameters.provenance.model_copy(update={"notes": notes}),
         }
     )

@@ -95,17 +95,17 @@ def tune(plan: TuningPlan) -> Tuned:
     except ArithmeticError as why:
         raise InputError(str(why), "a start and bounds from which the fit can go on", file=plan.file) from None
     names = [f.name for f in plan.free]
-    said = list(statements(p, found))
+    words = list(statements(p, found))
     if plan.from_residuals:
-        said.insert(0, "Standard errors are those of the residuals (maximum likelihood); none were stated.")
+        words.insert(0, "Standard errors are those of the residuals (maximum likelihood); none were stated.")
     moved_parameters = tuned_parameters(names, [f.unit for f in plan.free], p, found)
     drives = _driving(plan, moved_parameters)
-    said += [remark(f) for f in drives]
+    words += [remark(f) for f in drives]
     tuning = Tuning(
         plan.name, moved_parameters, found.correlation, found.covariance,
         _quantities(plan.cases, p, found),
         tuple(together_in_words(names, c, found.parameters) for c in found.undetermined), found.singular, found.birge,
-        found.freedom, found.converged, tuple(said),
+        found.freedom, found.converged, tuple(words),
     )  # fmt: skip
     return Tuned(plan, tuning, tuned_file(plan, tuning))
 

@@ -208,13 +208,13 @@ def driving(p: TunedParameter, source: str = "") -> Finding | None:
     """
     if not p.after > 0.0:
         return None
-    told = p.u95 is not None and p.after > p.u95
+    words = p.u95 is not None and p.after > p.u95
     return Finding.of(
         "tune.drives",
         p.name,
         Severity.WARN,
         statistic=p.after,
-        case="told" if told else "open",
+        case="told" if words else "open",
         unit=p.unit,
         source=source,
     )
@@ -363,10 +363,10 @@ def _model(m: ParameterModel, number: int, numbered: list[Numbered], tuning: Tun
         t.model_copy(update={"half_width_95": _half_width(tuning, mine[j][1])}) if j in mine else t
         for j, t in enumerate(m.terms)
     )
-    said = f"Tuned to steady motions: {', '.join(m.terms[j].symbol for j in mine)}; half widths are those of that fit."
+    words = f"Tuned to steady motions: {', '.join(m.terms[j].symbol for j in mine)}; half widths are those of that fit."
     return m.model_copy(
         update={"terms": terms, "covariance": _merged(m.covariance, mine, tuning), "holds": ("random",),
-                "statements": (*m.statements, said)}
+                "statements": (*m.statements, words)}
     )  # fmt: skip
 
 

@@ -75,8 +75,8 @@ def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
             tagged(axes.plot(q.measured, q.before, zorder=2.5, **BEFORE), "before")
             tagged(axes.plot(q.measured, q.after, zorder=3, **AFTER), "after")
             cases = [f"case {i + 1}" for i in range(len(q.measured))]
-            told = (points(key, key, q.measured, y, cases) for key, y in (("before", q.before), ("after", q.after)))
-            panels.append(numbers(axes, told, along, upright))
+            words = (points(key, key, q.measured, y, cases) for key, y in (("before", q.before), ("after", q.after)))
+            panels.append(numbers(axes, words, along, upright))
         legend(figure, marks, tall - HEAD - ROW)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description, tuple(panels))
@@ -118,7 +118,7 @@ def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
 
 def _curves(axes: Axes, q: TunedQuantity, groups: Groups) -> list[Series]:
     """Draws every group; its numbers."""
-    told: list[Series] = []
+    words: list[Series] = []
     for number_, style in zip(range(len(groups.names)), STYLES, strict=False):
         mine = np.flatnonzero(groups.member == number_)
         mine = mine[np.argsort(groups.x[mine], kind="stable")]
@@ -131,10 +131,10 @@ def _curves(axes: Axes, q: TunedQuantity, groups: Groups) -> list[Series]:
             markeredgewidth=0.0, zorder=3,
         )  # fmt: skip
         tagged(dots, key)
-        told.append(points(key, f"data, {name}", x, q.measured[mine]))
-        told.append(curve("before", f"model before, {name}", x, q.before[mine]))
-        told.append(curve("after", f"model after, {name}", x, q.after[mine]))
-    return told
+        words.append(points(key, f"data, {name}", x, q.measured[mine]))
+        words.append(curve("before", f"model before, {name}", x, q.before[mine]))
+        words.append(curve("after", f"model after, {name}", x, q.after[mine]))
+    return words
 
 
 def _named(tuning: Tuning) -> str:
@@ -142,5 +142,5 @@ def _named(tuning: Tuning) -> str:
 
 
 def _scatter(tuning: Tuning) -> str:
-    said = [f"{q.name} {number(q.rms(after=False), 2)} to {number(q.rms(), 2)} {q.unit}" for q in tuning.quantities]
-    return f"Root mean square before and after: {', '.join(said)}."
+    words = [f"{q.name} {number(q.rms(after=False), 2)} to {number(q.rms(), 2)} {q.unit}" for q in tuning.quantities]
+    return f"Root mean square before and after: {', '.join(words)}."

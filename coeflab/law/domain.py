@@ -153,8 +153,8 @@ def _feet(points: Array, normals: Array, bounds: Array, active: NDArray[np.intp]
     feet = points[pulled] - push[pulled] @ face
     feet = feet - (feet @ face.T - at) @ inverse @ face
     out = np.full_like(points, np.nan)
-    kept = np.all(feet @ normals.T - bounds <= SLACK, axis=1)
-    out[pulled[kept]] = feet[kept]
+    selected = np.all(feet @ normals.T - bounds <= SLACK, axis=1)
+    out[pulled[selected]] = feet[selected]
     return out
 
 

@@ -196,7 +196,7 @@ class ForceLaw:
         variables = list(dict.fromkeys(v for factors in of_terms for v, _, _ in factors))
         order = (*COMPONENTS, *WIND)
         own = self.coefficient if self.coefficient.size else [t.coefficient for t in self.terms]
-        made = {
+        result = {
             "ideal": locked(self.ideal),
             "coefficient": locked(own),
             "source": np.array([BASE.index(v) for v, _ in variables], dtype=np.int64),
@@ -207,7 +207,7 @@ class ForceLaw:
             "component": np.array([order.index(t.component) for t in self.terms], dtype=np.int64),
             "powers": np.unique(np.array([t.speed_power for t in self.terms], dtype=np.int64)),
         }
-        for name, value in made.items():
+        for name, value in result.items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "gathered", self._gathered(of_terms, variables))
         object.__setattr__(self, "primed", np.flatnonzero(self.prime))

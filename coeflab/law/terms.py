@@ -330,7 +330,7 @@ def read_equation(text: str, place: str) -> Equation:
     for key, (symbol, weight) in right.items():
         known = left.get(key, (symbol, 0.0))
         left[key] = known[0], known[1] - weight
-    kept = tuple((s, w) for s, w in left.values() if w != 0.0)
-    if not kept:
+    selected = tuple((s, w) for s, w in left.values() if w != 0.0)
+    if not selected:
         raise InputError(shown(text), "an equation with a coefficient that does not cancel", column=place)
-    return Equation(kept, on_right - on_left + 0.0)
+    return Equation(selected, on_right - on_left + 0.0)

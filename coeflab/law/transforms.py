@@ -130,13 +130,13 @@ def relabelled(turn: Array, normal: bool = False) -> Array:
         if normal and order[2] != 2:
             continue
         for signs in product((1.0, -1.0), repeat=3):
-            made = turn[:, order] * signs
-            if np.linalg.det(made) < 0.0:
+            result = turn[:, order] * signs
+            if np.linalg.det(result) < 0.0:
                 continue
             # Of equal traces the axes that point ahead, to starboard and down first, whatever signs came in.
-            key = (round(float(np.trace(made)), 9), *np.round(made.T.ravel(), 6).tolist())
+            key = (round(float(np.trace(result)), 9), *np.round(result.T.ravel(), 6).tolist())
             if key > first:
-                best, first = made, key
+                best, first = result, key
     return np.asarray(best)
 
 

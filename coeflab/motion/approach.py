@@ -248,10 +248,10 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
         in_field_terms(n.removesuffix(f": {UNCOVERED}")) for n in names if n.endswith(UNCOVERED) and n != WITHOUT_DATA
     ]
     left = [in_field_terms(name) for name in names if not name.endswith(UNCOVERED)]
-    said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
-    beyond = "; ".join(filter(None, said)) or "no force table stands behind the file"
+    words = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
+    beyond = "; ".join(filter(None, words)) or "no force table stands behind the file"
     if lacking and decisive(names, rate):
-        return replace(figure, value=None, status=NOT_DETERMINED, why="; ".join(filter(None, (said[0], lacking))))
+        return replace(figure, value=None, status=NOT_DETERMINED, why="; ".join(filter(None, (words[0], lacking))))
     return replace(figure, status="extrapolated", why=beyond)
 
 

@@ -156,8 +156,8 @@ def _beside(b: ParameterFile, a: ParameterFile) -> ParameterFile:
 
 def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Array:
     """Largest real part first: eigenvalues of small motions about straight ahead, 1/s."""
-    made = vehicle(parameters, free)
-    at = made.free_columns
+    result = vehicle(parameters, free)
+    at = result.free_columns
     nu = np.zeros(6)
     nu[0] = speed
 
@@ -165,7 +165,7 @@ def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Ar
         states = np.tile(nu, (len(x), 1))
         states[:, at] = x
         attitude = np.tile([1.0, 0.0, 0.0, 0.0], (len(x), 1))
-        return made.acceleration(states, attitude, np.zeros((len(x), 3)), np.zeros(6))[:, at]
+        return result.acceleration(states, attitude, np.zeros((len(x), 3)), np.zeros(6))[:, at]
 
     step = 1e-5 * max(speed, 1e-3)
     base, eye = nu[list(at)], np.eye(len(at))

@@ -220,10 +220,10 @@ class Marched:
         manoeuvre = self.manoeuvres[i if len(self.manoeuvres) > 1 else 0]
         member = self.ensemble.member(i)
         switches = found.switch_time[i]
-        kept = np.isfinite(found.records[i, :, 0])
+        selected = np.isfinite(found.records[i, :, 0])
         done = np.isfinite(switches)
-        time = np.concatenate([found.times[kept], switches[done], found.end_time[i : i + 1]])
-        rows = np.vstack([found.records[i, kept], found.switch_state[i, done], found.end_state[i : i + 1]])
+        time = np.concatenate([found.times[selected], switches[done], found.end_time[i : i + 1]])
+        rows = np.vstack([found.records[i, selected], found.switch_state[i, done], found.end_state[i : i + 1]])
         order = np.argsort(time, kind="stable")
         time, rows = time[order], rows[order]
         distinct = np.concatenate([[True], np.diff(time) > NEAR * max(float(found.times[-1]), 1.0) / len(found.times)])

@@ -131,10 +131,10 @@ def _lowest(time: Array, height: Array, rate: Array) -> Array:
 def _stopped(part: Trajectory, row: int, name: str) -> Trajectory:
     """The motion up to where it is beyond the surface."""
     when = float(part.time[row])
-    kept = part.until(float(part.time[max(row - 1, 0)]))
+    selected = part.until(float(part.time[max(row - 1, 0)]))
     return replace(
-        kept, ended=Ended.OUT_OF_RANGE,
-        reached=tuple(t if t is not None and t <= float(kept.time[-1]) else None for t in part.reached),
+        selected, ended=Ended.OUT_OF_RANGE,
+        reached=tuple(t if t is not None and t <= float(selected.time[-1]) else None for t in part.reached),
         why=f"stopped before {when:.6g} s of this stretch: beyond the surface with the forces of {name}. the craft floats in the "
         "surface, or a step passed it twice; a shorter --step or --record tells which",
     )  # fmt: skip
@@ -142,8 +142,8 @@ def _stopped(part: Trajectory, row: int, name: str) -> Trajectory:
 
 def _joined(parts: Sequence[Trajectory], manoeuvre: Manoeuvre, stretches: int) -> Trajectory:
     """All stretches in one; the row at the surface belongs to the medium that begins there."""
-    kept = [slice(None, -1) if number + 1 < len(parts) else slice(None) for number in range(len(parts))]
-    pairs = list(zip(parts, kept, strict=True))
+    selected = [slice(None, -1) if number + 1 < len(parts) else slice(None) for number in range(len(parts))]
+    pairs = list(zip(parts, selected, strict=True))
     begin = np.concatenate([[0.0], np.cumsum([p.time[-1] for p in parts])])
     place = np.vstack([np.zeros(3), np.cumsum([p.position[-1] for p in parts], axis=0)])
     turned = np.concatenate([[0.0], np.cumsum([p.heading[-1] for p in parts])])
@@ -151,9 +151,9 @@ def _joined(parts: Sequence[Trajectory], manoeuvre: Manoeuvre, stretches: int) -
     reached = [None if t is None else t + float(begin[i]) for i, p in enumerate(parts) for t in p.reached]
     counts = [len(p.time[k]) for p, k in pairs]
     last = parts[-1]
-    said = [s for p in parts for s in p.statements]
+    words = [s for p in parts for s in p.statements]
     if last.ended is Ended.COMPLETE and len(parts) < stretches:
-        said.append(
+        words.append(
             f"the surface was not reached within {last.time[-1]:g} s of the last stretch: no further change of medium"
         )
     names = [p.name for p in manoeuvre.phases]
@@ -170,7 +170,7 @@ def _joined(parts: Sequence[Trajectory], manoeuvre: Manoeuvre, stretches: int) -
         outside={name: x > 0.0 for name, x in _filled([p.outside for p in parts], counts).items()},
         ended=last.ended,
         why=last.why,
-        statements=tuple(dict.fromkeys(said)),
+        statements=tuple(dict.fromkeys(words)),
     )  # fmt: skip
 
 

@@ -122,13 +122,14 @@ class Trajectory:
 
     def ended_at(self, row: int, why: str) -> Trajectory:
         """The rows up to one, at which the motion ended because it left what it may not leave."""
-        kept, time = slice(0, row + 1), float(self.time[row])
+        selected, time = slice(0, row + 1), float(self.time[row])
         rows = {
-            name: getattr(self, name)[kept] for name in ("time", "position", "attitude", "velocity", "heading", "phase")
+            name: getattr(self, name)[selected]
+            for name in ("time", "position", "attitude", "velocity", "heading", "phase")
         }
         return replace(
-            self, **rows, controls={k: v[kept] for k, v in self.controls.items()},
-            outside={k: v[kept] for k, v in self.outside.items()},
+            self, **rows, controls={k: v[selected] for k, v in self.controls.items()},
+            outside={k: v[selected] for k, v in self.outside.items()},
             reached=tuple(t if t is not None and t <= time else None for t in self.reached),
             ended=Ended.OUT_OF_RANGE, why=why,
         )  # fmt: skip

@@ -238,15 +238,15 @@ def vehicle(
     law, found = motion_law(parameters, tables)
     known = _known(parameters, law)
     moves = tuple(m for m in MOTIONS if m in free) or (MOTIONS if known == MOTIONS or not plane else PLANES[plane])
-    said = [remark(f) for f in found]
+    words = [remark(f) for f in found]
     if moves != MOTIONS:
         lacking = [m for m in MOTIONS if m not in moves]
         why = (
             "" if free else f"; the file has too few coefficients for {', '.join(m for m in MOTIONS if m not in known)}"
         )
-        said.append(f"{', '.join(lacking)} fixed at the initial values{why}")
+        words.append(f"{', '.join(lacking)} fixed at the initial values{why}")
     inertia = _inertia(parameters, moves)
-    said += (*water.statements, *parameters.narrowed)
+    words += (*water.statements, *parameters.narrowed)
     hydrostatics = parameters.hydrostatics
     if hydrostatics is None:
         hydrostatics = ParameterHydrostatics(
@@ -255,16 +255,16 @@ def vehicle(
             gravity=STANDARD_GRAVITY,
         )
         if set(moves) & set("wpq"):
-            said.append(
+            words.append(
                 "no hydrostatics in the file: assumed neutrally buoyant, centre of buoyancy at the centre of gravity"
             )
-    made = Vehicle(
+    result = Vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, law=law, hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
-        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said), findings=found,
+        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(words), findings=found,
     )  # fmt: skip
-    _positive(made)
-    return made
+    _positive(result)
+    return result
 
 
 def _known(parameters: ParameterFile, law: ForceLaw) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.stated_file import Law, Stated, stated_file, stated_table
+from coeflab.formats.imported_file import Law, Stated, imported_file, stated_table
 from coeflab.glider.glider import Glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
@@ -70,7 +70,7 @@ def flyingfish_file(fish: FlyingFish, medium: Medium = "water") -> ParameterFile
             "kg m^2 about every axis, assumed: steady motions (coeflab trim) do not depend on it, manoeuvres do.",
         ),
     )  # fmt: skip
-    file = stated_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
+    file = imported_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
     rest = ParameterHydrostatics(
         volume=volume,
         centre_of_buoyancy=(0.0, 0.0, fish.constants["buoyancy_moment"] / buoyancy),
@@ -120,7 +120,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
             "amidships, which does not glide by itself. `coeflab glide thauv` moves them.",
         ),
     )  # fmt: skip
-    file = stated_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
+    file = imported_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
     rest = ParameterHydrostatics(
         volume=THAUV_MASS / SEA.density, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=glider.gravity
     )

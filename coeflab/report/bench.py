@@ -118,7 +118,8 @@ def _choices(sweep: Mapping[str, Any]) -> list[dict[str, Any]]:
     shorter = [(limit, None, size <= limit * (1.0 + slopes.SAME_LEVEL)) for limit in levels[:-1]]
     without = [(None, i, np.arange(len(size)) != i) for i in range(len(size))]
     return [
-        {"limit": limit, "dropped": i} | _on(sweep, np.flatnonzero(kept)) for limit, i, kept in (*shorter, *without)
+        {"limit": limit, "dropped": i} | _on(sweep, np.flatnonzero(selected))
+        for limit, i, selected in (*shorter, *without)
     ]
 
 

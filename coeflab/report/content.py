@@ -137,9 +137,9 @@ def document(study: Study, *, full: bool = True) -> Document:
     """
     verbatim = users_texts(study)
     with keeping(verbatim):
-        made = _document(study, full)
+        result = _document(study, full)
         return replace(
-            made if full else core(made, tables.sources_of_numbers(study)), verbatim=verbatim, bench=bench_of(study)
+            result if full else core(result, tables.sources_of_numbers(study)), verbatim=verbatim, bench=bench_of(study)
         )
 
 
@@ -300,7 +300,11 @@ def also(study: Study) -> str:
         (len(study.hulls), "added-mass matrix", "added-mass matrices"),
         (0 if study.shape else len(study.fits), "fit with every point and curve", "fits with every point and curve"),
         (len(study.checks), "check"),
-        (sum(made.loss is not None for made in study.exports), "loss report of an export", "loss reports of exports"),
+        (
+            sum(result.loss is not None for result in study.exports),
+            "loss report of an export",
+            "loss reports of exports",
+        ),
     ]
     each = [f"{n} {names[0] if n == 1 else (*names, f'{names[0]}s')[1]}" for n, *names in held if n]
     listing = f"{', '.join(each)}, the quality of the data" if each else "the quality of the data"
@@ -359,8 +363,8 @@ def _held(name: str, found: Sequence[LawAtPoints], table: Table) -> str:
     apart, allowed = (
         loss_tables.percent(x) for x in (worst.share, worst.allowed / worst.largest if worst.largest else 0.0)
     )
-    said = f"{name}: {holding} of {len(judged)} components of tables hold; the largest difference is {apart} ({worst.component} of {worst.table}, allowed {allowed})."
-    return " ".join((said, *(n for n in table.notes if n != loss_tables.IN_PERCENT)))
+    words = f"{name}: {holding} of {len(judged)} components of tables hold; the largest difference is {apart} ({worst.component} of {worst.table}, allowed {allowed})."
+    return " ".join((words, *(n for n in table.notes if n != loss_tables.IN_PERCENT)))
 
 
 def _not_in_a_file(campaigns: Sequence[str]) -> str:
@@ -416,10 +420,10 @@ def _checks(study: Study) -> Section:
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
     inputs = filled(tables.provenance(study), source_tables.made_from(study))
-    said = PROVENANCE
+    words = PROVENANCE
     if many := (files := len(study.inputs)) > MANY:
-        said = f"{files} input files; --full lists their sha256."
-    text = (said, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))
+        words = f"{files} input files; --full lists their sha256."
+    text = (words, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))
     whole = (Section("inputs", "All inputs", tables=inputs, appendix=True),) if many else ()
     return Section("provenance", "Provenance", text, () if many else inputs, subsections=whole)
 

@@ -70,8 +70,8 @@ def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
     """
     if isinstance(found, Study) and found.shape is not None:
         return answer_of_shape(found, drawn=drawn)
-    made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
-    return _drawn(found, made) if drawn else made
+    result = _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    return _drawn(found, result) if drawn else result
 
 
 def _of_study(study: Study) -> Answer:
@@ -84,7 +84,7 @@ def _of_study(study: Study) -> Answer:
         if not others:
             return _of_models(study)
         rows = others
-    said, chips, below = _sentence(study, beside, rows), _chips(study), notes(study, beside, rows)
+    words, chips, below = _sentence(study, beside, rows), _chips(study), notes(study, beside, rows)
     lines = [_line(study, r) for r in rows] if study.plan.tows and names else []
     if any(x is not None for x in lines):
         names, below = (*names, NAME), (*below, MEANING_OF_LINE)
@@ -95,7 +95,7 @@ def _of_study(study: Study) -> Answer:
             )
             for r, x in zip(rows, lines, strict=True)
         )  # fmt: skip
-    return Answer(said, names, compared, rows, chips, notes=below)
+    return Answer(words, names, compared, rows, chips, notes=below)
 
 
 def _line(study: Study, row: AnswerRow) -> float | None:
@@ -281,8 +281,8 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
         first = f"{name}: {of} {wanted}coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
         first += _open(valued)
         inside, printed = printed_inside(study.fits)
-        said = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
-        absent = absent or said or "no published evaluation of these data"
+        words = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
+        absent = absent or words or "no published evaluation of these data"
     if judged and all(r.status == NO_RESULT for r in rows if r.value is None):
         absent = ""  # their rows say it
     whole = f"{first}; {absent}." if absent else f"{first}."
@@ -336,12 +336,12 @@ def _stability(study: Study) -> Chip:
         )
     first = [index for index in every if index.subject == every[0].subject]
     d: Derived = min(first, key=lambda index: index.name != "G_h")
-    said = sense(d).removesuffix(ALONE).partition(" at ")[0]
+    words = sense(d).removesuffix(ALONE).partition(" at ")[0]
     grave = (
         Severity.PASS
-        if said == "stable" and d.result is not None
+        if words == "stable" and d.result is not None
         else Severity.WARN
-        if said.startswith("unstable")
+        if words.startswith("unstable")
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
@@ -351,7 +351,7 @@ def _stability(study: Study) -> Chip:
     published = f" ({', '.join(stated)} published)" if 0 < len(stated) < len(INDICES[d.name]) - 1 else ""
     several = len(study.parameter_files) > 1
     name = f"{_of_study_named(study, d.subject)}, {plane}" if several else f"Stability, {plane} plane"
-    return Chip(name, f"{said}, {d.name} = {value}{published}", grave, "stability")
+    return Chip(name, f"{words}, {d.name} = {value}{published}", grave, "stability")
 
 
 def _of_study_named(study: Study, name: str) -> str:
@@ -369,11 +369,11 @@ def _warnings(study: Study) -> Chip:
 
 
 def _exports(study: Study) -> Chip:
-    made, refused = len(study.exports), len(study.refused)
-    if not made and not refused:
+    result, refused = len(study.exports), len(study.refused)
+    if not result and not refused:
         return Chip("Exports to simulators", "none planned", Severity.NOTE)
     loss = sum(not e.lossless for e in study.exports)
-    text = f"{made} made, {f'{loss} with losses' if loss else 'all complete'}" + (
+    text = f"{result} made, {f'{loss} with losses' if loss else 'all complete'}" + (
         f", {refused} refused" if refused else ""
     )
     return Chip(
@@ -426,16 +426,16 @@ def _of_models(study: Study) -> Answer:
 def _of_publication(found: Acceptance) -> Answer:
     good, count, _, valid = _held(found)
     some = f"{count - good} of {count} numbers outside the tolerance"
-    said = f"all {count} numbers within the tolerance" if good == count else some
+    words = f"all {count} numbers within the tolerance" if good == count else some
     others = [b for b, (_, n) in held(found).items() if n and not b.validates]
     none = f"none of them is validation: {listed(others)} only"
     by = ", or ".join(b for b, (_, n) in held(found).items() if n and b.validates)
-    said += (
+    words += (
         f"; {f'all {count}' if valid == count else f'{valid} of the {count}'} are validation: {by}"
         if valid
         else f"; {none}"
     )
-    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=by_basis(found))
+    return Answer(f"{_short(found.title)}: {words}.", chips=_published_chips(found), table=by_basis(found))
 
 
 def _held(found: Acceptance) -> tuple[int, int, int, int]:
@@ -532,10 +532,10 @@ def study_summary(study: Study) -> Document:
     """One page on a study."""
     verbatim = users_texts(study)
     with keeping(verbatim):
-        made = answer(study)
+        result = answer(study)
     return Document(
         study.plan.title or study.plan.name, SUBTITLE, (), study.plan.name, digest_of(study.inputs), verbatim=verbatim,
-        answer=_unlinked(made),
+        answer=_unlinked(result),
     )  # fmt: skip
 
 

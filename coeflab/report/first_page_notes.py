@@ -155,9 +155,9 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
         of = () if lacking[n] == whole else tuple(primed(r.symbol) for r in rows if r.symbol in lacking[n])
         by.setdefault(of, []).append(n)
     shown = [*by.pop((), []), *(f"{listed(those)} ({listed(of)})" for of, those in by.items())]
-    said = f"; {stated}" if stated else ""
+    words = f"; {stated}" if stated else ""
     which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (see Coefficients)"
-    return f"Not in U95: errors of {which}{said}."
+    return f"Not in U95: errors of {which}{words}."
 
 
 def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
@@ -166,10 +166,10 @@ def _as_stated(study: Study, rows: Sequence[AnswerRow]) -> str:
     without = {
         b.campaign for b in study.budgets if RIG in b.unassessed and (b.campaign, b.symbol.removesuffix("'")) in mine
     }
-    said = dict.fromkeys(
+    words = dict.fromkeys(
         t.source.stated_uncertainty for t in study.tables if t.campaign in without and t.source.stated_uncertainty
     )
-    return "; ".join(f"the test report states for its own: {text.removesuffix('.')}" for text in said)
+    return "; ".join(f"the test report states for its own: {text.removesuffix('.')}" for text in words)
 
 
 def _independent(study: Study) -> str:
@@ -189,16 +189,14 @@ def _independent(study: Study) -> str:
     weak = [f"{s} (U_V is {_span(each)} of it)" for s, each in shares.items()]
     wanted_first = sorted(found_without, key=lambda v: v.symbol.removesuffix("'") not in study.plan.wanted)
     uncounted = [primed(v.symbol) for v in wanted_first if v.beyond]
-    said = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
-    said += (
+    words = f" Weak: {', '.join(weak)}." * bool(weak) + f" Beyond U_V: {', '.join(outside)}." * bool(outside)
+    words += (
         in_sentences(" No verdict, but beyond U_V: ", list(dict.fromkeys(uncounted)), " (see Verdict).", join=listed)
         if uncounted
         else ""
     )
     inside = sum(all(v.within for v in one) for one in numbers)
-    return (
-        f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} judged coefficients within U_V.{said}"
-    )
+    return f"Independent evidence, {bodies}: CFD predicts {inside} of {len(numbers)} judged coefficients within U_V.{words}"
 
 
 def _span(shares: Sequence[str]) -> str:

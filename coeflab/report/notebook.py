@@ -197,8 +197,8 @@ def _against(row: AnswerRow) -> Part:
     if row.share is None:
         return ""
     low, high = sorted((0.0, row.share))
-    said = f"difference {row.share:+.2f} U95"
-    bar = _bar(low, high, row.share, (-1.0, 0.0, 1.0), (-REACH, REACH), said)
+    words = f"difference {row.share:+.2f} U95"
+    bar = _bar(low, high, row.share, (-1.0, 0.0, 1.0), (-REACH, REACH), words)
     number_ = f"{row.share:+.2f}".replace("-", MINUS)
     return f'<span class="beside">{number_} {bar}</span>'
 
@@ -281,9 +281,9 @@ def acceptance(found: Acceptance) -> tuple[Part, ...]:
 def one_coefficient(c: Coefficient) -> tuple[Part, ...]:
     """Its value with the interval, what makes U95 up, and how it was made."""
     parts = {"noise": c.parts.random, "form": c.parts.model_form, "inputs": c.parts.input}
-    made = [f"{name} {percent(size, c.value)}" for name, size in parts.items() if size is not None]
+    result = [f"{name} {percent(size, c.value)}" for name, size in parts.items() if size is not None]
     about = [f"{c.n_points} points over {tables.window_text(c)}" if c.window else "", c.estimator, c.body]
-    of = f"U95 holds {listed(made)} of the value." if made else ""
+    of = f"U95 holds {listed(result)} of the value." if result else ""
     return (
         _parts(_coefficient_grid((c,))),
         _notes([t for t in ("; ".join(a for a in about if a), of, c.status.advice) if t]),
@@ -355,8 +355,8 @@ def finding(found: Check) -> tuple[Part, ...]:
 def several(found: Several[Any]) -> tuple[Part, ...]:
     """Nouns of one kind in a table, a row each; the first of those that have a picture with it."""
     kinds = {type(noun).__name__ for noun in found}
-    made = _TOGETHER.get(next(iter(kinds)), _lines) if len(kinds) == 1 else _lines
-    return made(found)
+    result = _TOGETHER.get(next(iter(kinds)), _lines) if len(kinds) == 1 else _lines
+    return result(found)
 
 
 def _lines(found: Sequence[Any]) -> tuple[Part, ...]:

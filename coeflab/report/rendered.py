@@ -28,9 +28,9 @@ def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, byte
         with REPORTERS.guarded(name):
             files.update(REPORTERS.load(name).render(report))
     files.update(parameter_files_rendered(study.parameter_files.values()))
-    for made in study.exports:
+    for result in study.exports:
         files.update(
-            {f"{made.folder}/{name}" if made.folder else name: content for name, content in made.files.items()}
+            {f"{result.folder}/{name}" if result.folder else name: content for name, content in result.files.items()}
         )
     return files
 

@@ -40,5 +40,5 @@ def _findings(name: str, study: Study) -> tuple[Check, ...]:
 
 def _in_their_words(c: Check) -> Check:
     """Another package's finding: nothing in its texts is taken for a symbol."""
-    said = map(Verbatim, (c.statistic, c.rule, c.comment))
-    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *said)
+    words = map(Verbatim, (c.statistic, c.rule, c.comment))
+    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *words)

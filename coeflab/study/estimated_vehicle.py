@@ -96,8 +96,8 @@ def from_shape(
     files: dict[str, ParameterFile] = dict(study.parameter_files)
     heavy, vehicle = shape.weighed, next(iter(files.values()))
     standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
-    said = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
-    said.extend(by_series(heavy.body, shape.conditions.speed))
+    words = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
+    words.extend(by_series(heavy.body, shape.conditions.speed))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     files = {name: compared(p, shape.estimates, moves) for name, p in files.items()}
@@ -105,7 +105,7 @@ def from_shape(
     exports, refused = exports_of(plan.exports, files.values(), progress)
     carried, why = _carried(vehicle, moves, progress)
     missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
-    shape = replace(shape, said=tuple(said), missing=missing, carried=carried)
+    shape = replace(shape, said=tuple(words), missing=missing, carried=carried)
     return replace(study, parameter_files=files, exports=exports, refused=refused, manoeuvres=moves, shape=shape)
 
 
@@ -140,7 +140,7 @@ def estimated(
     require_orientation(body)
     conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
     conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
-    said = [*mesh_statements(body), *_assumed(plan, conditions)]
+    words = [*mesh_statements(body), *_assumed(plan, conditions)]
     if scaling is None:
         if not shape.length > 0.0:
             hollow = "" if any(c.volume for c in body.configurations) else f" It has no volume either. {CLOSED}"
@@ -161,8 +161,8 @@ def estimated(
         walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     progress(f"estimates of {body.name}")
     water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
-    made = methods.estimated(heavy.body, water, added_mass=found.recommended)
-    fit = as_fit(made, body.name)
+    result = methods.estimated(heavy.body, water, added_mass=found.recommended)
+    fit = as_fit(result, body.name)
     files: dict[str, ParameterFile] = {}
     hulls: dict[str, Triangulation] = {}
     inputs = tuple(dict.fromkeys(([plan.file] if plan.file else []) + list(body.files)))
@@ -170,7 +170,7 @@ def estimated(
         taken = replace(group, body=body.name, campaigns=(ESTIMATES,))
         with refusals_told(f"parameter_file.{group.name}"[:80]):
             first = assemble(taken, plan.name, [fit], [], [], (), heavy.body, conditions, inputs, found)
-            notes = (*first.provenance.notes, *heavy.said, *said, *made.notes)
+            notes = (*first.provenance.notes, *heavy.said, *words, *result.notes)
             first = first.model_copy(update={"provenance": first.provenance.model_copy(update={"notes": notes})})
             if walls and first.added_mass is not None:
                 first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
@@ -178,7 +178,7 @@ def estimated(
         hulls[group.name] = found
     return Study(
         plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
-        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, made, conditions, (*heavy.said, *said)),
+        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, result, conditions, (*heavy.said, *words)),
     )  # fmt: skip
 
 
@@ -247,9 +247,9 @@ def first_manoeuvres(
     out, troubles = [], []
     for name, options in planned or (("stop", {"astern": 0.0, "remaining": REMAINING}),):
         try:
-            free, said = (LEVEL, ()) if planned else _coasting(parameters)
-            made = simulate(parameters, name, options, free=free)
-            out.append(replace(made, statements=(*made.statements, *said)))
+            free, words = (LEVEL, ()) if planned else _coasting(parameters)
+            result = simulate(parameters, name, options, free=free)
+            out.append(replace(result, statements=(*result.statements, *words)))
         except InputError as why:
             troubles.append(f"no {name.replace('_', ' ')}: found {why.found}; expected {why.expected}")
             continue
@@ -352,10 +352,10 @@ def replaced(
     InputError, ScalingMismatchError
         As of `coeflab.vehicle.merge.merged`.
     """
-    made = merged(base, other, name, own, alone=alone)
-    moves, _ = first_manoeuvres(made.parameters)
-    carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
-    return made, moves, carried
+    result = merged(base, other, name, own, alone=alone)
+    moves, _ = first_manoeuvres(result.parameters)
+    carried, _ = _carried(result.parameters, moves, lambda _: None) if estimates_of(result.parameters) else ((), ())
+    return result, moves, carried
 
 
 def subject(
@@ -409,8 +409,8 @@ def completed_by_hand(
         body, shape, path, folder, unit or own[0], axes or own[1], repair=repair, fill=fill, sheets=sheets
     ).encode()
     there = folder / BODY
-    kept = there.exists() and not is_untouched(log_text(there))
-    return {} if kept else {BODY: text}, kept
+    selected = there.exists() and not is_untouched(log_text(there))
+    return {} if selected else {BODY: text}, selected
 
 
 def asked(

@@ -140,23 +140,23 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         enough = [t for t in read if _has_points(t)] if is_ours else read
         for name in planned.fits if enough else ():
             try:
-                made, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+                result, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
             except InputError as why:
                 if not is_ours:
                     raise
                 unfitted.setdefault(read[0].campaign, why.found)
                 continue
             budgets += found
-            fits.append(made)
+            fits.append(result)
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     for joint in plan.joint:
         read = together(joint, plan)
         progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
-        made, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        result, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
         budgets += found
-        fits.append(made)
-        progress(f"fitted {made.campaign} by {joint.fit}")
+        fits.append(result)
+        progress(f"fitted {result.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
     body = _body(plan)
     references = tuple(r for path in plan.references for r in read_references(path))

@@ -210,11 +210,11 @@ def _row(
             no_grid=no_grid,
         )
     why = _left_out(study, tow.campaign, symbol)
-    made = None if budget is None else _against(study, budget, own, fits, tests)
-    if made is None:
+    result = None if budget is None else _against(study, budget, own, fits, tests)
+    if result is None:
         lacking = "no budget" if budget is None else "no test of it" if tests else ""
         return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking, no_grid=no_grid)
-    found, others = made
+    found, others = result
     none = "; ".join(filter(None, (*others, found.why_none)))
     verdict = None if none else found.within
     reasons = (*others.values(), *found.reasons)
@@ -334,9 +334,9 @@ def runs_used(runs: int, variable: str, states: Mapping[str, int]) -> str:
     states : mapping of str to int
         Of those that do not count.
     """
-    said = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
+    words = ", ".join(f"{n} {STATES.get(state, state)}" for state, n in sorted(states.items()))
     kind, used = RUNS.get(variable, variable), runs - sum(states.values())
-    return f"fitted to {used} of {runs} {kind} runs; {said}" if used else f"no {kind} run used (of {runs}, {said})"
+    return f"fitted to {used} of {runs} {kind} runs; {words}" if used else f"no {kind} run used (of {runs}, {words})"
 
 
 def _variable(symbol: str) -> str:

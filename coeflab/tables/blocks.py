@@ -84,8 +84,8 @@ def with_blocks(raw: RawTable, titles: Sequence[Title], marks: Marks) -> RawTabl
         for name, number, unit in (one for t in own for one in settings_in(t.text, marks)):
             first = values.setdefault(name, (unit, np.full(len(raw), np.nan)))
             first[1][begin:end] = number * factor(unit, DIMENSIONS[name]) / factor(first[0], DIMENSIONS[name])
-    said = {named_as(c.name) or c.name for c in raw.columns}
-    more = [RawColumn(name, unit, column) for name, (unit, column) in values.items() if name not in said]
+    words = {named_as(c.name) or c.name for c in raw.columns}
+    more = [RawColumn(name, unit, column) for name, (unit, column) in values.items() if name not in words]
     stated: dict[str, Stated] = {k: s for k, s in raw.stated.items() if k != "conditions.speed" or "U" not in values}
     places = ", ".join(str(t.line) for t in later)
     return replace(

@@ -503,9 +503,9 @@ def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:
         return errors, ""
     pooled = float(np.sqrt(np.mean(own**2)))
     low = errors < pooled
-    said = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g}{{}}, the pooled error (root mean square) of the "
-    said += f"converged runs: their own differ {own.max() / own.min():.2g}-fold, which would leave the fit to the few smallest."
-    return np.where(low, pooled, errors), said
+    words = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g}{{}}, the pooled error (root mean square) of the "
+    words += f"converged runs: their own differ {own.max() / own.min():.2g}-fold, which would leave the fit to the few smallest."
+    return np.where(low, pooled, errors), words
 
 
 def _numbers(values: Sequence[float | None]) -> Array:

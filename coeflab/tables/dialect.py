@@ -339,14 +339,14 @@ def explained(head: Head, lines: Sequence[str]) -> Head:
     """
     if not head.line or any(head.units):
         return head
-    said: dict[str, tuple[str, str]] = {}
+    words: dict[str, tuple[str, str]] = {}
     for n, line in enumerate(lines, start=1):
         if n != head.line and len(line) < LONGEST_LEGEND:
-            said |= {m["short"]: name_and_unit(m["text"].strip()) for m in _EXPLAINS.finditer(line)}
-    if not any(name in said for name in head.names):
+            words |= {m["short"]: name_and_unit(m["text"].strip()) for m in _EXPLAINS.finditer(line)}
+    if not any(name in words for name in head.names):
         return head
-    names = tuple(f"{name}: {said[name][0]}" if name in said else name for name in head.names)
-    units = tuple(said[name][1] if name in said else "" for name in head.names)
+    names = tuple(f"{name}: {words[name][0]}" if name in words else name for name in head.names)
+    units = tuple(words[name][1] if name in words else "" for name in head.names)
     return replace(head, names=names, units=units, units_stand="in a legend above the names")
 
 
@@ -387,9 +387,9 @@ def _distinct(names: list[str], line: int, group: Row | None) -> tuple[list[str]
     again = [n for n, many in seen.items() if many > 1]
     if not again:
         return out, []
-    said = f"line {line}: {', '.join(map(shown, again[:8]))} head several columns; the later ones are numbered"
+    words = f"line {line}: {', '.join(map(shown, again[:8]))} head several columns; the later ones are numbered"
     over = [f"{shown(' '.join(g.split()))} over {shown(n)}" for g, n in zip(group[1], out) if g] if group else []
-    return out, [said, f"line {group[0]}: {', '.join(over[:12])}"] if group and over else [said]
+    return out, [words, f"line {group[0]}: {', '.join(over[:12])}"] if group and over else [words]
 
 
 @dataclass(slots=True)

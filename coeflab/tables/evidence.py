@@ -159,8 +159,8 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
             out.append(Evidence(f"{have}: {as_pointed} if {axis} points {side}, {turned} if {axis} points {other}"))
         else:
             of = "" if frame.name == "FRD" else f" to {side}"
-            said = f"{component}{of} and {angle}" + have.removeprefix(f"{component} and {angle}")
-            out.append(Evidence(f"{said}, and {SLENDER} {component}{flow}' < 0", f"axes.{angle}", as_pointed))
+            phrases = f"{component}{of} and {angle}" + have.removeprefix(f"{component} and {angle}")
+            out.append(Evidence(f"{phrases}, and {SLENDER} {component}{flow}' < 0", f"axes.{angle}", as_pointed))
     for component, rate in (("Y", "v"), ("Z", "w"), ("K", "p"), ("M", "q"), ("N", "r")):
         if component in data and rate in data and (sign := trend(data[component], data, rate)):
             if sign < 0:

@@ -392,12 +392,12 @@ class ForceTable:
 
     def with_uncertain_cells(self) -> ForceTable:
         """The table with the cells in use that its source marks as doubtful but prints."""
-        kept = [e for e in self.exclusions if not (e.uncertain and np.isfinite(self.forces[e.component][e.row]))]
+        selected = [e for e in self.exclusions if not (e.uncertain and np.isfinite(self.forces[e.component][e.row]))]
         usable = {c: np.ones(len(self), dtype=bool) for c in self.usable}
-        for e in kept:
+        for e in selected:
             for component in [e.component] if e.component else usable:
                 usable[component][e.row] = False
-        return replace(self, usable=usable, exclusions=tuple(kept), notes=(*self.notes, "doubtful cells in use"))
+        return replace(self, usable=usable, exclusions=tuple(selected), notes=(*self.notes, "doubtful cells in use"))
 
 
 def counted_once(tables: Sequence[ForceTable], *, axial: bool = True) -> list[ForceTable]:

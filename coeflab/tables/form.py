@@ -13,6 +13,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.table import folded
 from coeflab.tables.column_map import ColumnMap, read_column_map
+from coeflab.tables.interpretation import Doubt, Interpretation
 from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Question, without_unit
@@ -27,8 +28,7 @@ from coeflab.tables.settings import (
     require_one_datum,
     reynolds,
 )  # fmt: skip
-from coeflab.tables.stated_settings import against_words
-from coeflab.tables.understood import Doubt, Understood
+from coeflab.tables.settings_in_files import against_words
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
@@ -101,7 +101,7 @@ def quoted(text: str) -> str:
 
 def form(
     raw: RawTable,
-    found: Understood,
+    found: Interpretation,
     settings: Settings,
     read_by: Sequence[Line] = (),
     numbers: dict[str, int] | None = None,
@@ -156,11 +156,11 @@ def with_reynolds(line: Line, settings: Settings) -> Line:
         return line
     number = reynolds(settings)
     value = line.value if line.value.endswith("s") else f"{line.value} m^2/s"
-    said = "kinematic" if number is None else f"kinematic, Re = {number:.3g}"
-    return replace(line, value=value, why=f"{said}; {line.why}")
+    words = "kinematic" if number is None else f"kinematic, Re = {number:.3g}"
+    return replace(line, value=value, why=f"{words}; {line.why}")
 
 
-def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
+def column_lines(raw: RawTable, found: Interpretation) -> Iterator[Line]:
     """The lines of the columns."""
     doubts = {d.column.name: d for d in found.doubts}
     still = {column.name: offer for column, offer in found.open}
@@ -182,10 +182,12 @@ def column_lines(raw: RawTable, found: Understood) -> Iterator[Line]:
                 name, "" if group is Group.OPEN else text, missing or why, group, about,
                 argument("--map", name, offer.text or OPEN), True,
             )  # fmt: skip
-        elif (said := found.mapping.get(name)) is not None and not (said.name == "ignore" and len(raw.columns) > MANY):
+        elif (given := found.mapping.get(name)) is not None and not (
+            given.name == "ignore" and len(raw.columns) > MANY
+        ):
             by = "accepted" if name in found.accepted else "said"
             why = offer.why.partition(";")[0] if offer.certain else by
-            yield Line(name, str(said), why + span, Group.COLUMN, f'Column "{name}": {said}; {offer.why}.')
+            yield Line(name, str(given), why + span, Group.COLUMN, f'Column "{name}": {given}; {offer.why}.')
 
 
 def _unread(raw: RawTable, offer: Proposal) -> str:
@@ -206,13 +208,15 @@ def _covered(offer: Proposal) -> str:
 
 
 def _doubtful(doubt: Doubt) -> Line:
-    turned, kept = (str(replace(doubt.said, negative=negative)) for negative in (True, False))
+    turned, selected = (str(replace(doubt.said, negative=negative)) for negative in (True, False))
     name = doubt.column.name
     turns = f"; {name} > 0 then {doubt.turns}" * bool(doubt.turns)
-    about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {kept} keeps it{turns}.'
+    about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {selected} keeps it{turns}.'
     if doubt.another:
-        about = f'Column "{name}": {doubt.why}. {turned} {doubt.turns} where {name} > 0, {kept} the other way.'
-    return Line(name, "", f"{turned} or {kept}: {doubt.why}", Group.OPEN, about, argument("--map", name, OPEN), True)
+        about = f'Column "{name}": {doubt.why}. {turned} {doubt.turns} where {name} > 0, {selected} the other way.'
+    return Line(
+        name, "", f"{turned} or {selected}: {doubt.why}", Group.OPEN, about, argument("--map", name, OPEN), True
+    )
 
 
 def _span(column: RawColumn) -> str:
@@ -357,22 +361,22 @@ def _take(
     """One KEY=VALUE."""
     fits = [n for n in columns if part.startswith(f"{n}=")]
     name = max(fits, key=len) if fits else part.partition("=")[0].strip()
-    said = part[len(name) :].lstrip()
+    words = part[len(name) :].lstrip()
     one = None if fits else _line(name, lines)
     key = one.key if one else name
-    if not said.startswith("="):
+    if not words.startswith("="):
         raise InputError(shown(part), "KEY=VALUE or NUMBER=VALUE, several with ; between, or NUMBER ?")
-    said = said[1:].strip()
+    words = words[1:].strip()
     if key in options:
-        out.options[key] = said
+        out.options[key] = words
     elif key in columns:
         own, places = columns[key]
         for raw, column in places:
-            out.columns[own] = _column(raw, column, said)
+            out.columns[own] = _column(raw, column, words)
     elif "." not in key:
         raise _no_key(key, lines)
     else:
-        read = read_in(key, said)
+        read = read_in(key, words)
         require_one_datum(out.settings, read)
         out.settings |= {k: Setting(value, "confirmed") for k, value in read.items()}
 

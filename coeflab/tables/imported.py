@@ -120,11 +120,11 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         sections["axes"]["assumed"] = assumed
         comments["axes.assumed"] = "a sign inferred from the slope: delete this once it is known from the source"
     sections.pop("table")
-    made, declared = dict[str, bytes](), list[tuple[dict[str, Any], dict[str, str]]]()
+    result, declared = dict[str, bytes](), list[tuple[dict[str, Any], dict[str, str]]]()
     for t in tables:
-        made[t.file], labels = _table(t.raw, t.columns, t.settings, _constants(t, common))
+        result[t.file], labels = _table(t.raw, t.columns, t.settings, _constants(t, common))
         own: dict[str, Any] = {"file": t.file, "source_sha256": sha256_of(t.raw.path, t.raw.files)}
-        said = {"source_sha256": f"of {t.raw.path.name}, from which {t.file} was made"}
+        words = {"source_sha256": f"of {t.raw.path.name}, from which {t.file} was made"}
         if labels:
             own["labels"] = labels
         if any(c.said.name == "cells" for c in t.columns):
@@ -134,25 +134,25 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
             if section == "table" and (len(tables) == 1 or key in t.asked or key not in OF_ARMS):
                 at_reference = key == ARM_POINT and one.value == REFERENCE
                 own[name] = t.settings[POINT_OF].value if at_reference else one.value
-                said[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+                words[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
         if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
-            own["assumed"], said["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
+            own["assumed"], words["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
         if held := _held(t):
-            own["constant"], said["constant"] = held, "one number throughout, while the speed varied"
+            own["constant"], words["constant"] = held, "one number throughout, while the speed varied"
         made_with = t.raw.stated.get("conditions.density")
         if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-            own["forces_density"], said["forces_density"] = made_with.value, f"stated: {made_with.place}"
+            own["forces_density"], words["forces_density"] = made_with.value, f"stated: {made_with.place}"
         if HALF_MODEL in t.settings and len(set(map(str, halves))) > 1:
             one = t.settings[HALF_MODEL]
-            own["half_model"], said["half_model"] = one.value, one.origin + _of_half(one.value)
+            own["half_model"], words["half_model"] = one.value, one.origin + _of_half(one.value)
         if t.settings[POINT_OF].value != common[POINT_OF].value:
-            own["reference_point"], said["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
-        declared.append((own, said))
+            own["reference_point"], words["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+        declared.append((own, words))
     content: dict[str, Any] = {k: v for k, v in sections.items() if v}
     content["table"] = [own for own, _ in declared]
     validated(CampaignFile, content)
     return {
-        **made,
+        **result,
         FILE: _campaign_text(sections, comments, declared, tables, source).encode(),
         SAVED: _saved(tables, settings).encode(),
     }
@@ -181,7 +181,7 @@ def _require_one(tables: Sequence[Filled], common: Settings) -> None:
 def _how_obtained(table: Filled) -> str:
     dialect = "; ".join(f"{k} {v}" for k, v in table.raw.dialect.items() if k != "importer")
     how = f"Imported from {table.raw.path.name} by coeflab {VERSION}, importer {table.importer}"
-    named = ", ".join(f"{name} = {said}" for name, said in table.mapping.items() if said.name != "ignore")
+    named = ", ".join(f"{name} = {given}" for name, given in table.mapping.items() if given.name != "ignore")
     of = f"{table.file}: " * bool(table.name)
     return f"{of}{how}{f' ({dialect})' if dialect else ''}. Columns: {named}"
 
@@ -224,9 +224,9 @@ def _saved(tables: Sequence[Filled], settings: Settings) -> str:
         options["names"] = BETWEEN.join(str(t.options["names"]) for t in tables)
     columns: dict[str, str] = {}
     for t in tables:
-        for name, said in t.mapping.items():
+        for name, words in t.mapping.items():
             same = {str(o.mapping[name]) for o in tables if name in o.mapping}
-            columns[name if len(same) == 1 else f"{t.name}/{name}"] = str(said)
+            columns[name if len(same) == 1 else f"{t.name}/{name}"] = str(words)
     named = (
         importers.pop() if len(importers) == 1 and not (several and tables[0].raw.path != tables[-1].raw.path) else ""
     )
@@ -248,21 +248,21 @@ def _campaign_text(
     sections: Mapping[str, Mapping[str, Any]], comments: Mapping[str, str],
     declared: Sequence[tuple[Mapping[str, Any], Mapping[str, str]]], tables: Sequence[Filled], source: Path,
 ) -> str:  # fmt: skip
-    made = ", ".join(t.file for t in tables)
-    lines = [f"# What the numbers in {made} mean. Made by `coeflab import` from {one_line(source.name)}."]
+    result = ", ".join(t.file for t in tables)
+    lines = [f"# What the numbers in {result} mean. Made by `coeflab import` from {one_line(source.name)}."]
     for t in tables:
         lines += [f"# {one_line(f'{t.name}: ' * bool(t.name) + remark)}" for remark in t.raw.remarks]
     every: list[tuple[str, Mapping[str, Any], Mapping[str, str]]] = [
         (name, keys, {k: comments.get(f"{name}.{k}", "") for k in keys}) for name, keys in sections.items()
     ]
-    every += [("table", own, said) for own, said in declared]
-    for section, keys, said in every:
+    every += [("table", own, words) for own, words in declared]
+    for section, keys, words in every:
         if not keys:
             continue
         lines += ["", f"[[{section}]]" if section == "table" else f"[{section}]"]
         for name, content in keys.items():
             line = f"{name} = {value(content)}"
-            lines.append(f"{line:<41} # {one_line(said[name])}" if said.get(name) else line)
+            lines.append(f"{line:<41} # {one_line(words[name])}" if words.get(name) else line)
         lines += [f"# {hint}" for hint in HINTS.get(section, ()) if hint.partition(" ")[0] not in keys]
     return "\n".join(lines) + "\n"
 
@@ -294,26 +294,26 @@ def _table(
         heads.append("point")
         cells.append([row_name(raw, int(row)) for row in rows])
     for one in columns:
-        said = one.said
-        if said.name == "uncertain":
+        given = one.said
+        if given.name == "uncertain":
             continue
-        if said.name in ("label", "point"):
-            name = "point" if said.name == "point" else _label(one.column.name, heads)
-            labels += [name] * (said.name == "label")
+        if given.name in ("label", "point"):
+            name = "point" if given.name == "point" else _label(one.column.name, heads)
+            labels += [name] * (given.name == "label")
             heads.append(name)
             texts = texts_of(one.column)
             cells.append([one_line(texts[row]).strip() for row in rows])
             continue
-        own = one.column.values * (-1.0 if said.negative else 1.0)
-        if said.area:
-            own = own * (said.area * (said.length or 1.0) / length ** (3 if said.length else 2))
-        if said.pure:
+        own = one.column.values * (-1.0 if given.negative else 1.0)
+        if given.area:
+            own = own * (given.area * (given.length or 1.0) / length ** (3 if given.length else 2))
+        if given.pure:
             own = own * abs(one.factor)
         values = np.where(np.isnan(one.values), np.nan, own)[rows]
-        heads.append(_head(said))
+        heads.append(_head(given))
         cells.append(["" if np.isnan(x) else repr(x + 0.0) for x in values.tolist()])
-        for row in rows[np.isnan(values)] if said.role == "force" else ():
-            doubts[row].add(said.name)
+        for row in rows[np.isnan(values)] if given.role == "force" else ():
+            doubts[row].add(given.name)
     for head, number in constants.items():
         heads.append(head)
         cells.append([repr(number)] * len(rows))

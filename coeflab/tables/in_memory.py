@@ -40,10 +40,10 @@ def raw_of_columns(columns: Mapping[str, Any], name: str) -> RawTable:
     InputError
         No column, columns of other lengths, or a column of more than one dimension.
     """
-    made = [_column(str(header), columns[header], name) for header in columns]
-    if not made:
+    result = [_column(str(header), columns[header], name) for header in columns]
+    if not result:
         raise InputError("no column", 'arrays by their headers, such as "Y [N]"', file=name)
-    sizes = {c.name: len(c.values) for c in made}
+    sizes = {c.name: len(c.values) for c in result}
     if len(set(sizes.values())) > 1:
         raise InputError(
             f"columns of {', '.join(f'{n} ({k})' for n, k in sizes.items())} rows", "columns of equal length", file=name
@@ -51,7 +51,7 @@ def raw_of_columns(columns: Mapping[str, Any], name: str) -> RawTable:
     rows = next(iter(sizes.values()))
     if not rows:
         raise InputError("no rows", "rows of numbers", file=name)
-    return RawTable(Path(name), tuple(made), lines=np.arange(rows))
+    return RawTable(Path(name), tuple(result), lines=np.arange(rows))
 
 
 def _column(header: str, values: Any, name: str) -> RawColumn:

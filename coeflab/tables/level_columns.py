@@ -59,10 +59,10 @@ def _by_column(
             y = force.values if force.said.pure or speed is None else force.values / speed**2
             found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone])
             if found is not None and found.depends:
-                said = words(Finding.of(
+                given = words(Finding.of(
                     "levels.column", "table", Severity.WARN, statistic=found.spread, threshold=SHARE, symbol=f"the slope of {force.said.name} over {name}",
                     advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{found.levels[0]:.6g}" }} in campaign.toml',
                     slopes=tuple(f"{s:.3g}" for s in found.slopes), levels=tuple(f"{v:.4g}" for v in found.levels), column=idle.name,
                 ))  # fmt: skip
-                yield Evidence(f"warning: {said.statement}. {said.advice}")
+                yield Evidence(f"warning: {given.statement}. {given.advice}")
                 return

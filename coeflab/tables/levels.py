@@ -72,19 +72,19 @@ def slopes_by_level(x: Array, y: Array, level: Array) -> LevelSlopes | None:
     sound = np.isfinite(x) & np.isfinite(y) & np.isfinite(level)
     x, y, level = x[sound], y[sound], level[sound]
     group = levels_of(level)
-    kept = [g for g in np.unique(group) if np.unique(np.round(x[group == g], 9)).size >= FEWEST]
-    if not 2 <= len(kept) <= MOST_LEVELS:
+    selected = [g for g in np.unique(group) if np.unique(np.round(x[group == g], 9)).size >= FEWEST]
+    if not 2 <= len(selected) <= MOST_LEVELS:
         return None
-    rows = np.isin(group, kept)
-    x, y, level, group = x[rows], y[rows], level[rows], np.searchsorted(kept, group[rows])
-    own = np.eye(len(kept))[group]
+    rows = np.isin(group, selected)
+    x, y, level, group = x[rows], y[rows], level[rows], np.searchsorted(selected, group[rows])
+    own = np.eye(len(selected))[group]
     reach = float(np.max(np.abs(x)))
-    curved = min(np.unique(np.round(x[group == g], 9)).size for g in range(len(kept))) > FEWEST + 1
+    curved = min(np.unique(np.round(x[group == g], 9)).size for g in range(len(selected))) > FEWEST + 1
     shape = [x / reach, x * np.abs(x) / reach**2] if curved else [x / reach]
     each = np.column_stack([own, *(own * s[:, None] for s in shape)])
     one = np.column_stack([own, *shape])
     (full, beta), (common, _) = _left(each, y), _left(one, y)
-    k = len(kept)
+    k = len(selected)
     freedom = len(y) - each.shape[1]
     slopes = beta[k : 2 * k] / reach
     noise = max(full, len(y) * (DIGITS * float(np.max(np.abs(y)))) ** 2 / 3.0)

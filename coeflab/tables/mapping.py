@@ -115,19 +115,19 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
     complaints: list[InputError] = []
     taken: dict[str, str] = {}
     for column in raw.columns:
-        said = entry_of(column, mapping)
-        if said is None:
+        given = entry_of(column, mapping)
+        if given is None:
             complaints.append(_unmapped(raw, column))
             continue
-        if said.name not in ("label", "ignore"):
-            if said.plain in taken:
-                found = f"{shown(taken[said.plain])} and {shown(column.name)} as {said.plain}"
+        if given.name not in ("label", "ignore"):
+            if given.plain in taken:
+                found = f"{shown(taken[given.plain])} and {shown(column.name)} as {given.plain}"
                 complaints.append(fault(raw, found, "one of them", column))
-            taken[said.plain] = column.name
-        if said.name == "ignore":
+            taken[given.plain] = column.name
+        if given.name == "ignore":
             continue
         try:
-            out.append(with_unit(raw, column, said))
+            out.append(with_unit(raw, column, given))
         except InputError as why:
             complaints.append(why)
     names = {name for column in raw.columns for name in (column.name, *known_as(column))}
@@ -291,7 +291,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         point = [f"row {row + 1}" for row in range(len(raw))]
     numbered = {one.said.name: one.values[rows] for one in known if one.said.role == "force"}
     blank = {name: np.isnan(values) for name, values in numbered.items()}
-    said = doubtful(raw, known)
+    words = doubtful(raw, known)
     return Columns(
         file=raw.path,
         header_line=raw.header_line,
@@ -304,7 +304,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         forces=given["force"],
         errors=given["error"],
         labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.said.name == "label"},
-        doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | said[row] for i, row in enumerate(rows)),
+        doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | words[row] for i, row in enumerate(rows)),
         row_labels=tuple(_taken(point, rows)) if point else (),
         files=raw.files,
         radius=given["radius"].get("R"),
@@ -369,34 +369,34 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
 
     Primes divide by the declared density: with rhoInf 1 of a solver and 998.2 here they would be 1/998 of what they are.
     """
-    said = raw.stated.get("conditions.density")
+    given = raw.stated.get("conditions.density")
     own = any(one.said.name == "density" for one in known)
     in_newton = any(one.said.role == "force" and not one.said.pure for one in known)
-    if said is None or said.offered or not isinstance(said.value, float) or own or not in_newton:
+    if given is None or given.offered or not isinstance(given.value, float) or own or not in_newton:
         return None
-    if abs(density - said.value) <= SAME_DENSITY * abs(said.value):
+    if abs(density - given.value) <= SAME_DENSITY * abs(given.value):
         return None
-    advice = f"Leave conditions.density at {said.value:g}: primes are right with the density of the forces."
+    advice = f"Leave conditions.density at {given.value:g}: primes are right with the density of the forces."
     if raw.dialect.get("importer") == "openfoam":
         advice = (
-            f"Leave it out, primes are right with {said.value:g}; or turn the forces: --option density={density:g}."
+            f"Leave it out, primes are right with {given.value:g}; or turn the forces: --option density={density:g}."
         )
     return InputError(
-        f"conditions.density = {density:g} kg/m^3", f"{said.value:g}, the density that the forces were computed with "
-        f"({said.place})", file=raw.path, column="conditions.density", advice=advice,
+        f"conditions.density = {density:g} kg/m^3", f"{given.value:g}, the density that the forces were computed with "
+        f"({given.place})", file=raw.path, column="conditions.density", advice=advice,
     )  # fmt: skip
 
 
 def another_viscosity(raw: RawTable, viscosity: float) -> InputError | None:
     """The complaint where a solver ran with a viscosity that the file states, and another one is declared."""
-    said = raw.stated.get("conditions.viscosity")
-    if said is None or said.offered or not isinstance(said.value, float):
+    given = raw.stated.get("conditions.viscosity")
+    if given is None or given.offered or not isinstance(given.value, float):
         return None
-    if abs(viscosity - said.value) <= SAME_VISCOSITY * abs(said.value):
+    if abs(viscosity - given.value) <= SAME_VISCOSITY * abs(given.value):
         return None
     return InputError(
-        f"conditions.viscosity = {viscosity:g} m^2/s", f"{said.value:g}, the viscosity that the forces were computed with "
-        f"({said.place})", file=raw.path, column="conditions.viscosity",
+        f"conditions.viscosity = {viscosity:g} m^2/s", f"{given.value:g}, the viscosity that the forces were computed with "
+        f"({given.place})", file=raw.path, column="conditions.viscosity",
         advice="Leave it out: the Reynolds number of the runs is that of their viscosity, right or wrong.",
     )  # fmt: skip
 
@@ -434,9 +434,9 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     )
     body = BODY_AXES in raw.stated
     warned = [text for one in known if not body and (text := unturned(one.column.name, one.said))]
-    said = [*warned, *without_a_setting(raw, known), *raw.remarks]
-    more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
+    words = [*warned, *without_a_setting(raw, known), *raw.remarks]
+    more = [f"{len(words) - REMARKS} more remarks; coeflab inspect lists them"] if len(words) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
-    notes = (*out.notes, *said[:REMARKS], *more)
+    notes = (*out.notes, *words[:REMARKS], *more)
     out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
     return out if cells is None else out.on_finest_grids()

@@ -132,13 +132,13 @@ def captive_names(line: str) -> tuple[tuple[str, ...], tuple[str, ...], str]:
 
 def su2_names(lines: Sequence[str]) -> tuple[str, ...]:
     """Names of the columns of a history of SU2, CSV or Tecplot, from its first lines; empty where it is none."""
-    kept = [line for line in lines if not line.startswith("TITLE")]
-    if kept and kept[0].startswith("VARIABLES"):
-        own = kept[0].partition("=")[2].strip()
-        kept = kept[1:] if own in ("", "\\") else [own, *kept[1:]]
-    if not kept or not kept[0].startswith('"'):
+    selected = [line for line in lines if not line.startswith("TITLE")]
+    if selected and selected[0].startswith("VARIABLES"):
+        own = selected[0].partition("=")[2].strip()
+        selected = selected[1:] if own in ("", "\\") else [own, *selected[1:]]
+    if not selected or not selected[0].startswith('"'):
         return ()
-    cells = kept[0].split(",")
+    cells = selected[0].split(",")
     names = [cell.strip() for cell in cells if cell.strip()]
     quoted = all(len(n) > 2 and n[0] == n[-1] == '"' and '"' not in n[1:-1] for n in names)
     return tuple(n[1:-1].strip() for n in names) if quoted and len(names) > 1 else ()

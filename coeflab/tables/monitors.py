@@ -361,20 +361,20 @@ def in_order(monitor: Monitor, index: int, inner: bool = False) -> Monitor:
         remark = f"{monitor.at(row)}: {monitor.names[index]} is no number: {int((~readable).sum())} lines left out"
         return in_order(replace(taken(monitor, readable), remarks=(*monitor.remarks, remark)), index, inner)
     lowest_after = np.append(np.minimum.accumulate(steps[::-1])[::-1][1:], np.inf)
-    kept = steps < lowest_after
-    if kept.all():
+    selected = steps < lowest_after
+    if selected.all():
         return monitor
     change = np.diff(steps)
     back = np.flatnonzero(change < 0.0 if inner else change <= 0.0) + 1
     remarks = monitor.remarks
     if back.size:
-        said = [f"{monitor.at(i)}: {monitor.names[index]} {steps[i]:g} follows {steps[i - 1]:g}" for i in back[:3]]
+        words = [f"{monitor.at(i)}: {monitor.names[index]} {steps[i]:g} follows {steps[i - 1]:g}" for i in back[:3]]
         more = f" and at {len(back) - 3} more places" if len(back) > 3 else ""
         remarks = (
             *remarks,
-            f"{'; '.join(said)}{more}: the later lines count, {int((~kept).sum())} earlier ones left out",
+            f"{'; '.join(words)}{more}: the later lines count, {int((~selected).sum())} earlier ones left out",
         )
-    return replace(taken(monitor, kept), remarks=remarks)
+    return replace(taken(monitor, selected), remarks=remarks)
 
 
 def pieced(monitors: Sequence[Monitor], index: int) -> Monitor:
@@ -393,13 +393,13 @@ def pieced(monitors: Sequence[Monitor], index: int) -> Monitor:
                 file=later.path, line=later.header_line, advice="Put the files of each run into a folder of their own.",
             )  # fmt: skip
         begins = later.columns[index][0] if len(later) else np.inf
-        kept = whole.columns[index] < begins
+        selected = whole.columns[index] < begins
         remarks = (*whole.remarks, *later.remarks)
-        if not kept.all():
-            lost = f"{int((~kept).sum())} lines of {whole.path.name} from there on left out"
+        if not selected.all():
+            lost = f"{int((~selected).sum())} lines of {whole.path.name} from there on left out"
             remarks = (*remarks, f"{later.path.name} begins at {whole.names[index]} {begins:g}: {lost}")
-        columns = [np.concatenate([a[kept], b]) for a, b in zip(whole.columns, later.columns, strict=True)]
-        lines = np.concatenate([whole.lines[kept], later.lines])
+        columns = [np.concatenate([a[selected], b]) for a, b in zip(whole.columns, later.columns, strict=True)]
+        lines = np.concatenate([whole.lines[selected], later.lines])
         whole = Monitor(later.path, whole.names, columns, lines, whole.header_line, remarks, later.crashed)
     return whole
 
@@ -437,9 +437,9 @@ def joined(monitors: Sequence[Monitor], index: str) -> Monitor:
                     advice="Put the files of each run into a folder of their own.",
                 )  # fmt: skip
     crashed = next((m.crashed for m in monitors if m.crashed), "")
-    said = tuple(r for m in monitors for r in m.remarks)
+    words = tuple(r for m in monitors for r in m.remarks)
     lines = first.lines[np.isin(first.columns[0], common)]
-    return Monitor(first.path, tuple(names), columns, lines, first.header_line, (*said, *remarks), crashed)
+    return Monitor(first.path, tuple(names), columns, lines, first.header_line, (*words, *remarks), crashed)
 
 
 def how_ended(monitor: Monitor, judged: Sequence[int]) -> tuple[Ended, str]:
@@ -480,12 +480,12 @@ def raw_table(
     remarks : sequence of str
         Beside those of the monitor.
     """
-    made = []
+    result = []
     for j, name, unit, means in columns:
         values, monitor.columns[j] = monitor.columns[j], np.empty(0)
         values[np.isinf(values)] = np.nan
-        made.append(RawColumn(name, unit, values, means=means))
+        result.append(RawColumn(name, unit, values, means=means))
     return RawTable(
-        path, tuple(made), monitor.header_line, monitor.lines, files=tuple(files), dialect=dialect,
+        path, tuple(result), monitor.header_line, monitor.lines, files=tuple(files), dialect=dialect,
         stated=stated or {}, remarks=(*monitor.remarks, *remarks),
     )  # fmt: skip

@@ -368,7 +368,7 @@ def stated_y_plus(case: FoamCase, body: set[str]) -> Stated | None:
 
 def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, bool]:
     """What the solver's log says: version and solver, how the run broke off (or empty), whether it came to its end."""
-    said: dict[str, str] = {}
+    words: dict[str, str] = {}
     for file in listed(case.root):
         if not (file.name.startswith("log") or file.suffix == ".log") or not file.is_file():
             continue
@@ -384,22 +384,22 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
         case.files.append(file)
         build = re.search(r"^Build\s*:\s*(.+)$", head, re.MULTILINE)
         com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
-        said = {"solver": program[1]}
+        words = {"solver": program[1]}
         if com is not None:
-            said |= {"version": f"v{com[1] or com[2]}", "fork": "openfoam.com"}
+            words |= {"version": f"v{com[1] or com[2]}", "fork": "openfoam.com"}
         elif build is not None:
-            said |= {"version": build[1].strip(), "fork": "openfoam.org"}
+            words |= {"version": build[1].strip(), "fork": "openfoam.org"}
         if (met := re.search(r"solution converged in (\d+) iterations", tail)) is not None:
-            said["convergence"] = f"the solver's residualControl was met after {met[1]} iterations ({file.name})"
+            words["convergence"] = f"the solver's residualControl was met after {met[1]} iterations ({file.name})"
         broken = re.search(
             r"FOAM FATAL[^\n]*|sigFpe::[^\n]*|Floating point exception(?! trapping)|Segmentation fault|\bKilled\b", tail
         )
         return (
-            said,
+            words,
             f"{file.name}: {shown(broken[0])}" if broken is not None else "",
             re.search(r"^End\b", tail, re.M) is not None,
         )
-    return said, "", False
+    return words, "", False
 
 
 def word(case: FoamCase, file: str, *keys: str) -> str:

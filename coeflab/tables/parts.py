@@ -29,7 +29,7 @@ from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, SeveralErr
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
 from coeflab.tables.settings import Setting
-from coeflab.tables.stated_settings import stated_settings
+from coeflab.tables.settings_in_files import stated_settings
 from coeflab.tables.words.points import POINT_OF
 
 Progress = Callable[[str], None]

@@ -66,15 +66,15 @@ class Filter:
         """
         words = " ".join(text.split()) if isinstance(text, str) else ""
         try:
-            made = cls._of(words)
+            result = cls._of(words)
         except InputError:
-            made = None  # the complaint below names all forms
-        if made is None:
+            result = None  # the complaint below names all forms
+        if result is None:
             raise InputError(
                 shown(text), FILTER_WORDS, file=file, column=key,
                 advice="A lag is positive where the record is late, at most 90 deg; a cut-off and a delay carry their unit.",
             )  # fmt: skip
-        return made
+        return result
 
     @classmethod
     def _of(cls, words: str) -> Filter | None:

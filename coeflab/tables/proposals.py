@@ -126,25 +126,25 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         if why == UNKNOWN and (idle := _idle(column)):
             return Proposal("ignore", f"{why}; {idle}")
         return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
-    said = read_column_map(name)
-    if said.name in WORDS:
+    given = read_column_map(name)
+    if given.name in WORDS:
         return Proposal(name, why, certain)
-    if said.name in FORCES and column.is_text and _lost(column):
+    if given.name in FORCES and column.is_text and _lost(column):
         left = " leaves these cells out" * bool(np.any(np.isfinite(column.values)))
         return Proposal("", f"{_worded(column)}; {name} [{column.unit or OPEN}]{left}, or ignore")
     if column.is_text and not np.any(np.isfinite(column.values)):
         return Proposal("label", "text")
     said_of = stated or {}
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
-    one = _with_unit(column, said, why, certain, by)
+    one = _with_unit(column, given, why, certain, by)
     if (
         one.text.endswith(f"[{OPEN}]")
         and not one.unread
         and said_of.get(UNITS_OF) == "SI"
-        and said.dimension not in ("angle", "none")
+        and given.dimension not in ("angle", "none")
     ):
         return Proposal(
-            f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
+            f"{one.text.partition(' [')[0]} [{SI[given.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
         )
     return one
 
@@ -178,7 +178,7 @@ def allowed(unit: str, error: bool = False) -> str:
     """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
     words = " ".join(unit.split())
     plain = vocabulary().units.get(words.casefold(), words)
-    names = next((said for dimension, said in ALLOWED.items() if _fits(plain, dimension)), "")
+    names = next((phrases for dimension, phrases in ALLOWED.items() if _fits(plain, dimension)), "")
     if error and names[:1] in COMPONENTS:
         names = ", ".join(f"se_{name}" for name in names.split(", "))
     return f"; {words}: {names}, or ignore" if names else ""
@@ -374,21 +374,21 @@ def proposals(
         one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
-        said = read_column_map(one.text.partition(" [")[0]) if one.text else None
-        if said is not None and said.name not in ("label", "ignore"):
-            if said.name == "point" and (said.plain in taken or _repeats(column)):
+        given = read_column_map(one.text.partition(" [")[0]) if one.text else None
+        if given is not None and given.name not in ("label", "ignore"):
+            if given.name == "point" and (given.plain in taken or _repeats(column)):
                 one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
-            elif said.plain in taken:
-                first = next(i for i, c in enumerate(raw.columns) if c.name == taken[said.plain])
-                again = f"{said.plain} is {{}} already"
+            elif given.plain in taken:
+                first = next(i for i, c in enumerate(raw.columns) if c.name == taken[given.plain])
+                again = f"{given.plain} is {{}} already"
                 if one.whole and not out[first].whole:
                     out[first] = Proposal("ignore", again.format(column.name))
-                    taken[said.plain] = column.name
+                    taken[given.plain] = column.name
                 else:
                     whole = out[first].whole and not one.whole
-                    one = Proposal("ignore" * whole, again.format(taken[said.plain]))
+                    one = Proposal("ignore" * whole, again.format(taken[given.plain]))
             else:
-                taken[said.plain] = column.name
+                taken[given.plain] = column.name
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
         out = [_beside_the_body(one, taken[body], body) for one in out]
@@ -481,18 +481,18 @@ def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     area = known.get(AREA)
     if area is None or area == "prime" or not one.text:
         return one
-    said = read_column_map(one.text.partition(" [")[0])
-    if said.name not in FORCES or not said.primed:
+    given = read_column_map(one.text.partition(" [")[0])
+    if given.name not in FORCES or not given.primed:
         return one
     length = known.get(LENGTH_OF, known.get("scaling.length"))
-    moment = said.name in MOMENTS
+    moment = given.name in MOMENTS
     sizes = f"A={float(str(area))!r} m^2" + (
         f" L={OPEN if length is None else repr(quantity(length, 'length'))} m" if moment else ""
     )
     counted = re.search(r"\[([^\]]*)\]", one.text)
     if counted and share(counted[1]) is not None:  # a coefficient has no power of ten of its own
         return one
-    text = f"{str(said).partition(' [')[0].rstrip(chr(39))} [coefficient {sizes.replace(f'L={OPEN} m', f'L={OPEN}')}]"
+    text = f"{str(given).partition(' [')[0].rstrip(chr(39))} [coefficient {sizes.replace(f'L={OPEN} m', f'L={OPEN}')}]"
     return replace(one, text=text, why=f"{one.why}, by 1/2 rho U^2 A{' L' * moment}, as said")
 
 

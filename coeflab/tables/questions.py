@@ -21,7 +21,7 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
-from coeflab.tables.stated_settings import arm_by_words, point_by_words
+from coeflab.tables.settings_in_files import arm_by_words, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, SIZES, area_of
@@ -144,25 +144,25 @@ def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
         "scaling.length, moments L^3"
     )
     choices = "area that they were divided by, such as 0.2 m^2; or prime: L^2 by scaling.length"
-    said = raw.stated.get(BASIS)
+    given = raw.stated.get(BASIS)
     sizes, places = known_sizes(raw, settings)
-    if said is not None and not said.contradicted:
-        basis = str(said.value)
+    if given is not None and not given.contradicted:
+        basis = str(given.value)
         area = area_of(basis, sizes)
         if basis == "L L":
-            return Question(AREA, asks, choices, "prime", said.place, said.place, grave=True)
+            return Question(AREA, asks, choices, "prime", given.place, given.place, grave=True)
         if area is not None:
-            sources = dict.fromkeys([said.place, *(places[f] for f in basis.split() if f in places)])
+            sources = dict.fromkeys([given.place, *(places[f] for f in basis.split() if f in places)])
             why = "; ".join(sources)
             return Question(AREA, asks, choices, f"{area:.12g} m^2", why, f"{basis}: {why}", grave=True)
         if "L" in basis.split() and "L" not in sizes and area_of(basis, {**sizes, "L": 1.0}) is not None:
             return Question(
-                AREA, asks, choices, "", said.place, f"{basis}: {said.place}", f"{basis}, once L is said", grave=True
+                AREA, asks, choices, "", given.place, f"{basis}: {given.place}", f"{basis}, once L is said", grave=True
             )
-        return Question(AREA, asks, f"{said.place}: {basis}, in m^2; {choices}", grave=True)
+        return Question(AREA, asks, f"{given.place}: {basis}, in m^2; {choices}", grave=True)
     areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral")]
-    if said is not None or (primes and areas):
-        named = said.contradicted if said is not None else "; ".join(areas)
+    if given is not None or (primes and areas):
+        named = given.contradicted if given is not None else "; ".join(areas)
         return Question(AREA, asks, f"{named}; {choices}", grave=True)
     if not primes:
         return Question(AREA, asks, choices)
@@ -255,11 +255,11 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         shown = f"{_point(own)} in its axes"
         if frame is not None or not any(own):
             here = ", ".join(f"{x + 0.0:.12g}" for x in (frame.rotation @ np.array(own) if frame else np.array(own)))
-    elif (said := raw.stated.get("axes.datum")) and (
-        said.contradicted or (datum is not None and not of_datum(str(datum.value), str(said.value)))
+    elif (given := raw.stated.get("axes.datum")) and (
+        given.contradicted or (datum is not None and not of_datum(str(datum.value), str(given.value)))
     ):
-        choices = f"{said.contradicted or said.place}; {choices}"
-    elif datum is not None or said is not None:
+        choices = f"{given.contradicted or given.place}; {choices}"
+    elif datum is not None or given is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
     unsaid = why == "the datum itself" or why.endswith(UNSAID_IN_WORDS)
     yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True, assumed=unsaid)
@@ -300,9 +300,9 @@ def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> 
 
 def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Question]:
     forces = [c.said for c in columns if c.said.role == "force"]
-    pure = bool(forces) and all(said.pure for said in forces)
+    pure = bool(forces) and all(given.pure for given in forces)
     plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
-    length = next((said.length for said in forces if said.length), 0.0)
+    length = next((given.length for given in forces if given.length), 0.0)
     far = _from_the_nose(settings)
     beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients"
     beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
@@ -407,13 +407,13 @@ def _where_still(raw: RawTable, settings: Settings) -> Question:
 
 def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
     """Its place as words give it from the datum, empty where they count it from another point; and the words."""
-    said = raw.stated.get(CENTRE_FROM)
-    if said is None:
+    given = raw.stated.get(CENTRE_FROM)
+    if given is None:
         return "", ""
-    x, _, point = str(said.value).partition(" ")
+    x, _, point = str(given.value).partition(" ")
     datum = settings.get("axes.datum") or raw.stated.get("axes.datum")
     same = datum is not None and bool(point) and of_datum(str(datum.value), point)
-    return (f"{x}, 0, 0" if same else "", said.place)
+    return (f"{x}, 0, 0" if same else "", given.place)
 
 
 def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
@@ -422,8 +422,8 @@ def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
         return str(settings["source.kind"].value)
     if _is_computed(raw):
         return "cfd"
-    said = raw.stated.get("source.kind") or words.get("source.kind")
-    return str(said.value) if said else ""
+    given = raw.stated.get("source.kind") or words.get("source.kind")
+    return str(given.value) if given else ""
 
 
 def _is_computed(raw: RawTable) -> bool:
@@ -442,32 +442,32 @@ def _of_source(raw: RawTable) -> Iterator[Question]:
 
 def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     """The question with what words over the table or its name say as its default, where no number gives one."""
-    said = raw.stated.get(q.key) or words.get(q.key)
+    given = raw.stated.get(q.key) or words.get(q.key)
     if (q.key in (POINT_OF, "axes.datum") and POINT_FROM in raw.stated) or (
-        said is not None and isinstance(said.value, tuple)
+        given is not None and isinstance(given.value, tuple)
     ):
         return q
-    if said is not None and said.contradicted and not q.why.startswith("median"):
-        choices = f"{said.contradicted}; {q.choices}".rstrip("; ")
+    if given is not None and given.contradicted and not q.why.startswith("median"):
+        choices = f"{given.contradicted}; {q.choices}".rstrip("; ")
         return replace(
             q,
             default="",
             shown="",
             choices=choices,
-            why=said.contradicted,
-            asks=f"{q.asks}. {said.contradicted}",
+            why=given.contradicted,
+            asks=f"{q.asks}. {given.contradicted}",
             harmless=False,
         )
-    if said is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
-        if str(said.value).casefold() in q.default.casefold():
+    if given is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
+        if str(given.value).casefold() in q.default.casefold():
             return replace(q, assumed=False)  # numbers and words agree
-        against = f"{said.place}, but {q.default}: {q.why}"
+        against = f"{given.place}, but {q.default}: {q.why}"
         return replace(
             q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against
         )
     if (
-        said is None
-        or not said.offered
+        given is None
+        or not given.offered
         or (
             q.default
             and not q.harmless
@@ -477,9 +477,9 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         return q
     if q.harmless and q.default and q.why.startswith("median"):
         return q
-    value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
-    value = value.casefold() if isinstance(said.value, bool) else value
-    return replace(q, default=value, why=said.place, short=said.place, shown="", assumed=False)
+    value = f"{given.value:.12g}" if isinstance(given.value, float) else str(given.value)
+    value = value.casefold() if isinstance(given.value, bool) else value
+    return replace(q, default=value, why=given.place, short=given.place, shown="", assumed=False)
 
 
 def _point(value: Any) -> str:

@@ -381,6 +381,6 @@ def _contradicted(columns: Sequence[Assigned], campaign: Campaign) -> Iterator[s
             yield f"warning: {shows.text}"
             continue
         name = shows.key.partition(".")[2]
-        said = campaign.signs.get(name) if name else None
-        if said and angle_sign(name, shows.value) != angle_sign(name, said):
+        words = campaign.signs.get(name) if name else None
+        if words and angle_sign(name, shows.value) != angle_sign(name, words):
             yield f"warning: {shows.text}, so {shows.value}; declared is the opposite"

@@ -277,10 +277,10 @@ def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
             by_flow = float(np.arccos(np.max(np.abs(velocity)) / speed))
             by_angle = float(np.arccos(np.clip(np.prod([np.cos(a.value) for a in angles]), -1.0, 1.0)))
             if max(by_flow, by_angle) < np.pi / 4 and abs(by_flow - by_angle) > 0.002 + 0.01 * by_angle:
-                said = ", ".join(f"{c} = {found[c]}" for c in (*LINEAR, "alpha", "beta") if c in found)
+                words = ", ".join(f"{c} = {found[c]}" for c in (*LINEAR, "alpha", "beta") if c in found)
                 return [
                     InputError(
-                        f"{said}: {np.degrees(by_flow):.4g} and {np.degrees(by_angle):.4g} degrees to the axis of the flow",
+                        f"{words}: {np.degrees(by_flow):.4g} and {np.degrees(by_angle):.4g} degrees to the axis of the flow",
                         "one incidence", file=run,
                     )
                 ]  # fmt: skip

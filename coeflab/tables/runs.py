@@ -560,10 +560,10 @@ def read_all(
     """
     say: Progress = progress or (lambda _: None)
     options = dict(options)
-    kept = State(state, _key(importer, options)) if state is not None else None
+    selected = State(state, _key(importer, options)) if state is not None else None
     out: dict[str, RunSummary] = {}
-    if kept is not None:
-        out = {name: known for name, path in found.items() if (known := kept.known(path, name)) is not None}
+    if selected is not None:
+        out = {name: known for name, path in found.items() if (known := selected.known(path, name)) is not None}
     todo = [(path, name) for name, path in found.items() if name not in out]
     count, unfinished, before = len(found), 0, f", {len(out):,} known from before" if out else ""
     every = max(len(todo) // 100, 1)
@@ -573,14 +573,14 @@ def read_all(
             zip(todo, _read(todo, importer, options, workers), strict=True), 1
         ):
             out[name] = summary
-            if kept is not None:
-                kept.keep(path, mark, summary)
+            if selected is not None:
+                selected.keep(path, mark, summary)
             unfinished += summary.status is not Convergence.CONVERGED
             if i % every == 0 or i == len(todo):
                 say(f"read {i:,} of {len(todo):,} runs, {unfinished:,} not converged{before}")
     finally:
-        if kept is not None:
-            kept.close()
+        if selected is not None:
+            selected.close()
     return [out[name] for name in found], len(todo)
 
 

@@ -266,17 +266,17 @@ def _delimiter(kept: list[tuple[int, str]], options: Options, path: Path) -> Fou
 
 
 def _readings(marks: Marks) -> str:
-    said = f"decimal {SAID[marks.decimal]}"
-    return f"{said} and {SAID[marks.thousands]} between thousands" if marks.thousands else said
+    words = f"decimal {SAID[marks.decimal]}"
+    return f"{words} and {SAID[marks.thousands]} between thousands" if marks.thousands else words
 
 
 def _which(one: Marks, other: Marks) -> str:
     """The options that decide between two readings."""
-    said = [
+    words = [
         f"decimal = {SAID[m.decimal]}" if one.decimal != other.decimal else f"thousands = {SAID[m.thousands]}"
         for m in (one, other)
     ]
-    return f"Say the option {said[0]} or {said[1]}."
+    return f"Say the option {words[0]} or {words[1]}."
 
 
 def _marks(rows: Rows, delimiter: str, options: Options, path: Path) -> Marks:
@@ -398,15 +398,15 @@ def sniff(path: Path, options: Options) -> TextDialect:
     lines, ends = first_lines(sample, whole, encoding, path)
     comments = _comments(options)
     first = max(options.header, options.units, 0)
-    kept = [
+    selected = [
         (n, line) for n, line in enumerate(lines, start=1)
         if line.strip() and n > first and not is_comment(line.lstrip(), comments) and not RULE.fullmatch(line)
     ]  # fmt: skip
-    if not kept:
+    if not selected:
         found = f"nothing under line {first}" if first > 0 else "an empty file, or one of comments only"
         raise InputError(found, "a table", file=path)
-    delimiter, rows, run = _delimiter(kept, options, path)
-    delimiter, rows, run = _single_column(lines, kept, (delimiter, rows, run), options, path)
+    delimiter, rows, run = _delimiter(selected, options, path)
+    delimiter, rows, run = _single_column(lines, selected, (delimiter, rows, run), options, path)
     width = run[2]
     if width > TABLE_COLUMNS:
         raise InputError(f"{width} columns", f"at most {TABLE_COLUMNS}", file=path, line=rows[run[0]][0])
@@ -426,7 +426,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         if head.unit_line == rows[begin][0]:
             break
     begin = first
-    _two_blanks(delimiter, marks, kept, rows[begin : run[1]], path)
+    _two_blanks(delimiter, marks, selected, rows[begin : run[1]], path)
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
     words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)
     ends_of = {len(c[-1].partition(marks.decimal)[2]) for c in body[:-1]} if len(body) > 3 else {-1}
@@ -437,7 +437,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
             if is_comment(line.lstrip(), comments)
         }
     )
-    said = {
+    phrases = {
         "delimiter": _said_delimiter(delimiter),
         "decimal mark": SAID[marks.decimal],
         "thousands mark": SAID[marks.thousands],
@@ -455,7 +455,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
     over = list(_above(lines[: rows[begin][0] - 1], head, delimiter, comments))
     return TextDialect(
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
-        said, tuple(remarks), words_above(over, marks),
+        phrases, tuple(remarks), words_above(over, marks),
         tuple(" ".join(filter(None, cells)) for _, cells in over),
     )  # fmt: skip
 

@@ -216,7 +216,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
         notes.append(f"{TAKEN_OUT} (m = {campaign.inertia.mass:g} kg)")
-    made = ForceTable(
+    result = ForceTable(
         name=f"{campaign.name}/{table.file}",
         campaign=campaign.name,
         title=campaign.title,
@@ -260,7 +260,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         ),
         primed=frozenset(c for c, (s, _) in sources.items() if columns.headers.get(s, "").startswith(f"{s}'")),
     )
-    return made.about(campaign.reference_point)
+    return result.about(campaign.reference_point)
 
 
 def _assumed(
@@ -270,17 +270,17 @@ def _assumed(
     name = f"{campaign.name}/{table.file}"
     point = campaign.reference_point if table.reference_point is None else table.reference_point
     of = {"table": table, "axes": campaign, "scaling": campaign.scaling, "conditions": campaign.conditions}
-    said = {"axes.reference_point": _place(point), "table.centre": f"to {table.centre}"}
+    words = {"axes.reference_point": _place(point), "table.centre": f"to {table.centre}"}
     at = point if table.arm_point is None else table.arm_point
     same = "the reference point, " if not np.any(at != point) else ""
-    said["table.arm_point"] = f"{same}{_place(at)} from the {campaign.datum.id}"
-    said |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
-    said["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
+    words["table.arm_point"] = f"{same}{_place(at)} from the {campaign.datum.id}"
+    words |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
+    words["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
     keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
     keys += ["table.arm_point"] * (table.arm_point is None and bool(np.any(motion["q"]) or np.any(motion["r"])))
     for key in dict.fromkeys(keys):
         section, _, plain = key.partition(".")
-        value = said.get(key) or getattr(of.get(section), plain, "")
+        value = words.get(key) or getattr(of.get(section), plain, "")
         if section == "columns":
             value = columns.headers.get(plain, plain)
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
@@ -292,11 +292,11 @@ def _place(point: Array) -> str:
 
 def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -> Iterator[InputError]:
     """Everything that campaign.toml leaves open or contradicts about a table: the density of its forces, and an arm."""
-    made, declared = table.forces_density, campaign.conditions.density
+    result, declared = table.forces_density, campaign.conditions.density
     in_newton = any(not columns.headers.get(c, c).startswith(f"{c}'") for c in columns.forces)
-    if made is not None and columns.density is None and in_newton and abs(declared - made) > SAME_DENSITY * made:
+    if result is not None and columns.density is None and in_newton and abs(declared - result) > SAME_DENSITY * result:
         yield InputError(
-            f"density = {declared:g} kg/m^3", f"{made:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
+            f"density = {declared:g} kg/m^3", f"{result:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
             advice="Primes are right with the density that the forces were computed with. To state them at another, import the runs "
             f"again with --option density={declared:g}.",
         )  # fmt: skip
@@ -410,7 +410,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
     cos_b = np.hypot(u, w)
     inclined = cos_b > 0.0
     cos_a, sin_a = (np.divide(part, cos_b, out=np.full(len(columns), rest), where=inclined) for part, rest in ((u, 1.0), (w, 0.0)))  # fmt: skip
-    made, (y, y_sign) = {"X": "drag", "Y": "side", "Z": "lift"}, sources["Y"]
+    result, (y, y_sign) = {"X": "drag", "Y": "side", "Z": "lift"}, sources["Y"]
     parts: dict[str, dict[str, Array]] = {
         "X": {"drag": -cos_a * cos_b, "side": -cos_a * sin_b, "lift": sin_a},
         "Y": {"drag": -sin_b, "side": cos_b},
@@ -427,7 +427,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
     moved = {name: value for name, value in columns.forces.items() if name not in WIND}
     errors = {name: value for name, value in columns.errors.items() if name not in WIND}
     headers, doubtful = dict(columns.headers), [set(words) for words in columns.doubtful]
-    for part, of in made.items():
+    for part, of in result.items():
         if of not in columns.forces:
             continue
         needed = {name: k for name, k in parts[part].items() if np.any(np.abs(k) > STRAIGHT)}

@@ -45,9 +45,9 @@ def upright(raw: RawTable) -> RawTable:
         label = own if seen[own] == 1 else f"{own} ({seen[own]})"
         is_text = not np.any(np.isfinite(values))
         columns.append(RawColumn(label or f"row {i + 1}", unit, values, texts if is_text else ()))
-    kept = tuple(c for c in columns if c.texts or np.any(np.isfinite(c.values)))
+    selected = tuple(c for c in columns if c.texts or np.any(np.isfinite(c.values)))
     return replace(
-        raw, columns=kept, lines=np.empty(0, dtype=np.int64), row_labels=(),
+        raw, columns=selected, lines=np.empty(0, dtype=np.int64), row_labels=(),
         dialect={**raw.dialect, "turned": "conditions stand in its columns"},
     )  # fmt: skip
 

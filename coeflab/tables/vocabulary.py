@@ -124,8 +124,8 @@ def _joined(path: Path) -> Vocabulary:
     own, base = _read(file.content), _shipped()
     every = frozenset(w for section in SECTIONS[:4] for w in own[section])
     # A word of one's own has no other meaning left.
-    kept = {s: {w: m for w, m in getattr(base, s).items() if w not in every} for s in SECTIONS[:4]}
+    selected = {s: {w: m for w, m in getattr(base, s).items() if w not in every} for s in SECTIONS[:4]}
     return Vocabulary(
-        **{s: {**kept[s], **own[s]} for s in SECTIONS[:4]},
+        **{s: {**selected[s], **own[s]} for s in SECTIONS[:4]},
         symbols={**base.symbols, **own["symbols"]}, units={**base.units, **own["units"]}, own=every,
     )  # fmt: skip

@@ -62,17 +62,17 @@ def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
     found = matching(campaign, jobs)
     rows = _rows(campaign)
     for job in jobs:
-        said = found.get(job.name)
-        if said is None or progress(job).state.is_kept:
+        words = found.get(job.name)
+        if words is None or progress(job).state.is_kept:
             continue
-        row = _content(said, rows.get(job.name, {}))
+        row = _content(words, rows.get(job.name, {}))
         history = campaign / HISTORIES / f"{job.name}.csv"
         row["history"] = read_text(history, JSON_BYTES) if history.is_file() else ""
         write_atomically(job.folder / EARLIER, (json.dumps(row, indent=1) + "\n").encode())
         write_progress(
             job.folder,
             Progressed(
-                JobState(said["state"]), job.key, iteration=or_nan(row["iterations"]), means=row["means"],
+                JobState(words["state"]), job.key, iteration=or_nan(row["iterations"]), means=row["means"],
                 errors=row["errors"], why=row["why"], remarks=tuple(row["remarks"]),
             ),
         )  # fmt: skip
@@ -92,10 +92,10 @@ def matching(campaign: Path, jobs: Sequence[Job]) -> dict[str, Mapping[str, str]
     keys = {job.name: job.key for job in jobs}
     out: dict[str, Mapping[str, str]] = {}
     for job in jobs:
-        said = ended.get(job.name)
+        words = ended.get(job.name)
         mesh = "+".join(keys.get(name, "") for name in job.needs)
-        if said is not None and (said["case sha256"], said["mesh sha256"]) == (job.key, mesh):
-            out[job.name] = said
+        if words is not None and (words["case sha256"], words["mesh sha256"]) == (job.key, mesh):
+            out[job.name] = words
     if not out:
         raise InputError(f"{len(ended)} conditions that ended, none with a case and mesh of this tow", "the same keys in "
                          f"{RUNS}", file=campaign, column="--finished",
@@ -150,10 +150,12 @@ def _ended(campaign: Path) -> dict[str, dict[str, str]]:
         raise InputError(f"no {RUNS}", _OURS, file=campaign, column="--finished")
     try:
         rows = _read(io.StringIO(read_text(path, JSON_BYTES), newline=""))
-        kept = {r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]}
+        selected = {
+            r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]
+        }
     except (ValueError, KeyError, TypeError, csv.Error) as why:
         raise InputError(f"no table of runs ({shown(why)[1:-1]})", _OURS, file=path, column="--finished") from None
-    return kept
+    return selected
 
 
 def _rows(campaign: Path) -> dict[str, Mapping[str, str]]:

@@ -207,8 +207,8 @@ class _Attempt:
                     preexec_fn=ends_with(os.getpid()),  # noqa: PLW1509 - no threads here
                 )  # fmt: skip
         except OSError as why:
-            said = f"{step.command[0]} cannot be started: {why.strerror or why}"
-            raise OutputError(said) from None
+            words = f"{step.command[0]} cannot be started: {why.strerror or why}"
+            raise OutputError(words) from None
         try:
             return self._watch(step, process)
         finally:

@@ -178,8 +178,8 @@ def _with_error(value: float, error: float) -> str:
 def reasons(rows: Sequence[JobRow]) -> tuple[str, ...]:
     """What shows the state of every job that ended badly, whole, on as many lines as that takes."""
     bad = (JobState.CRASHED, JobState.DIVERGED, JobState.UNCONVERGED, JobState.STOPPED, JobState.CHANGED)
-    said = (_whole(r.job.name, r.progress.why) for r in rows if r.progress.state in bad and r.progress.why)
-    return tuple(line for lines in said for line in lines)
+    phrases = (_whole(r.job.name, r.progress.why) for r in rows if r.progress.state in bad and r.progress.why)
+    return tuple(line for lines in phrases for line in lines)
 
 
 def _whole(name: str, why: str) -> list[str]:
@@ -204,8 +204,8 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
         status = "" if r.coefficient.status is Status.OK else r.coefficient.status.replace("_", " ")
         is_open = r.value is not None and r.u95 is not None and abs(r.value) <= r.u95 and SIGN_OPEN not in status
         wide = "" if r.is_result else f"no result: U95 above {NO_RESULT:.0%}"
-        said = "; ".join(filter(None, (status, SIGN_OPEN * is_open, wide, r.why)))
-        cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(said, LONGEST)))
+        phrases = "; ".join(filter(None, (status, SIGN_OPEN * is_open, wide, r.why)))
+        cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(phrases, LONGEST)))
     about = ", ".join(f"{x:.4g}" for x in tank.reference_point)
     notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
     notes += [f"Not fitted: {unfitted}."] if unfitted else []
@@ -233,21 +233,19 @@ def covers(rows: Sequence[TowedRow]) -> str:
         return ""
     if is_estimated(rows):
         return "U95: 95 %, the scatter and the spread of the methods of estimates. No measurement and no CFD."
-    said = "U95: 95 %, of the fit and the scatter of the runs about it."
+    phrases = "U95: 95 %, of the fit and the scatter of the runs about it."
     studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
     spread = [f"{primed(r.symbol)} {r.model:.2g}" for r in rows if r.model is not None]
     if studied:
-        said += f" By the grid study, 95 %: {', '.join(studied)}."
+        phrases += f" By the grid study, 95 %: {', '.join(studied)}."
     else:
-        said += " The error of the grid is not in it: there is no grid study."
+        phrases += " The error of the grid is not in it: there is no grid study."
     if spread:
-        return (
-            f"{said} Model error beside it, by another turbulence model: {', '.join(spread)}. Domain: see the report."
-        )
+        return f"{phrases} Model error beside it, by another turbulence model: {', '.join(spread)}. Domain: see the report."
     return (
-        f"{said} Domain and turbulence model: see the report."
+        f"{phrases} Domain and turbulence model: see the report."
         if studied
-        else f"{said} Nor are those of domain and turbulence model."
+        else f"{phrases} Nor are those of domain and turbulence model."
     )
 
 

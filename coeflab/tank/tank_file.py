@@ -151,18 +151,20 @@ def _scaling(body: Body) -> Scaling | None:
 
 
 def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver: str, runner: str) -> Tank:
-    said = takes.declared(TankFile, file)
-    where = _where(file, said.tank.body, body_file)
+    given = takes.declared(TankFile, file)
+    where = _where(file, given.tank.body, body_file)
     own = read_body(where) if body is None else body.body
     require_orientation(own)
-    scaling = said.scaling or _scaling(own)
+    scaling = given.scaling or _scaling(own)
     if scaling is None and body is not None:
         scaling = Scaling(body.length, "LOA")
     if scaling is None:
         raise file.fail("scaling.length", "nothing", "a length", "Add [scaling] with length and length_name.")
-    towed = body if body is None or said.tank.symmetry else replace(body, mirrors=(False, False, False), fourfold=False)
-    speed = said.conditions.speed
-    sweeps = _sweeps(said.matrix, towed, scaling.length)
+    towed = (
+        body if body is None or given.tank.symmetry else replace(body, mirrors=(False, False, False), fourfold=False)
+    )
+    speed = given.conditions.speed
+    sweeps = _sweeps(given.matrix, towed, scaling.length)
     try:
         if sweeps == Sweeps():
             raise InputError(  # noqa: TRY301
@@ -170,26 +172,26 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
                 advice='drift = ["2 deg", "4 deg"], or speeds = ["1 m/s"] for the resistance alone; a list left out gives its default.',
             )  # fmt: skip
         matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
-        matrix = test_matrix.with_studies(matrix, [study.made for study in said.study])
+        matrix = test_matrix.with_studies(matrix, [study.made for study in given.study])
     except InputError as why:
         raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None
-    chosen, carried_by = solver or said.tank.solver, runner or said.tank.runner
-    options = _options(file, "solver", SOLVERS, said.solver, chosen, "tank.solver" if not solver else "")
-    carrying = _options(file, "runner", RUNNERS, said.runner, carried_by, "tank.runner" if not runner else "")
-    point = own.reference_point if said.tank.reference_point is None else said.tank.reference_point
+    chosen, carried_by = solver or given.tank.solver, runner or given.tank.runner
+    options = _options(file, "solver", SOLVERS, given.solver, chosen, "tank.solver" if not solver else "")
+    carrying = _options(file, "runner", RUNNERS, given.runner, carried_by, "tank.runner" if not runner else "")
+    point = own.reference_point if given.tank.reference_point is None else given.tank.reference_point
     return Tank(
-        name=said.tank.name or folder_name(own.name),
-        title=own.title or own.name if said.tank.title is None else said.tank.title,
+        name=given.tank.name or folder_name(own.name),
+        title=own.title or own.name if given.tank.title is None else given.tank.title,
         body=where,
         datum=Datum.named(own.datum.id, own.datum.note),
         reference_point=point,
         scaling=scaling,
-        conditions=Conditions(said.conditions.density, speed, said.conditions.viscosity),
+        conditions=Conditions(given.conditions.density, speed, given.conditions.viscosity),
         matrix=matrix,
-        grids=said.grids,
+        grids=given.grids,
         solver=chosen,
         options=options,
-        cores=said.tank.cores,
+        cores=given.tank.cores,
         by_symmetry=test_matrix.stated(towed, sweeps),
         symmetry=test_matrix.symmetries(towed),
         runner=carried_by,

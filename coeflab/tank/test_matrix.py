@@ -168,8 +168,8 @@ def symmetries(body: TowedBody | None) -> tuple[str, ...]:
     """Of port-starboard, up-down, fourfold those that the body has; none of a body that is not known."""
     if body is None:
         return ()
-    said = {PORT_STARBOARD: body.mirrors[1], UP_DOWN: body.mirrors[2], FOURFOLD: body.fourfold}
-    return tuple(name for name, has in said.items() if has)
+    named = {PORT_STARBOARD: body.mirrors[1], UP_DOWN: body.mirrors[2], FOURFOLD: body.fourfold}
+    return tuple(name for name, has in named.items() if has)
 
 
 def largest_rate(body: TowedBody | None, length: float) -> float:
@@ -343,9 +343,11 @@ def half_of(velocity: Array, rates: Array, controls: Mapping[str, float], has: S
     """
     size = EXACT * float(np.linalg.norm(velocity))
     turning = EXACT * max(float(np.linalg.norm(rates)), 1e-300)
-    kept = {KEEPS.get(name, "") for name, angle in controls.items() if angle}
-    flat = abs(velocity[2]) <= size and bool(np.all(np.abs(rates[:2]) <= turning)) and kept <= {UP_DOWN}
-    upright = abs(velocity[1]) <= size and bool(np.all(np.abs(rates[[0, 2]]) <= turning)) and kept <= {PORT_STARBOARD}
+    selected = {KEEPS.get(name, "") for name, angle in controls.items() if angle}
+    flat = abs(velocity[2]) <= size and bool(np.all(np.abs(rates[:2]) <= turning)) and selected <= {UP_DOWN}
+    upright = (
+        abs(velocity[1]) <= size and bool(np.all(np.abs(rates[[0, 2]]) <= turning)) and selected <= {PORT_STARBOARD}
+    )
     if flat and UP_DOWN in has:
         return Half.UPPER
     return Half.PORT if upright and PORT_STARBOARD in has else Half.WHOLE

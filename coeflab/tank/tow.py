@@ -228,8 +228,8 @@ def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str =
     own, file = read_body(file), file.resolve()
     point = own.reference_point
     if matrix is not None:
-        said = declared(TankFile, read_toml(matrix)).tank.reference_point
-        point = point if said is None else said
+        words = declared(TankFile, read_toml(matrix)).tank.reference_point
+        point = point if words is None else words
     surface = towed(own, point)
     if matrix is None:
         return default_tank(file, surface, solver=solver, runner=runner), surface
@@ -528,10 +528,10 @@ def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str, str]:
     if solver.table is not None:
         with SOLVERS.guarded(tow.tank.solver):
             table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
-        made = table.stated.get("source.how_obtained")
+        result = table.stated.get("source.how_obtained")
         kind = table.stated.get("source.kind")
-        said = f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
-        return rows_of(tow.tank, table), said, "cfd" if kind is None else str(kind.value)
+        words = f"{result.value if result is not None else tow.tank.solver} ({table.path.name})"
+        return rows_of(tow.tank, table), words, "cfd" if kind is None else str(kind.value)
     states = {name: progress(job) for name, job in jobs.items()}
     out = []
     for condition in tow.tank.matrix:

@@ -259,9 +259,9 @@ def recorded(fits: Sequence[FitResult]) -> tuple[tuple[ParameterModel, ...], lis
         for model in f.models:
             key = (model.response, model.domain.variables)
             if key in out:
-                kept = out[key]
+                selected = out[key]
                 notes.append(
-                    f"{model.response} over {', '.join(key[1])}: {kept.form} of {kept.campaign} is kept, {model.form} of "
+                    f"{model.response} over {', '.join(key[1])}: {selected.form} of {selected.campaign} is kept, {model.form} of "
                     f"{model.campaign} is in the report only"
                 )
             else:
@@ -407,7 +407,7 @@ def assemble(
             notes.append(
                 f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
-    made = ParameterFile(
+    result = ParameterFile(
         name=group.name,
         body=group.body,
         scaling=first.scaling,
@@ -452,13 +452,13 @@ def assemble(
     ):
         from coeflab.vehicle.from_shape import equipped
 
-        made = equipped(made, body, configuration)
+        result = equipped(result, body, configuration)
     munk = {f.campaign: float(f.settings["munk"]) for f in chosen if "munk" in f.settings}
     about = [
         with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
     ]
     mine = [t for t in about if any(t.campaign in f.campaigns for f in chosen)]
-    return without_driving_terms(with_points(made, mine, chosen), lambda p: with_points(p, mine, chosen))
+    return without_driving_terms(with_points(result, mine, chosen), lambda p: with_points(p, mine, chosen))
 
 
 def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: Sequence[FitResult]) -> ParameterFile:
@@ -478,8 +478,8 @@ def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: S
     )
     measured = with_scatter(measured, force, length)
     held = held_ranges(measured, caps(measured, force, length, law.beyond_slopes), length)
-    made = parameters.model_copy(update={"measured": measured, "law_holds": held})
-    return made.model_copy(update={"law_at_points": points_of(made)})
+    result = parameters.model_copy(update={"measured": measured, "law_holds": held})
+    return result.model_copy(update={"law_at_points": points_of(result)})
 
 
 @brief

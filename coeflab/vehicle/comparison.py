@@ -165,22 +165,22 @@ def _compared(first: ParameterModel, second: ParameterModel, a: ParameterFile, b
         largest=float(difference[worst]),
         at={v: float(x[worst]) for v, x in columns.items()},
     )
-    said = []
+    words = []
     if factor != 1.0 or rates:
-        said.append("second converted to the area and length of the first")
-    said += [f"terms of the {n} chosen on its data" for n, m in (("first", first), ("second", second))
+        words.append("second converted to the area and length of the first")
+    words += [f"terms of the {n} chosen on its data" for n, m in (("first", first), ("second", second))
              if m.post_selection]  # fmt: skip
     if not np.any(sure):
-        return replace(found, reason="; ".join(["no interval on one side", *said]))
+        return replace(found, reason="; ".join(["no interval on one side", *words]))
     share = float(np.mean(np.abs(difference[sure]) <= combined[sure]))
     if found.shared:
-        said.append("same data, intervals not independent")
+        words.append("same data, intervals not independent")
     return replace(
         found,
         combined=_rms(combined[sure]),
         share=share,
         verdict=Verdict.WITHIN if share >= SHARE else Verdict.APART,
-        reason="; ".join(said),
+        reason="; ".join(words),
     )
 
 
@@ -246,10 +246,10 @@ def _common_grid(first: ParameterModel, second: ParameterModel, rates: Mapping[s
         at_b = (points * scale)[:, np.argsort(order)]
         return points[np.logical_and(inside(spaces_a, points), inside(spaces_b, at_b))]
 
-    kept = common(grid)
-    if not len(kept):
-        kept = common(clamped(grid, spaces_a, np.array(first.domain.low), np.array(first.domain.high)))
-    return dict(zip(names, kept.T, strict=True))
+    selected = common(grid)
+    if not len(selected):
+        selected = common(clamped(grid, spaces_a, np.array(first.domain.low), np.array(first.domain.high)))
+    return dict(zip(names, selected.T, strict=True))
 
 
 SAME_POINT = 1e-9
@@ -369,23 +369,23 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     (ours, own), (theirs, spelled) = (by_plain_names(s) for s in both)
     stated = list(dict.fromkeys((*ours.symbols, *theirs.symbols)))
     (ours, of_ours), (theirs, of_theirs) = with_matrix(ours, a), with_matrix(theirs, b)
-    said = _matched(ours, theirs, (own, spelled), (of_ours, of_theirs), stated, (name_a, name_b))
-    said += [w for s, name in zip(both, (name_a, name_b), strict=True) for w in sums_in_words(s, name, stated)]
+    words = _matched(ours, theirs, (own, spelled), (of_ours, of_theirs), stated, (name_a, name_b))
+    words += [w for s, name in zip(both, (name_a, name_b), strict=True) for w in sums_in_words(s, name, stated)]
     if a.body != b.body:
-        said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
+        words.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:
-        said.append(f"{name_b} converted from {theirs.scaling} to {ours.scaling}")
+        words.append(f"{name_b} converted from {theirs.scaling} to {ours.scaling}")
     theirs = theirs.to_length(ours.scaling)
     moved = theirs
     same_datum = ours.datum == theirs.datum
     if not same_datum:
-        said.append(
+        words.append(
             f'reference points are measured from other datums, "{ours.datum.id}" and "{theirs.datum.id}": moments and rates '
             "are not comparable"
         )
     elif not np.allclose(ours.reference_point, theirs.reference_point, rtol=0.0, atol=SAME_POINT):
         at = ", ".join(f"{x:g}" for x in ours.reference_point)
-        said.append(f"{name_b} moved to the reference point of {name_a}, ({at}) m")
+        words.append(f"{name_b} moved to the reference point of {name_a}, ({at}) m")
         moved = theirs.about(ours.reference_point)
     behind = _contributors(theirs, moved)
     rows = []
@@ -404,11 +404,11 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     for name, tables in [(r.symbol, r.shared) for r in rows] + [(m.name, m.shared) for m in models]:
         for table in tables:
             alike.setdefault(table, []).append(name)
-    said += [
+    words += [
         f"{table} is behind {'; '.join(names)} of both files: their errors are not independent"
         for table, names in alike.items()
     ]
-    return Comparison(name_a, name_b, a.body == b.body, tuple(rows), tuple(said), models)
+    return Comparison(name_a, name_b, a.body == b.body, tuple(rows), tuple(words), models)
 
 
 def _matched(

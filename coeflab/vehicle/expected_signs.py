@@ -104,17 +104,17 @@ def control_signs(p: ParameterFile) -> tuple[str, ...]:
     control, stated = slopes(p).control, {c.symbol for c in p.coefficients if c.value}
     out = []
     for k, name in enumerate(CONTROLS):
-        said: list[str] = []
+        phrases: list[str] = []
         for words in (TURNS, PUSHES):
             column = {c: float(control[COMPONENTS.index(c), k]) for c in words}
             largest = max(map(abs, column.values()))
             for c, value in column.items():
-                if largest and abs(value) >= 0.1 * largest and not (said and words is PUSHES):
+                if largest and abs(value) >= 0.1 * largest and not (phrases and words is PUSHES):
                     symbol = f"{c}{name}" if f"{c}{name}'" in stated else f"{c} by {name}"
                     verb = "turns " if c == "N" else "pushes " if words is PUSHES else ""
-                    said.append(f"{verb}{words[c][value > 0.0]} ({symbol} {'>' if value > 0.0 else '<'} 0)")
-        if said:
-            out.append(f"{name} > 0: {', '.join(said)}")
+                    phrases.append(f"{verb}{words[c][value > 0.0]} ({symbol} {'>' if value > 0.0 else '<'} 0)")
+        if phrases:
+            out.append(f"{name} > 0: {', '.join(phrases)}")
     return tuple(out)
 
 
@@ -213,14 +213,14 @@ def _places(p: ParameterFile, s: Slopes) -> Iterator[Check]:
             if fits:
                 continue
             names = ", ".join(primed(t.symbol) for t, _ in terms)
-            said = f"With the other sign it acts {_where(other, length)}: is the sign wrong?" if turned else (
+            words = f"With the other sign it acts {_where(other, length)}: is the sign wrong?" if turned else (
                 f"Check its sign, its point and the {'side' if force == 'Y' else 'normal'} force of {v}."
             )  # fmt: skip
             sure = turned and m == v
             yield Check(
                 NAME, names, Severity.FAIL if sure else Severity.WARN,
                 f"d{c}/d{m} = {stated:.3g} at {p.conditions.speed:g} m/s, by the added mass {potential:.3g}: the rest acts {_where(x, length)}",
-                rule, said,
+                rule, words,
             )  # fmt: skip
 
 

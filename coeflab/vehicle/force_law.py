@@ -52,7 +52,7 @@ def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
         unit = parameters.scaling.unit(d.text, at.density, at.speed if c.law == "rest" and not c.value else 1.0)
         value = c.value_si if rest and c.value_si is not None else unit * c.value
         per_prime = value / c.value if rest and c.value else unit
-        made = ForceTerm(
+        result = ForceTerm(
             d.text,
             d.component,
             parse_suffix(d.text[1:]),
@@ -64,8 +64,8 @@ def stated_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
             None if c.potential is None else c.potential * per_prime,
             note=c.origin if c.u95 is None else f"U95 {c.u95:.2g}, {c.origin}",
         )
-        resists = made.component == "X" and not made.variables and made.speed_power == 2
-        out.append(replace(made, term=Term((Factor("u", 1),)), readings=(("u", AHEAD),)) if resists else made)
+        resists = result.component == "X" and not result.variables and result.speed_power == 2
+        out.append(replace(result, term=Term((Factor("u", 1),)), readings=(("u", AHEAD),)) if resists else result)
     return tuple(out)
 
 

@@ -115,21 +115,21 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     if not base.volume or base.centre_of_buoyancy is None:
         raise InputError(f"{body.name} without a volume", "a body that displaces water", advice=CLOSED)
     own = next((c.mass for c in reversed(body.configurations) if c.mass is not None), None)
-    displaced, assumed, said = density * base.volume, [], []
+    displaced, assumed, words = density * base.volume, [], []
     mass = stated.mass if stated.mass is not None else own.mass if own is not None else None
     if mass is None:
         mass = displaced
         assumed.append("mass")
-        said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
+        words.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
     else:
         _refuse_absurd(body, mass, displaced, density)
-        said.append(_buoyed(mass, displaced, density) + _to_neutral(body, mass / displaced, stated))
+        words.append(_buoyed(mass, displaced, density) + _to_neutral(body, mass / displaced, stated))
         if stated.mass is not None and body.mass_model is not None:
-            said.append(
+            words.append(
                 f"--mass {stated.mass:.4g} kg stands in the place of the {body.mass_model.mass:.4g} kg of [[mass]] in the body.toml; "
                 "centre of gravity and inertia are those of the file unless stated"
             )
-        said += _of_other_water(body, density) if stated.mass is None else []
+        words += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
     if centre is None and own is not None and (own.centre is not None or own.mass_moment):
@@ -137,12 +137,12 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     if centre is None:
         centre = buoyancy
         assumed.append("centre")
-        said.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
+        words.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
         rest = None
     else:
         _refuse_far(body, centre - buoyancy, "--cg" if stated.centre is not None else "centre_of_gravity")
         rest = at_rest(mass / displaced - 1.0, centre - buoyancy)
-        said.append(rest_words(rest, centre - buoyancy))
+        words.append(rest_words(rest, centre - buoyancy))
     turning = stated.inertia
     if turning is None and own is not None and own.inertia_matrix is not None:
         turning = about_another(own.inertia_matrix, own.mass, own.centre_of_gravity, np.zeros(3))
@@ -150,15 +150,15 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         water = spread_of(body, base)
         turning = mass / displaced * density * (np.trace(water) * np.eye(3) - water)
         assumed.append("inertia")
-        said.append("assumed: inertia of the displaced water, scaled to the mass; --inertia states another")
+        words.append("assumed: inertia of the displaced water, scaled to the mass; --inertia states another")
     elif why := inertia_doubt(mass, np.zeros(3), turning):
         raise InputError(why, "moments of inertia of a body about its centre of gravity", column="--inertia")
     about = about_another(turning, mass, np.zeros(3), centre)
     transverse = float(about[1, 1]) if np.isclose(about[1, 1], about[2, 2], rtol=1e-9) else None
-    made = MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
-    vehicle = replace(base, name=body.name, title=body.title, mass=made)
+    result = MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
+    vehicle = replace(base, name=body.name, title=body.title, mass=result)
     others = tuple(c for c in body.configurations if c.name != body.name)
-    return Weighed(replace(body, configurations=(*others, vehicle)), tuple(said), tuple(assumed), rest)
+    return Weighed(replace(body, configurations=(*others, vehicle)), tuple(words), tuple(assumed), rest)
 
 
 def displaced_mass(body: Body, density: float) -> float:
@@ -224,12 +224,12 @@ def _floating(body: Body) -> Configuration:
 
 def _buoyed(mass: float, displaced: float, density: float) -> str:
     over = mass - displaced
-    said = f"mass {mass:.4g} kg; the shape displaces {displaced:.4g} kg of water of {density:.5g} kg/m^3: "
+    words = f"mass {mass:.4g} kg; the shape displaces {displaced:.4g} kg of water of {density:.5g} kg/m^3: "
     if abs(over) <= TRIMMED * displaced:
-        return said + "neutrally buoyant within 0.5 %"
+        return words + "neutrally buoyant within 0.5 %"
     if over > 0.0:
-        return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
-    return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
+        return words + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
+    return words + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
 
 
 def _to_neutral(body: Body, share: float, stated: Stated) -> str:

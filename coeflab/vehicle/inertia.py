@@ -209,7 +209,7 @@ def _computed(parameters: ParameterFile) -> Array | None:
 
 def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[Array, tuple[str, ...]]:
     """The matrix with the stated entries on both sides of the diagonal, and which pairs of them were averaged."""
-    out, said = matrix.copy(), []
+    out, words = matrix.copy(), []
     for (i, j), (name, value) in stated.items():
         mirror, other = stated.get((j, i), (name, value))
         out[i, j] = out[j, i] = (value + other) / 2.0
@@ -219,10 +219,10 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
             size = float(np.sqrt(abs(np.prod(list(across)))))
             first, second = (f"{COMPONENTS[k]}{MOTIONS[k]}dot" for k in (i, j))
             apart = f", {100.0 * abs(value - other) / size:.2g} % of sqrt({first} {second}) apart" if size > 0.0 else ""
-            said.append(
+            words.append(
                 f"{name} and {mirror} are equal in theory, but {-value:.4g} and {-other:.4g} {unit} in the file{apart}; their mean is used"
             )
-    return out, tuple(said)
+    return out, tuple(words)
 
 
 def against_computed(parameters: ParameterFile) -> str:

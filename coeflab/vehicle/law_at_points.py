@@ -421,14 +421,14 @@ def _within(
 
 
 def _place(m: MeasuredTable, primes: Mapping[str, Array], row: int) -> str:
-    said = []
+    words = []
     for v, x in primes.items():
         if abs(x[row]) > AT_REST:
             angle = v in LINEAR or v in CONTROLS
             value = np.degrees(np.arcsin(np.clip(x[row], -1.0, 1.0)) if v in LINEAR else x[row]) if angle else x[row]
             name = ANGLES.get(v, v if v in CONTROLS else f"{v}'")
-            said.append(f"{name} {value:.3g}{' deg' if angle else ''}")
-    return f"{m.labels[row]} ({', '.join(said) or 'zero angle and rate'})"
+            words.append(f"{name} {value:.3g}{' deg' if angle else ''}")
+    return f"{m.labels[row]} ({', '.join(words) or 'zero angle and rate'})"
 
 
 def held_ranges(

@@ -145,16 +145,16 @@ def merged(
         if symbol not in ours:
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(symbol), None, theirs.coefficients[j]))
-    made = _joined(base, other, (ours, theirs), entries, replaced, name)
-    for symbol in () if alone else _against_points(made):
+    result = _joined(base, other, (ours, theirs), entries, replaced, name)
+    for symbol in () if alone else _against_points(result):
         entries = [e for e in entries if e[0].symbol != symbol]
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
-        made = _joined(base, other, (ours, theirs), entries, replaced, name)
-    said = _lengths(base, other, own or other.scaling)
+        result = _joined(base, other, (ours, theirs), entries, replaced, name)
+    words = _lengths(base, other, own or other.scaling)
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
-    notes = (*made.provenance.notes, *sums, *([said] if said else []))
-    update = {"law_at_points": points_of(made), "provenance": made.provenance.model_copy(update={"notes": notes})}
-    return Merged(made.model_copy(update=update), tuple(replaced), said)
+    notes = (*result.provenance.notes, *sums, *([words] if words else []))
+    update = {"law_at_points": points_of(result), "provenance": result.provenance.model_copy(update={"notes": notes})}
+    return Merged(result.model_copy(update=update), tuple(replaced), words)
 
 
 def _nothing(other: ParameterFile) -> str:
@@ -311,6 +311,6 @@ def _from(point: Sequence[float], shift: np.ndarray) -> tuple[float, ...]:
 
 def findings_of_merged(found: Sequence[Finding], name: str) -> tuple[Finding, ...]:
     """Findings of several files on one whose law is neither's: what was said of a law against its force model no longer is."""
-    kept = dict.fromkeys(f for f in found if not f.code.startswith("law.model"))
-    left = len(kept) < len(dict.fromkeys(found))
-    return (*kept, *((Finding.of("law.model_left", name, Severity.NOTE),) if left else ()))
+    selected = dict.fromkeys(f for f in found if not f.code.startswith("law.model"))
+    left = len(selected) < len(dict.fromkeys(found))
+    return (*selected, *((Finding.of("law.model_left", name, Severity.NOTE),) if left else ()))

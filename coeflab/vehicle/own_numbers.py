@@ -118,7 +118,7 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
     return out
 
 
-def stated_file(
+def imported_file(
     name: str, body: str, scaling: Scaling, conditions: Conditions, point: Array, datum: Datum, numbers: Sequence[OwnNumber],
     mass: MassProperties | None = None, hydrostatics: ParameterHydrostatics | None = None,
 ) -> ParameterFile:  # fmt: skip
@@ -167,8 +167,8 @@ def stated_file(
 def stated_beside(base: ParameterFile, numbers: Sequence[OwnNumber]) -> ParameterFile:
     """The numbers as a file of the base's length, conditions and reference point, to be merged into it."""
     at = base.reference_point
-    made = stated_file(BY_HAND, base.body, base.scaling, base.conditions, np.array(at.point), at.origin, numbers)
-    return made.model_copy(update={"provenance": made.provenance.model_copy(update={"notes": ()})})
+    result = imported_file(BY_HAND, base.body, base.scaling, base.conditions, np.array(at.point), at.origin, numbers)
+    return result.model_copy(update={"provenance": result.provenance.model_copy(update={"notes": ()})})
 
 
 def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) -> MassProperties:
@@ -195,15 +195,15 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
     place = np.zeros(3) if centre is None else np.asarray(centre)
     x = float(place[0])
     about = np.diag(inertia) + parallel_axis(mass, place) if len(inertia) == 3 else None
-    made = MassProperties(
+    result = MassProperties(
         mass, mass * x, inertia[0] + mass * x * x if len(inertia) == 1 else None,
         place if centre is not None or about is not None else None, about,
     )  # fmt: skip
     try:
-        made.refuse()
+        result.refuse()
     except ValueError as why:
         raise InputError(str(why), "moments of inertia of a body", column="--inertia") from None
-    return made
+    return result
 
 
 def typed_file(
@@ -273,11 +273,11 @@ def typed_file(
             volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
         )
     datum = Datum.named(about.strip())
-    made = stated_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
+    result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
-    return made.model_copy(update={"thrusters": driven})
+    return result.model_copy(update={"thrusters": driven})
 
 
 NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit")

@@ -129,8 +129,8 @@ def too_new(noun: Any, version: str) -> str:
 def as_of(version: str, noun: Any, content: Any) -> Any:
     """The JSON content of a noun without the fields that came after a version."""
     if known := stored_fields(noun.__class__):
-        kept = [f.name for f in known if not is_later(f.since, version)]
-        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept if name in content}
+        selected = [f.name for f in known if not is_later(f.since, version)]
+        return {name: as_of(version, getattr(noun, name), content[name]) for name in selected if name in content}
     if isinstance(noun, tuple):
         return [as_of(version, v, c) for v, c in zip(noun, content, strict=True)]
     return content
@@ -467,13 +467,13 @@ def read_parameter_file(path: Path) -> ParameterFile:
     try:
         return _validated(text, version)
     except ValidationError as why:
-        told = complaints(why, text, path, own_bytes(SCHEMA_FILE), advice(version))
+        given = complaints(why, text, path, own_bytes(SCHEMA_FILE), advice(version))
         if not is_later(version, SCHEMA_VERSION):
-            raise told from None
+            raise given from None
         raise InputError(
-            f"{told.found} in a file of schema_version {version}",
+            f"{given.found} in a file of schema_version {version}",
             f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
-            file=path, line=told.line, key=told.column, advice=advice(version),
+            file=path, line=given.line, key=given.column, advice=advice(version),
         ) from None  # fmt: skip
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None

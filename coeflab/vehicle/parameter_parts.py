@@ -116,8 +116,8 @@ def _rounded(found: AddedMass, point: np.ndarray) -> np.ndarray:
     matrix = found.about(point).matrix
     diagonal = np.diag(matrix)
     cut = 1e-10 * np.sqrt(np.abs(np.outer(diagonal, diagonal)))
-    kept = [float(f"{v:.10g}") for v in ((matrix + matrix.T) / 2.0).ravel()]
-    out = np.where(np.abs((matrix + matrix.T) / 2.0) > cut, np.reshape(kept, (6, 6)), 0.0)
+    selected = [float(f"{v:.10g}") for v in ((matrix + matrix.T) / 2.0).ravel()]
+    out = np.where(np.abs((matrix + matrix.T) / 2.0) > cut, np.reshape(selected, (6, 6)), 0.0)
     still = np.abs(diagonal) <= STILL * np.repeat([np.max(np.abs(diagonal[:3])), np.max(np.abs(diagonal[3:]))], 3)
     out[still, :] = out[:, still] = 0.0
     return out

@@ -120,8 +120,8 @@ def _missing(where: Place, content: Any, schema: bytes) -> tuple[str, str]:
             if key == "unit_si":
                 return f'"{unit}", the unit of its symbol', ""
             return f"the value in {unit} at the density and speed of conditions, or null", ""
-    said = _meaning(where, parse_json(schema.decode()))
-    return (f"a value: {said}" if said else "a value"), ""
+    words = _meaning(where, parse_json(schema.decode()))
+    return (f"a value: {words}" if words else "a value"), ""
 
 
 def _meaning(where: Place, schema: Any) -> str:

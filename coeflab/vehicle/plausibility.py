@@ -20,11 +20,10 @@ from coeflab.core.types import brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.rigid_body import about_another, ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
+from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
-from coeflab.vehicle.inertia import centre_of_gravity
-from coeflab.vehicle.second_order import products_once, slot
-from coeflab.vehicle.stated_numbers import (
+from coeflab.vehicle.imported_numbers import (
     AIR,
     MOMENTS,
     Written,
@@ -35,7 +34,8 @@ from coeflab.vehicle.stated_numbers import (
     munk_twice,
     water,
 )
-from coeflab.vehicle.stated_twice import twice_findings
+from coeflab.vehicle.inertia import centre_of_gravity
+from coeflab.vehicle.second_order import products_once, slot
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -403,14 +403,14 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             )
             means = "A coefficient was changed after the file was written: this is not the law that was compared."
             out.append(Check(LAW, f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means))
-        said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
+        words = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
         if f.beyond and not f.small and not f.missed:
-            said = (
+            words = (
                 f"points {', '.join(f.beyond)}, outside the range of the law, differ by up to {100.0 * f.worst_beyond / largest:.2g} %; "
                 f"inside it {100.0 * f.worst / largest:.2g} % at most (allowed {allowed:.2g} %)"
             )
         if taken := _taken_off(parameters, f.component, f.table):
-            said += f". An error of the set-up is subtracted, up to {100.0 * taken / largest:.2g} %: the part of X that is odd in the drift"
+            words += f". An error of the set-up is subtracted, up to {100.0 * taken / largest:.2g} %: the part of X that is odd in the drift"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
@@ -425,7 +425,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             comment = (
                 X_APART if f.component == "X" else "The law ends before these points, and so do exports and motions."
             )
-        out.append(Check(LAW, f"{f.component} {f.table}", severity, said, rule, comment))
+        out.append(Check(LAW, f"{f.component} {f.table}", severity, words, rule, comment))
     return tuple(out)
 
 

@@ -174,9 +174,9 @@ def summed(
     found: list[Finding] = []
     every = [TableSource.of(m) for m in models if place_of(m)]
     standing = _among_tables(every, found)
-    kept, dropped, silent = list(terms), list[ForceTerm](), set[str]()
+    selected, dropped, silent = list(terms), list[ForceTerm](), set[str]()
     for s in list(standing):
-        rivals = [t for t in kept if t.component == s.component and s.speaks_of(moved_by(t.variables))]
+        rivals = [t for t in selected if t.component == s.component and s.speaks_of(moved_by(t.variables))]
         if not rivals:
             continue
         covered = frozenset().union(*(moved_by(t.variables) for t in rivals)) >= s.variables
@@ -185,18 +185,18 @@ def summed(
             silent.add(s.component)
             found.append(_unused_table(s, [primed(t.symbol) for t in rivals]))
             continue
-        kept = [t for t in kept if t not in rivals]
+        selected = [t for t in selected if t not in rivals]
         dropped += rivals
         found.append(_unused_terms(rivals, s))
-    wind = _of_wind(standing, kept, silent)
+    wind = _of_wind(standing, selected, silent)
     if any(s.place in WIND for s in standing) and not all(wind):
         names = list(dict.fromkeys(s.model.response for s in standing if s.place in WIND))
         left = [c for c, speaks in zip(AXES, wind, strict=True) if not speaks]
         found.append(Finding.of("law.wind_partly", ", ".join(names), Severity.NOTE, tables=names, components=left))
     if version != OF_SUM and tuple(map(int, version.split("."))) < tuple(map(int, OF_SUM.split("."))):
-        found += _by_the_older_rule(terms, every, kept, standing, version)
+        found += _by_the_older_rule(terms, every, selected, standing, version)
     out = tuple(s for s in every if s not in standing)
-    return Sources(tuple(kept), tuple(standing), wind, tuple(dropped), out, tuple(found))
+    return Sources(tuple(selected), tuple(standing), wind, tuple(dropped), out, tuple(found))
 
 
 def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:

@@ -169,11 +169,11 @@ def sense(index: Derived) -> str:
 
 def without_restoring(parameters: ParameterFile) -> str:
     """What G_v leaves out, a sentence."""
-    said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
+    words = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
     if parameters.hydrostatics is None:
         speed = number(parameters.conditions.speed, 3)
-        said += f"; it gives no verdict at {speed} m/s, the speed of the parameter file, because BG is unknown"
-    return f"{said}."
+        words += f"; it gives no verdict at {speed} m/s, the speed of the parameter file, because BG is unknown"
+    return f"{words}."
 
 
 def by_mass(parameters: ParameterFile, index: Derived, share: float = 0.01) -> float:

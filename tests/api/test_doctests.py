@@ -16,6 +16,7 @@ from tests.api.names import HELD, VERBS, homes
 mpl.use("agg")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [*homes(), "coeflab"])
 def test_examples_run(module: str) -> None:
     import matplotlib.pyplot as plt

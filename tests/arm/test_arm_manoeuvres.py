@@ -54,6 +54,7 @@ def test_station_keeping_is_the_controlled_run() -> None:
     assert abs(trajectory.controls[THRUST][begins]) > 1e-3
 
 
+@pytest.mark.slow
 def test_the_law_and_thrusters_are_options() -> None:
     found = planned("station_keeping", joints="40, -60, 50", lasts=0.8, stays=0.0)
 

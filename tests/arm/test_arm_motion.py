@@ -54,6 +54,7 @@ def test_free_motion_keeps_its_energy(wet: bool) -> None:
     assert np.ptp(energy) < 1e-8 * energy[0]
 
 
+@pytest.mark.slow
 def test_power_balance_with_drag_torques_weight_and_buoyancy() -> None:
     """Energy gained is the work of all forces, 1e-6; springs of the joints keep the arm within its limits."""
     chain = replace(puma(), base=replace(puma().base, volume=0.12))

@@ -90,6 +90,7 @@ def test_one_error_and_exit_code_2(coeflab: Run, tmp_path: Path, arguments: tupl
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_without_sympy_it_says_what_to_install(coeflab: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     without = tmp_path / "without"
     without.mkdir()

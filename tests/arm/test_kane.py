@@ -75,6 +75,7 @@ def test_pinocchio(chain: Chain) -> None:
             assert np.max(np.abs(ours - theirs)) < 1e-12 * np.max(np.abs(theirs))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chain", [puma(), drawn(0), drawn(1), drawn(2)], ids=["puma", "drawn 0", "drawn 1", "drawn 2"])
 def test_compiled_is_the_same(chain: Chain) -> None:
     s, rng = state(chain, 3), np.random.default_rng(5)

@@ -57,6 +57,7 @@ def test_sphere(target: int) -> None:
     assert abs(mesh_integrals(vertices, faces).volume - 4.0 / 3.0 * np.pi) < 4.0 / 3.0 * np.pi - inscribed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("long", "target"), [(6.0, 1500), (6.0, 375), (12.0, 1500)])
 def test_a_scaled_sphere_is_thinned_like_a_sphere(long: float, target: int) -> None:
     """All triangles are stretched alike; no more volume goes than equilateral facets with corners on the surface would lack.

@@ -70,6 +70,7 @@ def test_shipped_body() -> None:
     assert ours.wetted_surface == pytest.approx(body.shape.integrals.wetted_surface + ends, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_added_mass_by_sections_and_by_an_ellipsoid() -> None:
     found = {r.method: r.matrix for r in added_masses(read_body(BODY), 1000.0).results}
     mass = 1000.0 * REMUS.meridian().volume

@@ -84,6 +84,7 @@ def test_mirrored_body_has_the_mirrored_outline() -> None:
     assert one.tip_chord == pytest.approx(0.2, rel=0.03)
 
 
+@pytest.mark.slow
 def test_ring_wing_and_its_struts() -> None:
     struts = box((0.06, 0.3, 0.006), (-0.8, 0.0, 0.0)) + box((0.06, 0.006, 0.3), (-0.8, 0.0, 0.0))
     found = of_mesh(meshed(spindle(2.0, 0.12) + struts + tube(0.15, 0.01, 0.1, -0.75)))

@@ -106,6 +106,7 @@ def test_half_widths_hold_bodies_that_did_not_choose_them(name: str) -> None:
         assert np.all(np.abs(np.diag(rough.matrix - panels)) <= np.diag(rough.u95))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["ellipsoid", "strip:lamb"])
 def test_a_rough_guide_warns_in_every_consumer(tmp_path: Path, method: str) -> None:
     TWELVE["box_rov"]().export(tmp_path / "rov.stl")

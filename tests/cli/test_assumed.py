@@ -14,7 +14,7 @@ from coeflab.tables.assumptions import CODE, assumed, carried, depends
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
-from coeflab.tables.stated_settings import overruled
+from coeflab.tables.settings_in_files import overruled
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.test_import import invoke, without_slopes
 from tests.cli.test_import_half import case

@@ -6,6 +6,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import Run, flat
 from tests.vehicle.test_inertia import accelerating
@@ -152,6 +154,7 @@ def flipped(folder: Path, *symbols: str) -> Path:
     return folder / "flipped.json"
 
 
+@pytest.mark.slow
 def test_a_wrong_sign_in_the_file_is_said_by_what_uses_it(coeflab: Run, tmp_path: Path) -> None:
     path = flipped(tmp_path, "Yuv", "Nuv", "Zuw", "Muw")
     made = coeflab("export", path, "--to", "mss", "--out", tmp_path / "m", "--accept-loss")
@@ -189,6 +192,7 @@ def test_every_target_of_several_is_written(coeflab: Run, tmp_path: Path) -> Non
     assert len(said["files"]) == len(alone)
 
 
+@pytest.mark.slow
 def test_targets_with_the_same_names_have_folders(coeflab: Run, tmp_path: Path) -> None:
     both = ("export", "remus100", "--to", "gazebo,gazebo_plugin", "--out", tmp_path / "b", "--accept-loss")
     assert coeflab(*both).returncode == 0

@@ -93,6 +93,7 @@ def test_wrong_calls_write_nothing(coeflab: Run, tmp_path: Path, arguments: tupl
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_an_area_with_its_unit_is_that_in_si(coeflab: Run) -> None:
     def drag(area: str) -> object:
         done = coeflab("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--area", area,

@@ -23,10 +23,10 @@ from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.interpretation import interpreted
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
 from coeflab.tables.settings import Setting, read_setting
-from coeflab.tables.understood import understood
 from tests.cli.conftest import Run, flat
 from tests.cli.survey import too_long
 from tests.tables.runs_as_text import FILE, write_run
@@ -281,7 +281,7 @@ def test_a_density_other_than_that_of_the_forces_is_refused(tmp_path: Path) -> N
     def complaints(density: float, **columns: str) -> list[str]:
         known = said | {name: read_column_map(text) for name, text in columns.items()}
         return [
-            str(e) for e in understood(table, known, {"conditions.density": Setting(density, "confirmed")}).complaints
+            str(e) for e in interpreted(table, known, {"conditions.density": Setting(density, "confirmed")}).complaints
         ]
 
     [why] = complaints(998.2)

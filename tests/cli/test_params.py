@@ -109,6 +109,7 @@ def test_the_schema_is_printed_as_a_page_and_as_json(coeflab: Run) -> None:
     assert json.loads(schema.stdout)["properties"]["added_mass"]["since"] == "1.2"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["xdyn", "gazebo", "mss"])
 def test_nothing_of_an_export_is_missing_in_its_list(coeflab: Run, tmp_path: Path, target: str) -> None:
     """xdyn and Gazebo came back without the added mass and the ten products that are just its own."""

@@ -120,6 +120,7 @@ def test_closed_standard_output(study: Path, closed: str) -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_closed_standard_error_and_input(study: Path) -> None:
     command = f"{COEFLAB} inspect {study / 'campaign'} <&- 2>&-"
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False, timeout=60)

@@ -138,6 +138,7 @@ def test_a_fit_that_raises_is_an_error_with_its_name(install: Install, write_cam
         run(read_plan(folder / "plan.toml"))
 
 
+@pytest.mark.slow
 def test_formats_lists_the_broken(install: Install, tmp_path: Path) -> None:
     install("half-built", "import nothing_of_that_name", checks="half", fits="slope_at_origin")
     start = f"import sys; sys.path.insert(0, {str(tmp_path / 'site')!r}); from coeflab.cli import main; main()"

@@ -12,7 +12,7 @@ from coeflab.formats.gazebo import read as gazebo
 from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import read as mss
 from coeflab.formats.uuv_simulator import read as uuv_simulator
-from coeflab.vehicle.stated_numbers import displaced, gravity, gyration, water, weight
+from coeflab.vehicle.imported_numbers import displaced, gravity, gyration, water, weight
 
 DATA = Path(__file__).parent / "data"
 LAUV = (DATA / "lauv.urdf.xacro").read_text(encoding="utf-8")

@@ -7,9 +7,9 @@ import pytest
 
 from coeflab.core.axes import Datum
 from coeflab.formats.exporting import export
-from coeflab.formats.unspoken import unstated, without_law
+from coeflab.formats.lacking_law import unstated, without_law
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.vehicle.own_numbers import mass_of, own_numbers, stated_file
+from coeflab.vehicle.own_numbers import imported_file, mass_of, own_numbers
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 
@@ -19,7 +19,7 @@ SAID = "no law for X, Z, K, M: only v and r may move at a constant u; hold w, p 
 
 def file(*numbers: str, inertia: tuple[float, ...] = (12.0,)) -> ParameterFile:
     centre = np.zeros(3) if len(inertia) == 3 else None
-    return stated_file(
+    return imported_file(
         "planar", "planar", Scaling(2.0, "LOA"), Conditions(1000.0, 1.0), np.zeros(3), Datum("cg"), own_numbers(numbers),
         mass_of(40.0, centre, inertia),
     )  # fmt: skip

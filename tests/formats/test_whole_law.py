@@ -14,7 +14,7 @@ from coeflab.formats import EXPORTERS, SimulatorExporter
 from coeflab.formats.export import LOSSLESS, Kind, PlannedExport, rare_states
 from coeflab.formats.exported_law import written_terms
 from coeflab.formats.exporting import export, exports_of
-from coeflab.formats.unspoken import in_header
+from coeflab.formats.lacking_law import in_header
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.formats.massed import torpedo

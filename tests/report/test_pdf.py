@@ -75,6 +75,7 @@ def test_it_is_a_plugin():
     assert isinstance(REPORTERS.load("pdf"), Renderer)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
 @pytest.mark.parametrize("published", [False, True])
 def test_a_small_study_is_typeset_without_flaws(angles, published):

@@ -13,9 +13,9 @@ from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.parts import read_parts
-from coeflab.tables.parts_together import complaints_of, questions_together, understood_together
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.several_tables import complaints_of, interpreted_together, questions_together
 from coeflab.tables.vocabulary import vocabulary, words_of
 
 SAMPLES = Path(__file__).parent / "samples"
@@ -32,7 +32,7 @@ def table(*columns: RawColumn) -> RawTable:
 
 def open_keys(path: Path) -> list[str]:
     parts, _ = read_parts(path, "", {})
-    founds = understood_together(parts, {}, {})
+    founds = interpreted_together(parts, {}, {})
     assert not complaints_of(founds)
     columns = [
         c.name
@@ -116,7 +116,7 @@ def test_what_knows_no_force_is_refused_before_any_question(tmp_path: Path) -> N
     file = tmp_path / "other.csv"
     file.write_text("time,temp,height\n1,2,3\n2,4,5\n3,4,7\n")
     parts, _ = read_parts(file, "", {})
-    assert complaints_of(understood_together(parts, {}, {}))
+    assert complaints_of(interpreted_together(parts, {}, {}))
 
 
 def test_legends_above_name_columns() -> None:

@@ -20,11 +20,11 @@ from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.form import Group, form, screen
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
-from coeflab.tables.understood import understood
 from tests.cli.test_import import without_slopes
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
@@ -460,7 +460,7 @@ def test_a_resistance_under_words_of_body_axes_is_x_of_the_body(tmp_path: Path, 
     assert [o.text for o in offers] == ["beta [deg]", "-X [N]" if sign > 0 else "X [N]", "Y [N]"]
     assert offers[1].note.startswith("X of the body" + ", reversed" * (sign > 0) + ': line 1: "')
     assert offers[1].note.endswith("; drag [N] if it is along the flow")
-    shows = understood(table, {}, {}).shows
+    shows = interpreted(table, {}, {}).shows
     assert not any("its name is that of drag" in e.text for e in shows)
     file.write_text(file.read_text(encoding="utf-8").replace(words, "Schleppversuche"), encoding="utf-8")
     assert proposals(read_raw(file, "table"))[1].text == "drag [N]"
@@ -473,7 +473,7 @@ def test_a_drag_beside_a_side_force_of_the_body_is_confirmed_with_its_other_read
     assert not proposals(read_raw(file, "table"))[1].note, "with lift beside it, along the flow"
     file.write_text("beta [deg],Drag [N],Side Force [N]\n-4,50,12\n0,48,0\n4,50,-12\n")
     table = read_raw(file, "table")
-    line = next(one for one in form(table, understood(table, {}, {}), {}) if one.key == "Drag")
+    line = next(one for one in form(table, interpreted(table, {}, {}), {}) if one.key == "Drag")
     assert (line.group, line.value, line.pending) == (Group.GRAVE, "drag [N]", True)
     assert "Side Force is Y of the body" in line.why
     assert "-X [N] where x points forward, X [N] where aft" in line.why

@@ -13,13 +13,13 @@ from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
 from coeflab.tables.form import form
+from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, read_in, require_one_datum
-from coeflab.tables.stated_settings import against_words
-from coeflab.tables.understood import understood
+from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.words.above import words_above
 from coeflab.tables.words.axes import TURN_OF_R
 from coeflab.tables.words.points import POINT_FROM
@@ -208,7 +208,7 @@ def test_words_against_a_proposal_or_a_setting_are_named() -> None:
         assert one.open is is_open, one
         assert not is_open or ('line 1: "all turns to port"' in one.choices and "Nr' < 0" in one.choices)
         known = {"table.centre": Setting(side, "confirmed")}
-        found = understood(raw, {"R": read_column_map("R [m]"), "Mz": read_column_map("N [N*m]")}, known)
+        found = interpreted(raw, {"R": read_column_map("R [m]"), "Mz": read_column_map("N [N*m]")}, known)
         assert any(e.text.startswith("warning: table.centre") and "line 1" in e.text for e in found.shows)
         line = next(one for one in form(raw, found, known) if one.key == "table.centre")
         assert line.why == f'! but line 1: "{words}"'
@@ -358,7 +358,7 @@ def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
             RawColumn("N", "N*m", -b),
         ] * bool(rate)
         raw = RawTable(Path("t.csv"), tuple(columns), np.arange(5), stated=said(*filter(None, (line, rate))))
-        found = understood(raw, {}, {"axes.frame": Setting("FRD", "confirmed")}, accept=True)
+        found = interpreted(raw, {}, {"axes.frame": Setting("FRD", "confirmed")}, accept=True)
         return {q.key: q for q in found.questions}, [d.why for d in found.doubts]
 
     beta = asked_of("Drift angle positive with the bow to starboard of the course")[0]["axes.beta"]

@@ -16,7 +16,7 @@ from coeflab.core.text.foam import FoamCase
 from coeflab.tables import openfoam_case
 from coeflab.tables.raw_table import Ended
 from coeflab.tank.jobs import Job
-from coeflab.tank.openfoam import case
+from coeflab.tank.openfoam import KEEPS_MEMORY, case, step
 from coeflab.tank.solvers import openfoam
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind
@@ -245,3 +245,10 @@ def test_a_count_that_is_none_is_asked_for_as_a_whole_number(tmp_path: Path, giv
     with pytest.raises(InputError, match="expected a whole number, one or more") as why:
         validated(openfoam.OpenFOAM, {"iterations": given}, tmp_path / "tank.toml", lambda _: 3, ("solver", "openfoam"))
     assert why.value.line == 3
+
+
+def test_a_solver_keeps_its_memory_unless_told_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("GLIBC_TUNABLES", raising=False)
+    assert KEEPS_MEMORY in step("simpleFoam", "simpleFoam").command
+    monkeypatch.setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=0")
+    assert KEEPS_MEMORY not in step("simpleFoam", "simpleFoam").command

@@ -101,6 +101,7 @@ def test_known_derivatives_come_back(whole: tuple[Tow, Collected]) -> None:
     assert (tow.folder / "report" / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: tuple[Tow, Collected]) -> None:
     _, made = whole
     assert "error of the grid is not in it: there is no grid study" in tables.covers(made.six)
@@ -199,6 +200,7 @@ def test_what_an_earlier_tow_finished_is_taken_over_with_the_same_bytes(
     assert (rows["drift+6"].left, rows["drift+6"].progress.state) == (0.0, JobState.FINISHED)
 
 
+@pytest.mark.slow
 def test_only_new_conditions_are_run_beside_those_that_are_taken_over(
     whole: tuple[Tow, Collected], tmp_path: Path
 ) -> None:

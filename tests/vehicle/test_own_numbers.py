@@ -19,7 +19,7 @@ from coeflab.law.coefficient import Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import mass_of, own_number, own_numbers, stated_beside, stated_file, typed_file
+from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_numbers, stated_beside, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 
@@ -70,7 +70,7 @@ def test_a_symbol_stands_once() -> None:
 
 
 def test_a_file_of_them_holds_together_and_reads_back(tmp_path: Path) -> None:
-    made = stated_file(
+    made = imported_file(
         "own", "hull", SCALING, AT, np.zeros(3), Datum("cg"), own_numbers(["Yv'=-0.03 +- 0.003", "Nv'=-0.012"]),
         mass_of(40.0, np.array([0.1, 0.0, 0.02]), (0.5, 12.0, 12.0)),
     )  # fmt: skip
@@ -200,7 +200,7 @@ def test_ok_without_an_interval_is_a_warning() -> None:
 
 
 def law(*numbers: str) -> ParameterFile:
-    return stated_file("law", "hull", SCALING, AT, np.zeros(3), Datum("cg"), own_numbers(numbers))
+    return imported_file("law", "hull", SCALING, AT, np.zeros(3), Datum("cg"), own_numbers(numbers))
 
 
 def test_one_number_is_replaced_in_its_place_and_no_other_with_it() -> None:

@@ -237,6 +237,7 @@ def test_the_three_rules_differ_outside_the_hull() -> None:
     assert by["clamp"] > by["taper"]  # drag grows outwards
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ["clamp", "refuse"])
 def test_a_motion_ends_where_a_table_has_no_value(rule: str) -> None:
     """The turn drifts by 14 deg; the table ends at .05 rad, of all incidence the hull that is no box."""

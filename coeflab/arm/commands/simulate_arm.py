@@ -101,8 +101,8 @@ def simulate(
     files = [str(Path(out or "") / name) for name in content]
     if json:
         last = {name: float(values[-1]) for name, values in columns(moved).items()}
-        said = {"name": chain.name, "phases": list(moved.phases), "ended": moved.ended.value, "why": moved.why}
-        show.json_object({**said, "last": last, "statements": list(moved.statements), "files": files})
+        words = {"name": chain.name, "phases": list(moved.phases), "ended": moved.ended.value, "why": moved.why}
+        show.json_object({**words, "last": last, "statements": list(moved.statements), "files": files})
     else:
         show.table(arm_phases(moved, chain.name))
         for line in moved.statements:

@@ -74,9 +74,9 @@ class File(BodyFile):
             if twice := sorted({n for n in names if names.count(n) > 1}):
                 raise InputError(f"two called {shown(twice[0])}", "one name for each", column=key, advice="Rename one.")
         self._check_motion()
-        for key, said in self.basis.items():
-            if said.split()[0].rstrip(":,") not in BASES:
-                raise InputError(shown(said), "a text that begins with " + ", ".join(BASES), column=f"basis.{key}")
+        for key, words in self.basis.items():
+            if words.split()[0].rstrip(":,") not in BASES:
+                raise InputError(shown(words), "a text that begins with " + ", ".join(BASES), column=f"basis.{key}")
 
     def _check_motion(self) -> None:
         """As many values as there are joints and thrusters, each of its joint's kind."""

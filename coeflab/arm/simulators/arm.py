@@ -121,7 +121,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
         state = state[: 13 + 2 * n]
     time, ended, why = 0.0, Ended.COMPLETE, ""
     rows: list[_Rows] = []
-    said: list[str] = []
+    words: list[str] = []
     station = Station(attitude=manoeuvre.attitude)
     reference: Track | None = None
     for index, phase in enumerate(manoeuvre.phases):
@@ -133,7 +133,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
                 method=chosen.method,
             )  # fmt: skip
             rows.append(_of_run(run, index))
-            said += [f"{phase.name}: {one}" for one in run.saturated]
+            words += [f"{phase.name}: {one}" for one in run.saturated]
             ended, met = run.ended, run.why
         else:
             reference = None
@@ -151,7 +151,7 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
             why = f"in {phase.name}, {met}"
             break
     every = _Rows(*(np.concatenate(parts) for parts in zip(*rows, strict=True)))
-    return _trajectory(vehicle, manoeuvre, flow, every, ended, why, tuple(said))
+    return _trajectory(vehicle, manoeuvre, flow, every, ended, why, tuple(words))
 
 
 class _Rows(NamedTuple):
@@ -263,7 +263,7 @@ def _trajectory(
     through = state[:, 7 + n : 13 + n].copy()
     water = flow.velocity + rows.time[:, None] * flow.acceleration
     through[:, :3] -= np.einsum("kji,kj->ki", axes, water)
-    kept = bool(np.isfinite(rows.end_wanted).any())
+    selected = bool(np.isfinite(rows.end_wanted).any())
     columns: dict[str, Array] = {}
     outside = {}
     for k, joint in enumerate(chain.joints):
@@ -271,7 +271,7 @@ def _trajectory(
         columns[f"{joint.name} [{unit}]"] = q[:, k]
         columns[f"{joint.name}.rate [{unit}/s]"] = rates[:, k]
         columns[f"{joint.name}.{'torque' if joint.turns else 'force'} [{effort}]"] = torques[:, k]
-        if kept:
+        if selected:
             columns[f"{joint.name}.wanted [{unit}]"] = rows.wanted[:, k]
         outside[f"{joint.name} quicker than its drive"] = np.abs(rates[:, k]) > joint.fastest
         outside[f"{joint.name} stronger than its drive"] = np.abs(torques[:, k]) > joint.strongest
@@ -279,12 +279,12 @@ def _trajectory(
         columns[f"{name}.vehicle [{'N' if k < 3 else 'N m'}]"] = rows.control[:, k]
     for k, thruster in enumerate(chain.thrusters):
         columns[f"{thruster.name} [N]"] = rows.thrust[:, k]
-        if kept:
+        if selected:
             columns[f"{thruster.name}.wanted [N]"] = rows.ordered[:, k]
     ends = np.array([kane.end_in_earth(chain, row) for row in state])
     for k, name in enumerate(("north", "east", "down")):
         columns[f"end.{name} [m]"] = ends[:, k]
-        if kept:
+        if selected:
             columns[f"end.{name}.wanted [m]"] = rows.end_wanted[:, k]
     ahead = axes[:, :, 0]
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))

@@ -62,9 +62,9 @@ class EllipsoidMisfit:
     def __str__(self) -> str:
         areas = ", ".join(f"{100.0 * v:+.0f}" for v in self.areas)
         spread = ", ".join(f"{100.0 * v:+.0f}" for v in np.diag(self.spread))
-        said = f"ellipsoid over body, less one: projected areas {areas} %, second moments of volume {spread} % along x, y, z"
+        words = f"ellipsoid over body, less one: projected areas {areas} %, second moments of volume {spread} % along x, y, z"
         skewed = float(np.max(np.abs(self.spread - np.diag(np.diag(self.spread)))))
-        return said + (f"; skewed to the axes by {skewed:.0%}" if skewed > BOUND else "")
+        return words + (f"; skewed to the axes by {skewed:.0%}" if skewed > BOUND else "")
 
 
 def ellipsoid_misfit(shape: Shape, axes: Array) -> EllipsoidMisfit:
@@ -138,12 +138,12 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     axes, centre, turn, rough = _axes(shape), shape.centre_of_volume, np.eye(3), False
     if isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid):
         axes, turn = shape.parts[0].form.axes, shape.parts[0].rotation
-        said = [STANDS_IN if shape.stand_ins else "the body is an ellipsoid: exact"]
+        words = [STANDS_IN if shape.stand_ins else "the body is an ellipsoid: exact"]
     else:
         misfit = ellipsoid_misfit(shape, axes)
         rough = misfit.rough
-        said = [EQUIVALENT, str(misfit) + (f"; over {BOUND:.0%}: a rough guide" if rough else "")]
+        words = [EQUIVALENT, str(misfit) + (f"; over {BOUND:.0%}: a rough guide" if rough else "")]
     matrix = composed([ellipsoid_added_mass(axes, density)], [turn], [centre], body.reference_point)
     size = " x ".join(f"{a:.5g}" for a in axes)
-    said[0] += f"; semi-axes {size} m"
-    return AddedMass(matrix, body.reference_point, body.datum, body.name, "ellipsoid", tuple(said), rough=rough)
+    words[0] += f"; semi-axes {size} m"
+    return AddedMass(matrix, body.reference_point, body.datum, body.name, "ellipsoid", tuple(words), rough=rough)

@@ -127,10 +127,10 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
             return found
         finer = _finer(shape, panelled, worst / chosen.error, chosen)
         if finer is None:
-            said = (
+            words = (
                 f"ERROR NOT REACHED: {chosen.error:.2g} was asked for, {worst:.2g} is left at {panelled.count:,} panels"
             )
-            return replace(found, statements=(said, *found.statements))
+            return replace(found, statements=(words, *found.statements))
         panelled = finer
 
 
@@ -150,9 +150,9 @@ def _of_sheets(body: Body, shape: Shape, sheets: TriangleMesh, density: float, o
     found = added_mass(replace(body, shape=sheets), density, options)
     thick = displaced(shape, density, found.reference_point)
     error = np.zeros((6, 6)) if found.error is None else found.error
-    said = "a wall thinner than its panels: dipoles on its middle surface, the water in its thickness is in the error"
+    words = "a wall thinner than its panels: dipoles on its middle surface, the water in its thickness is in the error"
     root = np.sqrt(thick)
-    return replace(found, error=error + np.outer(root, root), statements=(said, *found.statements))
+    return replace(found, error=error + np.outer(root, root), statements=(words, *found.statements))
 
 
 def _finer(shape: Shape, panelled: _Panelled, above: float, chosen: Options) -> _Panelled | None:
@@ -433,8 +433,8 @@ class _Alike:
     def about(self, point: Array) -> _Alike:
         """Those of them that another point lies on."""
         off = point - self.centre
-        kept = tuple(g for g in self.mirrors if np.max(np.abs(g @ off - off)) <= 1e-9 * self.size)
-        return _Alike(point, kept, self.size)
+        selected = tuple(g for g in self.mirrors if np.max(np.abs(g @ off - off)) <= 1e-9 * self.size)
+        return _Alike(point, selected, self.size)
 
     def applied(self, matrix: Array) -> Array:
         """The mean of the matrix and its mirror image, for one mirror after the other; sums of opposites are exact zeros."""

@@ -236,9 +236,9 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
         out.append(PLATES)
     if any(isinstance(f, Box) and not isinstance(f, Bar) for f in forms):
         out.append(BOXES)
-    for kind, said in ((Bar, BARS), (Finned, FINS)):
+    for kind, words in ((Bar, BARS), (Finned, FINS)):
         if any(isinstance(f, kind) for f in forms):
-            out.append(said)
+            out.append(words)
     for part in parts:
         form = part.form
         if ends == "huuv" and isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
@@ -285,9 +285,9 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     chosen = parse_options(Options, options or {}, "primitives")
     shape = body.require_shape()
     ends = chosen.cylinder_ends
-    said: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
     if isinstance(shape, TriangleMesh) and ends == "lamb":
-        shape, said = _as_plate(shape)
+        shape, words = _as_plate(shape)
     if not isinstance(shape, Parts):
         raise InputError(
             f"{body.name}, which has no parts",
@@ -301,7 +301,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         body.reference_point,
     )
     method = "primitives" if ends == "lamb" else f"primitives:{ends}"
-    statements = (*said, *_statements(shape.parts, ends))
+    statements = (*words, *_statements(shape.parts, ends))
     flows = [by_panels(p.form) for p in shape.parts if isinstance(p.form, PANELLED)]
-    rough = bool(said) or any(not f.converged or f.thin > WALL for f in flows)
+    rough = bool(words) or any(not f.converged or f.thin > WALL for f in flows)
     return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements, rough=rough)

@@ -87,11 +87,11 @@ def _of_revolution(shape: Revolution, corrected: bool) -> tuple[NDArray[np.float
     if not corrected:
         return strip_added_mass(shape.integrals, 1.0), (NONE.format("or about "),)
     k = lamb_end_correction(shape.length, shape.volume)
-    said = (
+    words = (
         f"Lamb end correction: k1 {k.axial:.4f}, k2 {k.lateral:.4f}, k' {k.turning:.4f} of the spheroid of the same length "
         "and volume"
     )
-    return strip_added_mass(shape.integrals, 1.0, k), (said,)
+    return strip_added_mass(shape.integrals, 1.0, k), (words,)
 
 
 def _of_mesh(
@@ -111,13 +111,13 @@ def _of_mesh(
         ) from None
     live = np.diag(found.matrix) > ROUNDING * np.diag(found.matrix).max()
     change = float(np.max(np.abs(np.diag(coarse.matrix)[live] / np.diag(found.matrix)[live] - 1.0)))
-    said = (
+    words = (
         *_sections(found, shape),
         f"half the stations and {COARSE} elements change the diagonal by {change:.1e} at most",
     )
     rough = _short(shape) or found.trapped > WATER * shape.volume
     if not corrected:
-        return found.matrix, coarse.matrix, (NONE.format(""), *said), rough
+        return found.matrix, coarse.matrix, (NONE.format(""), *words), rough
     half = shape.length / 2.0
     bc = 3.0 * shape.volume / (4.0 * np.pi * half)
     ratio = shape.breadth_over_depth
@@ -126,7 +126,7 @@ def _of_mesh(
         f"Lamb end correction: k1 {k.axial:.4f}, sway {k.sway:.4f}, heave {k.heave:.4f}, pitch {k.pitch:.4f}, yaw {k.yaw:.4f} "
         "of the ellipsoid of the same length, volume and breadth over depth; roll as the sections give it"
     )
-    return k.applied(found.matrix, shape.volume), k.applied(coarse.matrix, shape.volume), (end, *said), rough
+    return k.applied(found.matrix, shape.volume), k.applied(coarse.matrix, shape.volume), (end, *words), rough
 
 
 def _short(shape: Shape) -> bool:
@@ -138,15 +138,15 @@ def _sections(found: Strips, shape: TriangleMesh) -> tuple[str, ...]:
     """What was cut, and how well the sections add up to the volume of the mesh."""
     off = found.volume / shape.volume - 1.0
     kinds = {"ellipses": found.ellipses, "rectangles": found.rectangles, "by boundary elements": found.others}
-    said = [f"{found.count} sections: {', '.join(f'{n} {kind}' for kind, n in kinds.items() if n)}"]
-    said.append(
+    words = [f"{found.count} sections: {', '.join(f'{n} {kind}' for kind, n in kinds.items() if n)}"]
+    words.append(
         f"their volume over the mesh's, minus one: {off:+.1e}" + ("; raise stations" if abs(off) > POOR else "")
     )
     if _short(shape):
         slender = shape.length / float(shape.extents[1:].max())
-        said.append(f"{slender:.2g} times as long as wide or deep: not slender, the sections are a rough guide")
+        words.append(f"{slender:.2g} times as long as wide or deep: not slender, the sections are a rough guide")
     if found.trapped > 0.0:
         ends = "; the ends of a ring are not those of an ellipsoid: along the axis a rough guide"
         more = ends if found.trapped > WATER * shape.volume else ""
-        said.append(f"{found.trapped:.4g} m^3 of water within closed rings moves sideways with the body{more}")
-    return tuple(said)
+        words.append(f"{found.trapped:.4g} m^3 of water within closed rings moves sideways with the body{more}")
+    return tuple(words)

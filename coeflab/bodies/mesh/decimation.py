@@ -219,9 +219,9 @@ def _sound(edges: tuple[Index, Array, Lots], vertices: Array, faces: Faces) -> _
     folded = _dot(old, new) * NEAR < TURN * np.sqrt(_dot(old, old) * _dot(new, new))
     bad = stays & ((folded & (was > NEEDLE)) | (now * NEAR < _least_shape(was, start, group)))
     fine = (shared == 2) & (valence[ends].sum(axis=1) > 6) & ~np.logical_or.reduceat(bad, start)
-    kept = fine[group]
+    selected = fine[group]
     lengths = np.bincount(group, minlength=len(ends))[fine]
-    return _Edges(ends[fine], to[fine], lot[fine], ring[kept], np.cumsum(lengths) - lengths)
+    return _Edges(ends[fine], to[fine], lot[fine], ring[selected], np.cumsum(lengths) - lengths)
 
 
 def _apart(edges: _Edges, count: int) -> _Edges:

@@ -109,41 +109,41 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
         )
-    said: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
     if border.shared:
         # Solids that meet in an edge: each gets vertices of its own there, as everything behind this gate expects.
         vertices, faces = surface(as_solid(vertices, faces, fail))
-        said = (f"solids that meet in {border.shared} edges taken apart there",)
+        words = (f"solids that meet in {border.shared} edges taken apart there",)
     stage(f"separating the shells of {len(faces):,} faces")
     count, shell = shells(faces)
     _outward(*shell_volumes(vertices, faces, shell), fail)
     if count > 1:
         _apart(vertices, faces, shell, count, fail)
     if len(faces) > MOST_TESTED:
-        said += (f"self-intersection not looked for above {MOST_TESTED} faces",)
+        words += (f"self-intersection not looked for above {MOST_TESTED} faces",)
     else:
         crossing = crossing_faces(vertices, faces, ROUNDED * float(np.ptp(vertices, axis=0).max()))
         if crossing is None:
-            said += ("self-intersection not looked for: too many faces lie close together",)
+            words += ("self-intersection not looked for: too many faces lie close together",)
         elif crossing:
             raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
-    return SoundMesh(vertices, faces, said)
+    return SoundMesh(vertices, faces, words)
 
 
 def _unfilled(found: Filled) -> str:
     """What `filled` left open and why, in words; empty for nothing."""
-    said = []
+    words = []
     if found.large:
         sizes = ", ".join(f"{100.0 * x:.3g} %" for x in found.large[:NAMED])
         more = len(found.large) - NAMED
         sizes += f" and {more} more" if more > 0 else ""
         several = f"{len(found.large)} holes" if len(found.large) > 1 else "a hole"
-        said.append(f"{several} of {sizes} of the surface, above the limit of {100.0 * SMALL_HOLE:g} %")
+        words.append(f"{several} of {sizes} of the surface, above the limit of {100.0 * SMALL_HOLE:g} %")
     if found.rims.touching:
-        said.append(f"rims that touch in a vertex, with {found.rims.touching} edges")
+        words.append(f"rims that touch in a vertex, with {found.rims.touching} edges")
     if found.rims.loose:
-        said.append(f"rims that do not close, with {found.rims.loose} edges")
-    return "; ".join(said)
+        words.append(f"rims that do not close, with {found.rims.loose} edges")
+    return "; ".join(words)
 
 
 def _thickness(vertices: Array) -> float:
@@ -234,7 +234,7 @@ def sound(
     InputError
         See `examined`.
     """
-    said: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
     unfilled = ""
     if fill or (repair and not open_sheets):
         vertices, faces = joined(vertices, faces, JOINED)
@@ -244,8 +244,8 @@ def sound(
         done = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
         vertices, faces, unfilled = done.vertices, done.faces, _unfilled(done)
         many = f"{done.number} hole{'s' * (done.number != 1)} of up to {SMALL_HOLE:.0%} of the surface filled"
-        said = (many,) if fill or done.number else ()
-        said += (f"not filled: {unfilled}",) if unfilled else ()
+        words = (many,) if fill or done.number else ()
+        words += (f"not filled: {unfilled}",) if unfilled else ()
     thin = np.zeros((0, 3), dtype=np.int64)
     if open_sheets:
         vertices, faces = joined(vertices, faces, JOINED)
@@ -263,16 +263,16 @@ def sound(
             float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
             / 2.0
         )
-        said += (f"{len(turned)} faces of {area:.4g} (file units squared) are sheets with water on both sides",)
+        words += (f"{len(turned)} faces of {area:.4g} (file units squared) are sheets with water on both sides",)
         thin = turned
         if not len(faces):
-            return SoundMesh(vertices, faces, said, thin)
+            return SoundMesh(vertices, faces, words, thin)
     closed = (repaired if repair else examined)(vertices, faces, file, unfilled)
     joint = np.concatenate([closed.vertices, vertices]) if len(thin) else closed.vertices
     return replace(
         closed,
         vertices=joint,
-        statements=(*said, *closed.statements),
+        statements=(*words, *closed.statements),
         sheets=thin + len(closed.vertices) if len(thin) else thin,
     )
 
@@ -295,11 +295,11 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     InputError
         What remains after that, such as holes.
     """
-    said: list[str] = []
+    words: list[str] = []
     count = len(faces)
     before = len(welded(vertices, faces)[0])
     vertices, faces = joined(vertices, faces, JOINED)
-    _say(said, before - len(vertices), "vertices joined")
+    _say(words, before - len(vertices), "vertices joined")
     if len(faces):
         faces = faces[~_membranes(faces)]
         faces = faces[~repeated(faces)]
@@ -307,11 +307,11 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
         raise InputError(
             "no face with an area", "triangles of a closed surface", file=file, advice="Is the file damaged?"
         )
-    _say(said, count - len(faces), "degenerate or duplicate faces dropped")
+    _say(words, count - len(faces), "degenerate or duplicate faces dropped")
     # Where solids meet in an edge, turning faces alike would guess which belong together; wound in balance they need none.
     turned = faces if edges(faces).shared and edges(faces).sound else oriented(faces)
     if turned is not None:
-        _say(said, int(np.any(turned != faces, axis=1).sum()), "faces turned")
+        _say(words, int(np.any(turned != faces, axis=1).sum()), "faces turned")
         faces = turned
     if edges(faces).sound and edges(faces).shared:
         vertices, faces = surface(_whole(vertices, faces, file))
@@ -319,16 +319,16 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     inward = shell_volumes(vertices, faces, shell)[0] < 0.0
     if edges(faces).sound:
         faces = np.where(inward[shell][:, None], faces[:, ::-1], faces)
-        _say(said, int(inward.sum()), f"of {number} shells turned outward")
+        _say(words, int(inward.sum()), f"of {number} shells turned outward")
         if number > 1 or degenerate(vertices, faces).any():
             vertices, faces = _united(vertices, faces, shell, number, file)
-            said.append(
+            words.append(
                 f"{number} shells united" if number > 1 else "faces without an area merged into their neighbours"
             )
         vertices, faces = _without_slivers(vertices, faces, file)
     found = examined(vertices, faces, file, unfilled)
     return SoundMesh(
-        found.vertices, found.faces, (f"repaired: {', '.join(said) or 'nothing to do'}", *found.statements)
+        found.vertices, found.faces, (f"repaired: {', '.join(words) or 'nothing to do'}", *found.statements)
     )
 
 
@@ -362,8 +362,8 @@ def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path
     """What all shells enclose together."""
     from manifold3d import Manifold, OpType
 
-    made = [_whole(vertices, faces[shell == k], file) for k in range(count)]
-    return surface(Manifold.batch_boolean(made, OpType.Add).simplify(0.0))
+    result = [_whole(vertices, faces[shell == k], file) for k in range(count)]
+    return surface(Manifold.batch_boolean(result, OpType.Add).simplify(0.0))
 
 
 def _say(said: list[str], count: int, what: str) -> None:

@@ -116,7 +116,7 @@ def likeness(hull: Body, vehicle: str, stated: Configuration | None, own_file: b
             words.append(
                 f"{what.replace('_', ' ')} {ours:.4g} against {theirs:.4g} {unit} ({share:+.1%}, limit {limit:.0%})"
             )
-    said = ", ".join(words) or "neither volume nor wetted surface to compare"
+    phrases = ", ".join(words) or "neither volume nor wetted surface to compare"
     if len(apart) == 2:
-        return Likeness(not (all(apart) if named else any(apart)), said)
-    return Likeness(True if named else False if any(apart) else None, said)
+        return Likeness(not (all(apart) if named else any(apart)), phrases)
+    return Likeness(True if named else False if any(apart) else None, phrases)

@@ -36,11 +36,11 @@ def solid(vertices: Array, faces: Faces) -> Solid:
 
     places, joined = np.unique(vertices, axis=0, return_inverse=True)
     corners = joined.reshape(-1)[faces]
-    kept = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
-    made = Manifold(Mesh64(np.ascontiguousarray(places), np.ascontiguousarray(corners[kept].astype(np.uint64))))
-    if made.status() != Error.NoError or made.is_empty():
-        raise ValueError(f"a surface that is not closed ({made.status().name})")
-    return made
+    selected = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    result = Manifold(Mesh64(np.ascontiguousarray(places), np.ascontiguousarray(corners[selected].astype(np.uint64))))
+    if result.status() != Error.NoError or result.is_empty():
+        raise ValueError(f"a surface that is not closed ({result.status().name})")
+    return result
 
 
 def surface(of: Solid) -> Surface:
@@ -145,10 +145,10 @@ def form_solid(form: str, sizes: tuple[float, ...], rotation: Array, centre: Arr
         return form_solid("cylinder", (outer, length), rotation, centre) - bore
     if form == "cylinder":
         radius, length = sizes
-        made = Manifold.cylinder(length, radius, radius, ROUND, True).rotate((0.0, 90.0, 0.0))
+        result = Manifold.cylinder(length, radius, radius, ROUND, True).rotate((0.0, 90.0, 0.0))
     else:
-        made = (Manifold.sphere(1.0, ROUND) if form == "ellipsoid" else Manifold.cube((1.0,) * 3, True)).scale(sizes)
-    return made.transform(np.column_stack([rotation, centre]))
+        result = (Manifold.sphere(1.0, ROUND) if form == "ellipsoid" else Manifold.cube((1.0,) * 3, True)).scale(sizes)
+    return result.transform(np.column_stack([rotation, centre]))
 
 
 Outline = Any

@@ -322,8 +322,8 @@ def oriented(faces: Faces) -> Faces | None:
     twin = np.minimum(label[:m], label[m:])
     lead = np.full(label.max() + 1, m, dtype=np.int64)
     np.minimum.at(lead, twin, np.arange(m))
-    kept = label[:m] == label[lead[twin]]
-    return np.where(kept[:, None], faces, faces[:, ::-1])
+    selected = label[:m] == label[lead[twin]]
+    return np.where(selected[:, None], faces, faces[:, ::-1])
 
 
 Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]

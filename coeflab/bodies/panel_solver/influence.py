@@ -183,12 +183,12 @@ def _longest(corners: Array) -> Array:
 
 def halved(corners: Array, chosen: NDArray[np.bool_]) -> Array:
     """Chosen triangles cut through the middle of their longest sides, behind the others."""
-    kept, cut = corners[~chosen], corners[chosen]
+    selected, cut = corners[~chosen], corners[chosen]
     first = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2).argmax(axis=1)
     rows = np.arange(len(cut))
     a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
     middle = (a + b) / 2.0
-    return np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate([selected, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 FINEST, WIDENING = 0.25, 0.5

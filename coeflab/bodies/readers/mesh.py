@@ -41,7 +41,7 @@ def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], fa
     InputError
         More than 5 % off, or without stated sizes shorter than 0.05 m or longer than 500 m.
     """
-    said = []
+    words = []
     stated = {name: (axis, lengths[key]) for name, axis, keys in STATED for key in keys if key in lengths}
     if not stated:
         require_plausible(mesh, unit, partial(fail, "mesh.unit"))
@@ -54,8 +54,8 @@ def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], fa
                 "mesh.path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
             )
         if abs(found / value - 1.0) > NEAR:
-            said.append(f"{name} {100.0 * (found / value - 1.0):+.1f} % from the stated")
-    return tuple(said)
+            words.append(f"{name} {100.0 * (found / value - 1.0):+.1f} % from the stated")
+    return tuple(words)
 
 
 def _require_volume(
@@ -119,12 +119,12 @@ def read(path: Path) -> Body:
     source = file.mesh.source(path.parent)
     shape, statements = source.read()
     body = file.shaped(path, shape, computed(shape, statements), (mesh_piece(shape, source),))
-    said = _require_size(shape, source.unit, dict(body.lengths), toml.fail)
-    said += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
+    words = _require_size(shape, source.unit, dict(body.lengths), toml.fail)
+    words += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
     return dataclasses.replace(
         body,
         configurations=(
-            dataclasses.replace(body.configurations[0], title=computed(shape, statements + said).title),
+            dataclasses.replace(body.configurations[0], title=computed(shape, statements + words).title),
             *body.configurations[1:],
         ),
         files=(*body.files, source.input_file(body.name)),

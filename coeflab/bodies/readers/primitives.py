@@ -215,8 +215,8 @@ class PartKeys(takes.Declaration):
 
 def _made(kind: str, values: list[float]) -> Form:
     if kind in FORMS:
-        made: Form = FORMS[kind](*values)
-        return made
+        result: Form = FORMS[kind](*values)
+        return result
     if kind == "sphere":
         return Ellipsoid(values[0], values[0], values[0])
     return Ellipsoid(values[0] / 2.0, values[1] / 2.0, values[1] / 2.0)

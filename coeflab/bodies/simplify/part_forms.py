@@ -297,8 +297,8 @@ def turned_form(of: Surface, piece: Piece) -> tuple[Turned, Array, Array] | None
     along = (piece.vertices - hull.point) @ hull.rotation[:, 0]
     x = np.concatenate([[along.min()], hull.x, [along.max()]])
     radius = np.concatenate([hull.radius[:1], hull.radius, hull.radius[-1:]])
-    kept = np.concatenate([[True], np.diff(x) > APART * np.ptp(x)])
-    x, radius = _few(x[kept], radius[kept], CLOSE * float(radius.max()))
+    selected = np.concatenate([[True], np.diff(x) > APART * np.ptp(x)])
+    x, radius = _few(x[selected], radius[selected], CLOSE * float(radius.max()))
     rough, _ = Turned.about_its_centre(x, radius)
     scale = float(np.sqrt(piece.volume / rough.volume))
     if abs(scale - 1.0) > SAME:
@@ -312,7 +312,7 @@ def turned_form(of: Surface, piece: Piece) -> tuple[Turned, Array, Array] | None
 
 def _few(x: Array, y: Array, within: float) -> tuple[Array, Array]:
     """The points that keep all others within a distance in y of the straight lines between them (Douglas & Peucker 1973)."""
-    kept, stack = {0, len(x) - 1}, [(0, len(x) - 1)]
+    selected, stack = {0, len(x) - 1}, [(0, len(x) - 1)]
     while stack:
         low, high = stack.pop()
         if high - low < 2:
@@ -320,9 +320,9 @@ def _few(x: Array, y: Array, within: float) -> tuple[Array, Array]:
         off = np.abs(y[low : high + 1] - np.interp(x[low : high + 1], x[[low, high]], y[[low, high]]))
         worst = low + int(np.argmax(off))
         if off[worst - low] > within:
-            kept.add(worst)
+            selected.add(worst)
             stack += [(low, worst), (worst, high)]
-    chosen = sorted(kept)
+    chosen = sorted(selected)
     return x[chosen], y[chosen]
 
 

@@ -318,12 +318,12 @@ def patches(of: Solid) -> list[Solid]:
         own = rim[which[rim // 3] == k]
         points, corners = _capped(vertices, faces[which == k], start[own], end[own])
         try:
-            made = solid(points, corners)
+            result = solid(points, corners)
         except ValueError:
             return [of]
-        if not made.volume() > 0.0:
+        if not result.volume() > 0.0:
             return [of]
-        out.append(made)
+        out.append(result)
     return sorted(out, key=lambda p: -p.volume())
 
 
@@ -469,14 +469,14 @@ def _hulls(of: Solid) -> list[Solid]:
 
     mesh = Trimesh(*surface(of), process=False)
     found = convex_decomposition(mesh, maxConvexHulls=MOST_HULLS, resolution=VOXELS, asyncACD=False)
-    made = [hull_of(np.asarray(h["vertices"], dtype=np.float64)) for h in found]
-    return [h for h in made if h.volume() > 0.0]
+    result = [hull_of(np.asarray(h["vertices"], dtype=np.float64)) for h in found]
+    return [h for h in result if h.volume() > 0.0]
 
 
 def _joined(hulls: list[Solid], of: Solid, tight: bool = False) -> list[Solid]:
     """Hulls joined in pairs; ``tight``: only to what hardly holds anything from outside, by its own volume."""
-    kept = dict(enumerate(hulls))
-    pairs = {(i, j): _both(kept[i], kept[j], of) for i in kept for j in kept if i < j}
+    selected = dict(enumerate(hulls))
+    pairs = {(i, j): _both(selected[i], selected[j], of) for i in selected for j in selected if i < j}
     while pairs:
         i, j = min(pairs, key=lambda pair: (pairs[pair][0], pair))
         hollow, both = pairs[i, j]
@@ -485,12 +485,12 @@ def _joined(hulls: list[Solid], of: Solid, tight: bool = False) -> list[Solid]:
                 break
             del pairs[i, j]
             continue
-        last = max(kept) + 1
-        del kept[i], kept[j]
+        last = max(selected) + 1
+        del selected[i], selected[j]
         pairs = {pair: value for pair, value in pairs.items() if not {i, j} & set(pair)}
-        pairs |= {(k, last): _both(kept[k], both, of) for k in kept}
-        kept[last] = both
-    return list(kept.values())
+        pairs |= {(k, last): _both(selected[k], both, of) for k in selected}
+        selected[last] = both
+    return list(selected.values())
 
 
 def _both(a: Solid, b: Solid, of: Solid) -> tuple[float, Solid]:

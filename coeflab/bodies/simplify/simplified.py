@@ -116,8 +116,8 @@ def _part(part: Part) -> list[str]:
 def _fit(fit: StandIn) -> str:
     own = ("misfit", fit.misfit) if fit.misfit is not None else ("thickness", fit.thickness or 0.0)
     numbers = {own[0]: own[1], "shared": fit.shared, "volume": fit.volume, "length": fit.length}
-    said = ", ".join(f"{key} = {_number(value)}" for key, value in numbers.items())
-    return f'{{class = "{fit.kind}", {said}, areas = {_numbers(np.array(fit.areas))}}}'
+    words = ", ".join(f"{key} = {_number(value)}" for key, value in numbers.items())
+    return f'{{class = "{fit.kind}", {words}, areas = {_numbers(np.array(fit.areas))}}}'
 
 
 def mesh_name(part: Part) -> str:

@@ -198,13 +198,13 @@ def simplify(
     if shared > SLIVERS * mesh.volume:
         statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
     likes = [likeness(p.solid) for p in found]
-    found, likes, lost, said = _parted(found, likes, () if boxes else shells)
+    found, likes, lost, words = _parted(found, likes, () if boxes else shells)
     unassigned += lost
-    statements += said
+    statements += words
     if convex:
-        found, likes, lost, said = _convex(found, likes)
+        found, likes, lost, words = _convex(found, likes)
         unassigned += lost
-        statements += said
+        statements += words
     unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
     largest = max(range(len(found)), key=lambda k: found[k].solid.volume())
     likes[largest] = _no_thick_plate(likes[largest], found[largest].solid.volume())
@@ -220,8 +220,8 @@ def simplify(
         )  # fmt: skip
     length = float(mesh.extents.max())
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
-    made = Parts(tuple(p.part for p in parts))
-    return Simplification(_body(body, made), made, mesh, parts, unassigned, tuple(statements))
+    result = Parts(tuple(p.part for p in parts))
+    return Simplification(_body(body, result), result, mesh, parts, unassigned, tuple(statements))
 
 
 def _no_thick_plate(like: Likeness, volume: float) -> Likeness:
@@ -243,8 +243,8 @@ def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
         return whole, []
     fewer, moved = solids.simplified(whole, KEPT_FACES)
     change = fewer.volume() / whole.volume() - 1.0
-    said = f"{len(mesh.faces)} faces decimated to {fewer.num_tri()}: surface moved by at most {moved:.2g} m, volume "
-    return fewer, [f"{said}{100.0 * change:+.3f} %"]
+    words = f"{len(mesh.faces)} faces decimated to {fewer.num_tri()}: surface moved by at most {moved:.2g} m, volume "
+    return fewer, [f"{words}{100.0 * change:+.3f} %"]
 
 
 def _refuse_idle_boxes(boxes: Sequence[NamedBox], mesh: TriangleMesh) -> None:
@@ -325,7 +325,7 @@ def _parted(
     """Shells parted along their seams where that gives more forms, and all of them forms; what is like nothing parted along
     its seams, or along faces that meet inward, where all of it is forms then. With the volume that became slivers.
     """
-    out, forms, lost, said = list[_Piece](), list[Likeness](), 0.0, list[str]()
+    out, forms, lost, words = list[_Piece](), list[Likeness](), 0.0, list[str]()
     members: dict[int, list[int]] = {}
     for k, piece in enumerate(found):
         members.setdefault(piece.shell, []).append(k)
@@ -336,7 +336,7 @@ def _parted(
             whole = shells[shell]
             seamed = _tried(whole, patches, len(own) if all(like.clear for like in own) else 1)
             if seamed is not None:
-                said.append(_said(whole, seamed[0], "seams"))
+                words.append(_said(whole, seamed[0], "seams"))
                 lost += sum(p.solid.volume() for p in pieces) - sum(p.volume() for p in seamed[0])
                 pieces, own = [_Piece(p, "", False, shell) for p in seamed[0]], seamed[1]
         for piece, like in zip(pieces, own, strict=True):
@@ -349,11 +349,11 @@ def _parted(
                 out.append(piece)
                 forms.append(like)
                 continue
-            said.append(_said(piece.solid, parted[0], how))
+            words.append(_said(piece.solid, parted[0], how))
             lost += piece.solid.volume() - sum(p.volume() for p in parted[0])
             out += [replace(piece, solid=p) for p in parted[0]]
             forms += parted[1]
-    return out, forms, lost, said
+    return out, forms, lost, words
 
 
 def _said(whole: solids.Solid, parts: list[solids.Solid], how: str) -> str:
@@ -409,7 +409,7 @@ def _by_notches(of: solids.Solid) -> list[solids.Solid]:
 
 def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
     """Pieces and their forms, those that are like nothing cut further; volume that became slivers; what was done."""
-    out, forms, lost, said = [], [], 0.0, []
+    out, forms, lost, words = [], [], 0.0, []
     for piece, like in zip(found, likes, strict=True):
         if like.clear or piece.name:
             out.append(piece)
@@ -423,10 +423,12 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
                 "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
             ) from None
         lost += piece.solid.volume() - sum(p.volume() for p in parts)
-        said.append(f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces")
+        words.append(
+            f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces"
+        )
         out += [replace(piece, solid=p) for p in parts]
         forms += [likeness(p) for p in parts]
-    return out, forms, lost, said
+    return out, forms, lost, words
 
 
 def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
@@ -447,8 +449,8 @@ def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
     sizes = tuple(float(round(s, decimals) if s > finest else f"{s:.3g}") for s in like.sizes)
     if like.form == "revolution":
         sizes = tuple(float(round(s, decimals)) + 0.0 for s in like.sizes)
-    made = replace(like, sizes=sizes).made
-    part = Part(piece.name, made, np.asarray(np.round(centre, decimals) + 0.0), turn)
+    result = replace(like, sizes=sizes).made
+    part = Part(piece.name, result, np.asarray(np.round(centre, decimals) + 0.0), turn)
     return SimplifiedPart(
         part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned, surface
     ).with_fit()

@@ -80,11 +80,11 @@ def _require_stated(unit: str, axes: str, path: Path) -> None:
     """Everything that is not stated in one message, so that nobody mends one thing to meet the next."""
     lacking = [
         (what, option)
-        for what, option, said in (
+        for what, option, words in (
             ("unit", "--unit mm, m, in or another unit of length", unit),
             ("axes", f"--axes {AXES_TYPED}", axes),
         )
-        if not said
+        if not words
     ]
     if lacking:
         raise InputError(

@@ -16,7 +16,7 @@ from coeflab.core.wording import identifier
 from coeflab.formats.c_program.source import law_of, numbers, remark, source
 from coeflab.formats.export import covered_grid, rare_states
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
-from coeflab.formats.unspoken import in_header
+from coeflab.formats.lacking_law import in_header
 from coeflab.law.rigid_body import axes_in_earth, rigid_body_force, weighed
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.expected_signs import control_signs
@@ -107,7 +107,7 @@ def header(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         f"/* {remark(p.name)}, body: {remark(p.body)}",
         f"   reference point ({point}) m from: {remark(p.reference_point.datum)}; x forward, y starboard, z down; SI, rad.",
         "   nu u v w p q r through the water; delta dr ds db; attitude: unit quaternion, scalar first, body to north-east-down.",
-        *(f"   {remark(said)}" for said in (*control_signs(p), *in_header(p, tables=True), *water_inertia(p).statements)),
+        *(f"   {remark(words)}" for words in (*control_signs(p), *in_header(p, tables=True), *water_inertia(p).statements)),
         f"   Moves {moves}.",
         "   Functions give 0; 1 where a table refuses to be read outside of its data, with NaN; 2 without an inertia. */",
         f"#ifndef {upper}_H",
@@ -190,14 +190,14 @@ def _check(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
     rates = accelerations(parameters, law, force, nu, attitudes)
     rows = []
     for k in range(len(nu)):
-        kept = [
+        selected = [
             *nu[k],
             *angles[k],
             *attitudes[k],
             *([0.0] * 12 if strict[k] else [*force[k], *rates[k]]),
             float(strict[k]),
         ]
-        rows.append("    {" + ", ".join(repr(float(x) + 0.0) for x in kept) + "}")
+        rows.append("    {" + ", ".join(repr(float(x) + 0.0) for x in selected) + "}")
     scales = [float(np.abs(force[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
     turns = [float(np.abs(rates[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
     return _CHECK.format(

@@ -31,7 +31,7 @@ from coeflab.formats.c_program import program as c
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import not_written, number, propulsion, spelt, written_changes
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
-from coeflab.formats.unspoken import in_header
+from coeflab.formats.lacking_law import in_header
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -83,11 +83,11 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
     for t in law.coefficients:
         says = "prime" if t.kind == "prime" else "SI"
         out.append(Variable(f"{_GROUPS[t.kind]}.{spelt(t.symbol)}", "parameter", t.written, "", f"{says}; {t.note}"))
-    signs = {said[:2]: said for said in control_signs(parameters)}
+    signs = {words[:2]: words for words in control_signs(parameters)}
     limits: dict[str, str] = {s.control: f"limit {s.limit:g} rad" for s in parameters.surfaces}
     for control in CONTROLS:
-        said = ", ".join(x for x in (signs.get(control, ""), limits.get(control, "")) if x)
-        out.append(Variable(f"control.{control}", "input", 0.0, "rad", said))
+        words = ", ".join(x for x in (signs.get(control, ""), limits.get(control, "")) if x)
+        out.append(Variable(f"control.{control}", "input", 0.0, "rad", words))
     out += [
         Variable(f"external.{x}", "input", 0.0, unit(k, 3), "at the reference point") for k, x in enumerate(COMPONENTS)
     ]
@@ -127,9 +127,9 @@ def _names(parameters: ParameterFile) -> list[str]:
 
 def _description(parameters: ParameterFile, variables: list[Variable], name: str, guid: str) -> bytes:
     """modelDescription.xml; references of variables are their numbers from 0, indices from 1."""
-    said = sayable(one_line(f"{parameters.name}, body: {parameters.body}"))
+    words = sayable(one_line(f"{parameters.name}, body: {parameters.body}"))
     root = Element(
-        "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, description=said, generationTool="coeflab",
+        "fmiModelDescription", fmiVersion="2.0", modelName=name, guid=guid, description=words, generationTool="coeflab",
         variableNamingConvention="structured", numberOfEventIndicators="0",
     )  # fmt: skip
     shared = {"modelIdentifier": name, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
@@ -147,15 +147,15 @@ def _description(parameters: ParameterFile, variables: list[Variable], name: str
     listed, structure = SubElement(root, "ModelVariables"), SubElement(root, "ModelStructure")
     lists = {tag: SubElement(structure, tag) for tag in ("Outputs", "Derivatives", "InitialUnknowns")}
     for k, v in enumerate(variables):
-        kept = {
+        selected = {
             "name": v.name,
             "valueReference": str(k),
             "causality": v.causality,
             "variability": "fixed" if v.causality == "parameter" else "continuous",
         }
         if v.start is None:
-            kept["initial"] = "calculated"
-        scalar = SubElement(listed, "ScalarVariable", {**kept, "description": sayable(one_line(v.says))})
+            selected["initial"] = "calculated"
+        scalar = SubElement(listed, "ScalarVariable", {**selected, "description": sayable(one_line(v.says))})
         real = {} if v.start is None else {"start": number(v.start)}
         real |= {"unit": v.unit} if v.unit else {}
         real |= {"derivative": str(v.derivative_of)} if v.derivative_of else {}
@@ -244,8 +244,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "modelDescription.xml": _description(parameters, variables, name, guid),
         **{f"sources/{file}": content for file, content in sources.items()},
     }
-    if said := in_header(parameters, tables=True):
-        entries["documentation/read_me.txt"] = c.lines(said)
+    if words := in_header(parameters, tables=True):
+        entries["documentation/read_me.txt"] = c.lines(words)
     return {f"{name}.fmu": _zipped(entries)}
 
 
@@ -270,13 +270,13 @@ def built(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def _zipped(entries: Mapping[str, bytes]) -> bytes:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_STORED) as archive:
+    result = io.BytesIO()
+    with zipfile.ZipFile(result, "w", zipfile.ZIP_STORED) as archive:
         for path in sorted(entries):
             info = zipfile.ZipInfo(path, _DATE)
             info.create_system, info.external_attr = 3, 0o644 << 16
             archive.writestr(info, entries[path])
-    return made.getvalue()
+    return result.getvalue()
 
 
 def _in_c(files: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -311,8 +311,8 @@ def missing(parameters: ParameterFile) -> tuple[str, ...]:
     """Moments of inertia and added mass, where the file has none."""
     free = free_motions(flat_law(parameters))
     held = [m for m in MOTIONS if m not in free]
-    said = (f"moments of inertia: {', '.join(held)} held, the file does not state them",) if held else ()
-    return (*said, *missing_water(parameters))
+    words = (f"moments of inertia: {', '.join(held)} held, the file does not state them",) if held else ()
+    return (*words, *missing_water(parameters))
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:

@@ -82,11 +82,11 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
     unread: list[str] = []
     for plugin in root.iter("plugin"):
         if _is(plugin, "thruster"):
-            made = _thruster(plugin, found, {t.name for t in thrusters}, findings, subject, file)
-            if made is None:
+            result = _thruster(plugin, found, {t.name for t in thrusters}, findings, subject, file)
+            if result is None:
                 unread.append(f"Thruster of {one_line(plugin.findtext('joint_name') or 'no joint')}")
             else:
-                thrusters.append(made)
+                thrusters.append(result)
             read.append(plugin)
         elif _is(plugin, "lift-drag") and not _is(plugin, "advanced"):
             foil = read_lift_drag(plugin, file)
@@ -97,8 +97,8 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
                 fins.append((foil, named or found.joint_of(foil.link)))
             read.append(plugin)
     findings += left_out(subject, "actuators", unread)
-    controls, surfaces, drift, said = _fins(fins, found, subject)
-    return Actuators(tuple(thrusters), surfaces, controls, drift, tuple(read), (*findings, *said))
+    controls, surfaces, drift, words = _fins(fins, found, subject)
+    return Actuators(tuple(thrusters), surfaces, controls, drift, tuple(read), (*findings, *words))
 
 
 def _is(plugin: Element, what: str) -> bool:

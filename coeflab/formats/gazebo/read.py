@@ -38,13 +38,13 @@ from coeflab.formats.gazebo.law import (
     read_tags,
 )
 from coeflab.formats.gazebo.systems import GZ_SIM
+from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import MOST, left_out, other_plugins, unread_tags
-from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.vehicle.imported_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from coeflab.vehicle.second_order import FLU, SecondOrder
-from coeflab.vehicle.stated_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water
 
 summary = "gz-sim SDF or URDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
 citations = ("fossen2011", "gz_sim")
@@ -99,7 +99,7 @@ def read(
     name = link.model or link.link
     held = assembly(root, link.link.rpartition("::")[2], path)
     driven = actuators(root, held, name, path)
-    weighed, said = _weighed(link, held, name, path)
+    weighed, words = _weighed(link, held, name, path)
     afloat, of_volume = _afloat(root, held, weighed, rho, name, path)
     form = _form(link)
     absolute = form.absolute.copy()
@@ -126,7 +126,7 @@ def read(
             "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
             "|u| v is read as U v: both agree on straight courses",
         ),
-        findings=(*_left_out(root, link, held, driven.read), *said, *of_volume, *driven.findings),
+        findings=(*_left_out(root, link, held, driven.read), *words, *of_volume, *driven.findings),
     )
     return link_file(model, path, citations, length, speed)
 
@@ -260,9 +260,9 @@ def _angles(root: Element, link: GzLink, path: Path) -> list[Check]:
     wrong = [(k, x) for k, x in found if x > TURN]
     if not wrong:
         return []
-    said = Finding.of("model.turned", link.model or link.link, Severity.WARN, statistic=max(x for _, x in wrong), threshold=TURN,
+    words = Finding.of("model.turned", link.model or link.link, Severity.WARN, statistic=max(x for _, x in wrong), threshold=TURN,
                       names=tuple(dict.fromkeys(k for k, _ in wrong)))  # fmt: skip
-    return [as_check("gazebo", said)]
+    return [as_check("gazebo", words)]
 
 
 def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
@@ -280,14 +280,14 @@ def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
     wrong = {k: r for k, r in ratios.items() if not low <= r <= high}
     if not wrong:
         return []
-    said = Finding.of(
+    words = Finding.of(
         "model.added_of_box",
         link.model or link.link,
         Severity.WARN,
         statistic=next(iter(wrong.values())),
         names=tuple(wrong),
     )
-    return [as_check("gazebo", said)]
+    return [as_check("gazebo", words)]
 
 
 def _found(severity: Severity, key: str, statistic: str, rule: str, comment: str) -> Check:

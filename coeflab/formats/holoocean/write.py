@@ -292,7 +292,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the torpedo was made, in words."""
     t, _, found = _fitted(parameters)
     speed = parameters.conditions.speed
-    said = [
+    words = [
         f"HoloOcean 2.3: the vehicle is a spheroid {t.length:.6g} m long, diameter {t.diam:.4g} m, that displaces its mass; HoloOcean adds its added "
         "mass, and of C_A(nu) nu only the products with p: no Munk moment",
         f"Cd {t.Cd:.4g} from X0; lift and drag are computed with 1026 kg/m^3 whatever rho is, for which Cd and area_fraction compensate",
@@ -309,16 +309,16 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         "axes and reference point are the file's",
     ]
     if "area_fraction" in found:
-        said.append(f"area_fraction {t.area_fraction:.4g} from Zw: the reference area of the lift, not the hull's")
+        words.append(f"area_fraction {t.area_fraction:.4g} from Zw: the reference area of the lift, not the hull's")
     if "e" in found:
-        said.append(f"e {t.e:.4g} from Xww")
+        words.append(f"e {t.e:.4g} from Xww")
     if "zeta_roll" in found:
-        said.append(
+        words.append(
             f"zeta_roll {t.zeta_roll:.4g}, zeta_pitch {t.zeta_pitch:.4g} equal Kp and Mq at {speed:g} m/s; damping does not grow with the speed"
         )
-    kept = [k for k in _DEFAULTS if k not in found]
-    said.append(f"HoloOcean's default is used for {', '.join(kept)}: not in the file")
+    selected = [k for k in _DEFAULTS if k not in found]
+    words.append(f"HoloOcean's default is used for {', '.join(selected)}: not in the file")
     unused = [n for n, value in (("T_surge", t.T_surge), ("T_sway", t.T_sway), ("T_yaw", t.T_yaw)) if value == NEVER]
     if unused:
-        said.append(f"{', '.join(unused)} {NEVER:g} s, which is no damping: the file has none there")
-    return tuple(said)
+        words.append(f"{', '.join(unused)} {NEVER:g} s, which is no damping: the file has none there")
+    return tuple(words)

@@ -27,7 +27,7 @@ from coeflab.formats import NoDensityError
 from coeflab.formats.exported_law import sname
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
-from coeflab.vehicle.stated_numbers import FEET_PER_SECOND, FOOT, SLUG, SLUGS
+from coeflab.vehicle.imported_numbers import FEET_PER_SECOND, FOOT, SLUG, SLUGS
 
 _ASSIGNMENT = re.compile(r"([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\s*=(?!=)\s*(.*\S)", re.ASCII | re.DOTALL)
 _QUOTED = re.compile(r"'((?:[^']|'')*)'")

@@ -16,6 +16,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.formats.imported_file import MODEL_ORIGIN, Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
 from coeflab.formats.mss.m_file import (
     DENSITIES,
@@ -30,14 +31,13 @@ from coeflab.formats.mss.m_file import (
     is_derivative,
     read_m_file,
 )
-from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, matrix_doubts, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS
+from coeflab.vehicle.imported_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
-from coeflab.vehicle.stated_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units recognised by rho or g"
 citations = ("sname1950", "fossen2011", "mss")
@@ -77,7 +77,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
     found = read_m_file(path)
     source = InputFile(path.name, sha256_of(path))
     stated = _own(found, path) if "coeflab" in found.numbers else _foreign(found, path, density)
-    return stated_file(stated, [source], citations)
+    return imported_file(stated, [source], citations)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -211,8 +211,8 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     v = foreign_values(found, path, density)
     notes = []
     if v.imperial:
-        told = [f"{k} = {x:g}" for k, x in filter(None, (found.named(*DENSITIES), found.named(*GRAVITIES)))]
-        notes.append(f"slug, foot and pound, recognised by {', '.join(told)}; converted to SI")
+        words = [f"{k} = {x:g}" for k, x in filter(None, (found.named(*DENSITIES), found.named(*GRAVITIES)))]
+        notes.append(f"slug, foot and pound, recognised by {', '.join(words)}; converted to SI")
     name = v.scaling.length_name
     notes.append(f"lengths made dimensionless by {name}" + ("" if name != "1 m" else ": the file states none"))
     notes.append(
@@ -222,13 +222,13 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     )
     matrix = v.added_mass
     doubts = matrix_doubts(matrix)
-    kept = matrix if found.adds_coriolis and not doubts else None
-    notes += [*doubts, _coriolis_note(found, kept is not None)]
-    hull = None if kept is None else AddedMass(kept, np.zeros(3), MODEL_ORIGIN, path.stem, "stated")
+    selected = matrix if found.adds_coriolis and not doubts else None
+    notes += [*doubts, _coriolis_note(found, selected is not None)]
+    hull = None if selected is None else AddedMass(selected, np.zeros(3), MODEL_ORIGIN, path.stem, "stated")
     coefficients: dict[str, tuple[float, Law]] = {}
     squares: dict[str, str] = {}
     for symbol, value in v.values.items():
-        if kept is not None and is_acceleration(symbol):
+        if selected is not None and is_acceleration(symbol):
             continue
         damping = f"{symbol[:2]}|{symbol[2:]}|"
         if symbol in OWN_AXES and value < 0.0 and damping not in v.values:
@@ -251,7 +251,7 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
         findings.append(Finding.of("model.imlay", path.stem, Severity.NOTE, names=found.calls))
     return Stated(
         name=path.stem[:200], body=path.stem[:200], scaling=v.scaling, conditions=v.conditions, coefficients=coefficients,
-        matrix=kept, mass=mass, hydrostatics=afloat, notes=tuple(notes),
+        matrix=selected, mass=mass, hydrostatics=afloat, notes=tuple(notes),
         findings=(*left_behind(found, path.stem, tuple(taken)), *findings),
     )  # fmt: skip
 

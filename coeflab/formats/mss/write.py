@@ -33,8 +33,8 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
+from coeflab.formats.lacking_law import in_header, unstated
 from coeflab.formats.mss.m_file import TABLED, assignments
-from coeflab.formats.unspoken import in_header, unstated
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -66,7 +66,7 @@ _NAMES = {
 }
 
 
-def _unspoken(parameters: ParameterFile) -> tuple[str, ...]:
+def _lacking(parameters: ParameterFile) -> tuple[str, ...]:
     """Components without a law, and members of h that a loop about the function needs and the file does not give."""
     return *in_header(parameters, tables=True), *unstated(parameters, _NAMES)
 
@@ -90,7 +90,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%",
         "%   nu    = [ u v w p q r ]'  velocity through the water at the reference point (m/s, rad/s)",
         "%   delta = [ dr ds db ]'     rudder, stern plane, bow plane (rad), zero if not given",
-        *(f"%                             {said}" for said in control_signs(parameters)),
+        *(f"%                             {words}" for words in control_signs(parameters)),
         "%   tau   = [ X Y Z K M N ]'  force and moment about the reference point (N, N m)",
         "%   MA    = added mass matrix about the reference point, positive (kg, kg m, kg m^2)",
         "%   h     = struct of the coefficients",
@@ -99,7 +99,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
         "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
         f"% {propulsion(parameters)}.",
-        *(f"% {said}." for said in _unspoken(parameters)),
+        *(f"% {words}." for words in _lacking(parameters)),
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
         "% h.Yvav that of v|v|.",

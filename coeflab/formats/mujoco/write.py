@@ -22,8 +22,8 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number, states_buoyancy, straight_coefficients
+from coeflab.formats.lacking_law import in_header
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
-from coeflab.formats.unspoken import in_header
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import force_law, force_of_tables
@@ -428,7 +428,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     source = water_inertia(parameters).source
     e, (side_force, moment, turning, _, _) = geom.ellipsoid, geom.plane
     a, b, c = e.axes
-    said = [
+    words = [
         f"the hull is an ellipsoid of semi-axes {a:.4g} {b:.4g} {c:.4g} m, whose added masses along x, y and z are those of the file "
         f"({source}); MuJoCo adds its Munk moment"
         if not geom.reshaped
@@ -454,7 +454,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         + states_buoyancy(parameters, "the file states no buoyancy"),
     ]
     if not geom.reshaped and geom.own != geom.forward:
-        said.append(
+        words.append(
             f"{moment} would need the centre at {geom.own:+.4g} m: it stays at the reference point, and {moment} is the Munk moment alone"
         )
-    return tuple(said)
+    return tuple(words)

@@ -31,7 +31,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import in_header
+from coeflab.formats.lacking_law import in_header
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -145,7 +145,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {name}.py: {one_line(p.name)}, body: {one_line(p.body)}",
         f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
         f"from: {one_line(p.reference_point.datum)}",
-        *(f"# {said}" for said in in_header(p, tables=True)),
+        *(f"# {words}" for words in in_header(p, tables=True)),
         _HEAD.format(
             name=name,
             m=None if mass is None else mass.mass,
@@ -155,7 +155,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             gravity=GRAVITY if h is None else h.gravity,
             buoyancy=None if h is None else tuple(map(float, h.centre_of_buoyancy)),
             volume=None if h is None else h.volume,
-            controls="".join(f"\n    {said}" for said in control_signs(p)),
+            controls="".join(f"\n    {words}" for words in control_signs(p)),
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",

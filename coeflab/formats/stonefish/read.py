@@ -23,8 +23,8 @@ from coeflab.core.text.xml import numbers, read_xml
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
+from coeflab.formats.imported_file import Stated, imported_file
 from coeflab.formats.left_out import left_out
-from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.transforms import rotation
@@ -87,13 +87,13 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
         *left_out(name, "actuators", unread),
         *left_out(name, "masses", links),
     ]  # fmt: skip
-    made = Stated(
+    result = Stated(
         name=name, body=name, scaling=Scaling(1.0, "1 m"), conditions=Conditions(rho, 1.0), coefficients={},
         datum=Datum("origin of the robot"), mass=mass, hydrostatics=_afloat(parts, name, findings, path), thrusters=thrusters,
         notes=("lengths made dimensionless by 1 m: the file states none", "axes x forward, y starboard, z down, as in the file"),
         findings=tuple(findings),
     )  # fmt: skip
-    return stated_file(made, [InputFile(path.name, sha256_of(path))], citations)
+    return imported_file(result, [InputFile(path.name, sha256_of(path))], citations)
 
 
 def _one(element: Element, name: str, path: Path) -> float:

@@ -35,8 +35,8 @@ from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import covered_grid, missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number
+from coeflab.formats.lacking_law import in_header
 from coeflab.formats.mujoco.law import ellipsoid_of_masses
-from coeflab.formats.unspoken import in_header
 from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
@@ -427,7 +427,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     link = drags.link
     a, b, c = _axes(parameters)
     mass, _ = added(link.corners, link.density)
-    said = [
+    words = [
         f"the mesh is an ellipsoid of semi-axes {a:.4g} {b:.4g} {c:.4g} m about the centre of gravity: the file states no shape",
         "Stonefish's quadratic_drag grows with the cube of the speed and its viscous_drag with the first power (in its source, "
         f"whatever their names): a drag k v^2 as k/(2U) v^3 + k U/2 v meets it in value and slope at U = {speed:g} m/s, and is 25 % above "
@@ -438,8 +438,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     ]
     if not np.all(link.form > 0.0):
         none = ", ".join(n for n, k in zip("xyz", link.form, strict=True) if k == 0.0)
-        said.append(f"no quadratic drag along {none}: zero is written, not Stonefish's default")
+        words.append(f"no quadratic drag along {none}: zero is written, not Stonefish's default")
     inertia = central_inertia(parameters)
     if inertia is not None and np.any(inertia - np.diag(np.diag(inertia))):
-        said.append("products of inertia are left out: Stonefish takes three moments")
-    return tuple(said)
+        words.append("products of inertia are left out: Stonefish takes three moments")
+    return tuple(words)

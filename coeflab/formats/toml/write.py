@@ -7,8 +7,8 @@ from typing import Any
 
 from coeflab.core.text.toml import toml_text
 from coeflab.core.wording import file_stem
+from coeflab.formats.lacking_law import found_in
 from coeflab.formats.look_up import LookUp, look_up
-from coeflab.formats.unspoken import found_in
 from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "tables.toml: every coefficient, added mass, hydrostatics, thrusters, and each fitted model on a grid within its data"

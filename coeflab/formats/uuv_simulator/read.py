@@ -14,14 +14,14 @@ from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
+from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
-from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.law import FRD, MATRICES, PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
+from coeflab.vehicle.imported_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from coeflab.vehicle.second_order import SURGE, SecondOrder
-from coeflab.vehicle.stated_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 
 summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"
 citations = ("fossen2011", "uuv_simulator")

@@ -29,8 +29,8 @@ from coeflab.core.text.yaml import number, read_yaml
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
+from coeflab.formats.imported_file import Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
-from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import AHEAD
@@ -39,8 +39,8 @@ from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import parse_suffix
 from coeflab.law.transforms import force_transfer, moved
+from coeflab.vehicle.imported_numbers import gravity
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.stated_numbers import gravity
 
 Product = tuple[tuple[str, int], ...]
 MOST = 4000
@@ -352,7 +352,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: AR
         stated = _stated(body, law, path)
     except ArithmeticProblem as why:
         raise InputError(str(why), "sums of products of velocities, as xdyn reads them", file=path) from None
-    return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+    return imported_file(stated, [InputFile(path.name, sha256_of(path))], citations)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -382,21 +382,21 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
     if body.rigid is not None and definiteness(body.rigid + body.added).smallest <= 0.0:
         doubts += ("with its added mass the inertia is not positive definite: no simulation survives it",)
     notes += doubts
-    kept = not doubts and bool(np.any(ideal)) and _speaks_of_all(law, ideal)
-    if np.any(ideal) and not kept:
+    selected = not doubts and bool(np.any(ideal)) and _speaks_of_all(law, ideal)
+    if np.any(ideal) and not selected:
         notes.append("no C_A(nu) nu in the file: products of velocities that it does not name are taken as zero")
     coefficients: dict[str, tuple[float, Law]] = {}
     spelling = _spelling(body)
     for i, component in enumerate(COMPONENTS):
         for product, value in law.components[i].terms.items():
-            if kept and _is_ideal(law, ideal, i, product):
+            if selected and _is_ideal(law, ideal, i, product):
                 continue
             symbol, rest = _symbol(component, product, spelling)
             if symbol in coefficients:
                 raise ArithmeticProblem(f"{symbol} both with and without the speed")
             unit = scaling.unit(symbol, at.density, at.speed if rest else 1.0)
             coefficients[symbol] = (value / unit, "rest" if rest else "motion")
-    if not kept:
+    if not selected:
         for i, j in np.argwhere((matrix != 0.0) | (matrix.T != 0.0)):
             symbol = f"{COMPONENTS[i]}{MOTIONS[j]}dot"
             coefficients[symbol] = ((0.0 - float(matrix[i, j])) / scaling.unit(symbol, at.density), "motion")
@@ -411,7 +411,7 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         coefficients=coefficients,
         point=(x, y, z),
         datum=Datum("origin of the body frame" if body.mesh is None else "origin of the mesh"),
-        matrix=matrix if kept else None,
+        matrix=matrix if selected else None,
         mass=mass,
         notes=(*notes, *doubt),
         findings=_left_out(body, name),

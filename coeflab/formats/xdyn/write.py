@@ -29,7 +29,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.unspoken import in_header
+from coeflab.formats.lacking_law import in_header
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, XdynBody, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
@@ -135,8 +135,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
         f"# {propulsion(parameters)}",
-        *(f"# {said}" for said in in_header(parameters)),
-        *(f"# {said}; rad" for said in control_signs(parameters)),
+        *(f"# {words}" for words in in_header(parameters)),
+        *(f"# {words}; rad" for words in control_signs(parameters)),
         *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
@@ -199,26 +199,26 @@ def _damping(terms: Sequence[ForceTerm], at_origin: bool) -> list[str]:
 
 def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Sequence[ForceTerm]) -> list[str]:
     """The model with every other term; its frame has its origin at the reference point."""
-    kept = [t for t in terms if not _damped(t, not offset.any())]
+    selected = [t for t in terms if not _damped(t, not offset.any())]
     velocities = {m: f"{m}(t)" for m in MOTIONS}
     if offset.any():
         velocities |= {"u": "u(t) + q(t)*z_P - r(t)*y_P", "v": "v(t) + r(t)*x_P - p(t)*z_P",
                        "w": "w(t) + p(t)*y_P - q(t)*x_P"}  # fmt: skip
-    scales = sorted({t.length_power for t in kept} - {0})
+    scales = sorted({t.length_power for t in selected} - {0})
     lines = [
         f"name: {FORCES}",
         *_block(0, "reference frame:", [f"frame: {body}", *_axes(offset.tolist(), "m"), *_angles()]),
-        f"commands: [{', '.join(written_controls(tuple(kept)))}]",
+        f"commands: [{', '.join(written_controls(tuple(selected)))}]",
         *(f"{n}_P: {float(v)!r}" for n, v in zip("xyz", offset, strict=True) if offset.any()),
         *(f"{m}: {text}" for m, text in velocities.items()),
         "U: sqrt(u^2 + v^2 + w^2 + 1e-18)",
-        *[f"course: {COURSE}  # {COURSE_MEANS}"] * has_course(kept),
+        *[f"course: {COURSE}  # {COURSE_MEANS}"] * has_course(selected),
         f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
         *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
-        *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in kept),
+        *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in selected),
     ]
     for component in COMPONENTS:
-        parts = [expression(t, _place, "^") for t in kept if t.component == component]
+        parts = [expression(t, _place, "^") for t in selected if t.component == component]
         lines.append(f"{component}: {' + '.join(parts) or '0'}")
     return ["      - model: maneuvering", *("        " + line for line in lines)]
 
@@ -275,7 +275,7 @@ def _absent(parameters: ParameterFile) -> str:
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
     centre, terms = _centre(parameters), written_terms(parameters)
-    said = [
+    words = [
         *written_changes(
             parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
         ),
@@ -283,25 +283,25 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         propulsion(parameters),
     ]
     if parameters.hydrostatics is not None:
-        said.append(
+        words.append(
             f"weight as xdyn's model gravity, buoyancy as a second manoeuvring model, {BUOYANCY}, in the centre of buoyancy: both are "
             "no part of the differences in this report"
         )
     if centre is None:
-        said.append("the body frame has its origin at the reference point; the centre of gravity is not known")
+        words.append("the body frame has its origin at the reference point; the centre of gravity is not known")
     elif centre.any():
         x, y, z = (f"{v:g}" for v in centre)
-        said.append(
+        words.append(
             f"the body frame has its origin at the centre of gravity, ({x}, {y}, {z}) m from the reference point; the "
             "expressions use the velocities at the reference point, and forces act there"
         )
     if any(_damped(t, centre is None or not centre.any()) for t in terms):
-        said.append("damping about a state of rest is written as damping matrices, with the opposite sign")
+        words.append("damping about a state of rest is written as damping matrices, with the opposite sign")
     if any(m.area is not None for m in parameters.models):
-        said.append(
+        words.append(
             "no hydrodynamic polar is written for C_D and the like: xdyn's takes C_L, C_D and C_m as functions of one angle in one "
             "plane, and would add to the expressions of the coefficients"
         )
     if parameters.conditions.viscosity is None:
-        said.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses: the file has none")
-    return tuple(said)
+        words.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses: the file has none")
+    return tuple(words)

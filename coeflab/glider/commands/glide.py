@@ -56,10 +56,10 @@ def command(
     from coeflab.glider.flight import files, fly
 
     flown = fly(glider, cycles, {"step": record}, math.radians(roller))
-    made = {} if out is None else files(flown)
-    changed = write_all(Path(out or ""), made)
+    result = {} if out is None else files(flown)
+    changed = write_all(Path(out or ""), result)
     if json:
-        show.json_object({"gliders": [as_json(f) for f in flown], "files": [str(Path(out or "") / n) for n in made]})
+        show.json_object({"gliders": [as_json(f) for f in flown], "files": [str(Path(out or "") / n) for n in result]})
     else:
         for f in flown:
             show.table(glide_tables.steady(f.run.glider, f.steady))

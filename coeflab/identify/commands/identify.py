@@ -120,9 +120,9 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
         f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
     }
     if out is not None:
-        made = with_curves(read_parameters(params), found)
-        content[f"{file_stem(made.name)}.parameters.json"] = made.to_json()
-        checks = Vehicle(made).checks()
+        result = with_curves(read_parameters(params), found)
+        content[f"{file_stem(result.name)}.parameters.json"] = result.to_json()
+        checks = Vehicle(result).checks()
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)

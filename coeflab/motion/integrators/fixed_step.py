@@ -98,8 +98,8 @@ class _March:
             level[at] = 0.0
         sound = np.isfinite(trial).all(axis=0)
         speed = np.sqrt(np.sum(trial[7:10] ** 2, axis=0))
-        kept = who[sound]
-        self.state[:, kept], self.level[kept] = trial[:, sound], level[sound]
+        selected = who[sound]
+        self.state[:, selected], self.level[selected] = trial[:, sound], level[sound]
         remain[who] = np.where(length >= left, 0.0, left - length)
         now = until - left
         self._stop(who[~sound], now[~sound], NOT_FINITE, remain)

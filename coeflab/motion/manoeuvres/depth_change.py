@@ -57,7 +57,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     angle = within_limit(vehicle, planes, o.planes, f"{NAME}.planes")
     sense = turning_sense(vehicle, planes, "q", float(nu[0]))
     order = sign * angle * sense
-    orders, said = propulsion(vehicle, float(nu[0]))
+    orders, words = propulsion(vehicle, float(nu[0]))
     level = max(5.0 * vehicle.length / float(nu[0]), 1.0)
     phases = (
         Phase("over", {planes: order}, o.longest, Until("pitch", o.way == "rise", sign * o.pitch)),
@@ -65,7 +65,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         Phase("amidships", {planes: 0.0}, level),
     )
     first = f"first {SURFACES[planes]} {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file, whose positive {planes} turns the bow {'up' if sense > 0.0 else 'down'}"
-    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, first))
+    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(words, first))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -67,8 +67,8 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         raise InputError(f"{', '.join(held)} held", "u, w and q that may change", column=NAME)
     nu = np.zeros(6)
     nu[0] = o.speed
-    said = f"no thrust; net weight {net:.4g} N"
-    return Manoeuvre(NAME, (Phase("glide", {}, o.duration),), nu, from_euler(0.0, o.pitch, 0.0), statements=(said,))
+    words = f"no thrust; net weight {net:.4g} N"
+    return Manoeuvre(NAME, (Phase("glide", {}, o.duration),), nu, from_euler(0.0, o.pitch, 0.0), statements=(words,))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -85,12 +85,12 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         until = Until("depth", (sign > 0.0) == (medium == 0), surface)
         phases.append(Phase(f"{names[medium]} {number // 2 + 1}", each[medium], o.longest, until, medium))
     velocity = np.array([o.speed, 0.0, o.heave, 0.0, 0.0, 0.0])
-    said = (
+    words = (
         f"from {vehicle.name} into {other.name} at the surface, {o.depth:g} m {'above' if sign < 0.0 else 'below'} the start; the "
         "craft is a point there: no partial immersion, slamming or spray, and velocities go on unchanged",
     )
     return Manoeuvre(
-        NAME, tuple(phases), velocity, from_euler(0.0, o.pitch, 0.0), each[0], said, (other,), surface
+        NAME, tuple(phases), velocity, from_euler(0.0, o.pitch, 0.0), each[0], words, (other,), surface
     )  # fmt: skip
 
 

@@ -54,7 +54,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     o = parse_options(Options, options, NAME)
     nu = along(vehicle, o.speed)
     angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, said = propulsion(vehicle, float(nu[0]))
+    orders, words = propulsion(vehicle, float(nu[0]))
     length = vehicle.length / float(nu[0])
     turn, after = o.turn * length, o.after * length
     phases = (
@@ -63,7 +63,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         Phase("port turn", {"dr": -angle}, turn),
         Phase("amidships after port", {"dr": 0.0}, after),
     )
-    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said,))
+    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(words,))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

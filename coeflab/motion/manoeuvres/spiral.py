@@ -55,13 +55,13 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     nu = along(vehicle, o.speed)
     within_limit(vehicle, "dr", o.largest, f"{NAME}.largest")
     sense = turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, said = propulsion(vehicle, float(nu[0]))
+    orders, words = propulsion(vehicle, float(nu[0]))
     hold = o.hold * vehicle.length / float(nu[0])
     phases = tuple(
         Phase(f"{k + 1}: {np.degrees(a):+.4g} deg", {"dr": sense * a}, hold) for k, a in enumerate(_angles(o))
     )
     rudder = "angles are positive to starboard, by the coefficients of the file"
-    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, rudder))
+    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(words, rudder))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -70,13 +70,13 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     wanted = dict(zip(MOTION, (o.speed, o.sway, o.heave, o.yaw_rate, o.roll, o.pitch), strict=True))
     near = thruster_orders(vehicle, o.near)
     found = trim(vehicle, wanted, near=near, starts=o.starts)
-    said: tuple[str, ...] = ("commands of the trim",)
+    words: tuple[str, ...] = ("commands of the trim",)
     named = {k: v for option, (k, v) in zip(NAMED, wanted.items(), strict=True) if option in options}
     if not found.point.outcome.solved and 0 < len(named) < len(wanted):
         found = trim(vehicle, named, near=near, starts=o.starts)
         open_ = [n for n, u in zip(NAMED, found.motion.unknowns, strict=False) if n not in options and u.low < u.high]
-        said = (
-            *said,
+        words = (
+            *words,
             f"{', '.join(open_)} found by the trim: at zero, where they stand unless named, no commands keep this motion",
         )
     if not found.point.outcome.solved:
@@ -88,7 +88,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     orders = {name: value for name, value in values.items() if name not in MOTION}
     attitude = from_euler(values["roll"], values["pitch"], 0.0)
     return Manoeuvre(
-        NAME, (Phase("steady", {}, o.duration),), found.velocity, attitude, orders, (*said, *found.point.words()),
+        NAME, (Phase("steady", {}, o.duration),), found.velocity, attitude, orders, (*words, *found.point.words()),
     )  # fmt: skip
 
 

@@ -49,10 +49,10 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     ahead, _ = propulsion(vehicle, float(nu[0]))
     thrust = -o.astern * ahead.get(THRUST, 0.0)
     stopped = Until("u", False, o.remaining * float(nu[0]))
-    said = f"thrust {thrust:.4g} N at once at time zero" if thrust else "thrust off at time zero"
+    words = f"thrust {thrust:.4g} N at once at time zero" if thrust else "thrust off at time zero"
     down = f"stopped where u is down to {o.remaining:g} of the approach speed of {nu[0]:g} m/s"
     return Manoeuvre(
-        NAME, (Phase("stopping", {THRUST: thrust}, o.longest, stopped),), nu, orders=ahead, statements=(said, down)
+        NAME, (Phase("stopping", {THRUST: thrust}, o.longest, stopped),), nu, orders=ahead, statements=(words, down)
     )
 
 

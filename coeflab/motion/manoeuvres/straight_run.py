@@ -41,10 +41,10 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """The run as one phase."""
     o = parse_options(Options, options, NAME)
     nu = along(vehicle, o.speed)
-    orders, said = thruster_orders(vehicle, o.commands), "thrusters as commanded"
+    orders, words = thruster_orders(vehicle, o.commands), "thrusters as commanded"
     if not orders:
-        orders, said = propulsion(vehicle, float(nu[0]))
-    return Manoeuvre(NAME, (Phase("run", {}, o.duration),), nu, orders=orders, statements=(said,))
+        orders, words = propulsion(vehicle, float(nu[0]))
+    return Manoeuvre(NAME, (Phase("run", {}, o.duration),), nu, orders=orders, statements=(words,))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -72,10 +72,10 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         return Manoeuvre(NAME, (phase,), nu, statements=("thrusters as commanded from time zero",))
     angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder")
     order = angle * sign * turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, said = propulsion(vehicle, float(nu[0]))
+    orders, words = propulsion(vehicle, float(nu[0]))
     rudder = f"rudder {np.degrees(order):+.4g} deg turns to {o.side} by the coefficients of the file"
     return Manoeuvre(
-        NAME, (Phase("turning", {"dr": order}, o.longest, done),), nu, orders=orders, statements=(said, rudder)
+        NAME, (Phase("turning", {"dr": order}, o.longest, done),), nu, orders=orders, statements=(words, rudder)
     )
 
 

@@ -72,14 +72,14 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     nu = along(vehicle, o.speed)
     if o.commands:
         standing: dict[str, float] = {}
-        sides, said = _by_thrusters(vehicle, o.commands, nu)
+        sides, words = _by_thrusters(vehicle, o.commands, nu)
     else:
         angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(
             vehicle, "dr", "r", float(nu[0])
         )
         standing, thrust = propulsion(vehicle, float(nu[0]))
         sides = {"dr": angle}, {"dr": -angle}
-        said = (
+        words = (
             thrust,
             f"first rudder {np.degrees(angle):+.4g} deg, to starboard by the coefficients of the file",
         )
@@ -87,7 +87,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         Phase(f"execute {k + 1}", sides[k % 2], o.longest, Until("heading", k % 2 == 0, (-1.0) ** k * o.execute))
         for k in range(o.executes)
     )
-    return Manoeuvre(NAME, phases, nu, orders=standing, statements=said)
+    return Manoeuvre(NAME, phases, nu, orders=standing, statements=words)
 
 
 def _by_thrusters(

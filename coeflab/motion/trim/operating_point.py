@@ -149,7 +149,7 @@ class OperatingPoint:
         tried = f"{f.reached} of {f.starts} starts"
         free = sum(u.low < u.high for u in self.unknowns)
         count = f"{free} unknowns, {len(self.equations)} equations of rank {f.rank}"
-        said = {
+        phrases = {
             Outcome.UNIQUE: f"One solution: {count}; {tried} converged to it, none to another.",
             Outcome.SEVERAL: f"{1 + len(f.others)} isolated solutions: {count}; {tried} converged to one of them.",
             Outcome.FAMILY: f"Not unique: a family of {self.dimension} parameter{'s' * (self.dimension > 1)}; {count}.",
@@ -158,7 +158,7 @@ class OperatingPoint:
             + self._least(),
             Outcome.NOT_CONVERGED: f"The search did not converge from any of {f.starts} starts. " + self._least(),
         }[self.outcome]
-        out = [said]
+        out = [phrases]
         if self.outcome in (Outcome.FAMILY, Outcome.SEVERAL):
             out.append(f"Chosen by the rule: {self.rule}.")
         if self.outcome is Outcome.FAMILY:

@@ -95,10 +95,10 @@ class Uncertain:
 
     def designed(self, z: Array) -> Array:
         """Deviations for standard normal rows (n, k), with the correlations inside of groups only."""
-        kept = np.zeros((len(self.symbols),) * 2)
+        selected = np.zeros((len(self.symbols),) * 2)
         for g in self.groups():
-            kept[np.ix_(g, g)] = 1.0
-        return self._spread(z, self._correlation() * kept)
+            selected[np.ix_(g, g)] = 1.0
+        return self._spread(z, self._correlation() * selected)
 
     def _correlation(self) -> Array:
         scale = np.where(self.deviation > 0.0, self.deviation, 1.0)
@@ -267,8 +267,8 @@ def drawn(
         return Ensemble(vehicle, coefficients)
     ideal = None
     if parameters.added_mass is not None:
-        unspoken = sources_of(parameters, tables).open_products()
-        ideal = vehicle.law.ideal + np.array([np.where(unspoken, ideal_quadratics(c), 0.0) for c in change])
+        open_products = sources_of(parameters, tables).open_products()
+        ideal = vehicle.law.ideal + np.array([np.where(open_products, ideal_quadratics(c), 0.0) for c in change])
     return Ensemble(vehicle, coefficients, added=vehicle.added + change, ideal=ideal)
 
 

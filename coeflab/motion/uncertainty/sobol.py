@@ -141,8 +141,8 @@ def known_share(inputs: Array, result: Array) -> Array:
     result : (n,) array
         Rows that are not finite are left out.
     """
-    kept = np.isfinite(result)
-    x, y = inputs[kept], result[kept] - np.mean(result[kept]) if kept.any() else result[kept]
+    selected = np.isfinite(result)
+    x, y = inputs[selected], result[selected] - np.mean(result[selected]) if selected.any() else result[selected]
     out = np.full(inputs.shape[1], np.nan)
     whole = float(y @ y)
     if len(y) < 10 * DEGREE or whole <= 0.0:

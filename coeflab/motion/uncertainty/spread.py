@@ -154,9 +154,9 @@ def spread(figure: Figure, values: Array, statuses: Sequence[str], why: str = ""
         return Spread(figure, None, None, None, None, None, having, beyond, "no interval", why)
     sample = values[found]
     low, median, high = (float(v) for v in np.percentile(sample, [LOW, 50.0, HIGH]))
-    said = "" if having == 1.0 else f"of the {100.0 * having:.3g} % of the members that have it"
+    words = "" if having == 1.0 else f"of the {100.0 * having:.3g} % of the members that have it"
     errors = quantile_error(sample, LOW), quantile_error(sample, HIGH)
-    return Spread(figure, median, low, high, *errors, having, beyond, "ok", said)
+    return Spread(figure, median, low, high, *errors, having, beyond, "ok", words)
 
 
 def _reasons_carried(statuses: Sequence[str], found: NDArray[np.bool_]) -> str:
@@ -175,7 +175,7 @@ def shares(indices: SobolIndices, groups: Sequence[tuple[str, ...]], sources: Se
     sources : sequence of str
         Where each group comes from.
     """
-    made = [
+    result = [
         Share(
             g, source, float(indices.first[k]), float(indices.total[k]),
             (float(indices.first_bounds[0, k]), float(indices.first_bounds[1, k])),
@@ -183,4 +183,4 @@ def shares(indices: SobolIndices, groups: Sequence[tuple[str, ...]], sources: Se
         )
         for k, (g, source) in enumerate(zip(groups, sources, strict=True))
     ]  # fmt: skip
-    return tuple(sorted(made, key=lambda s: (-s.first, -s.total)))
+    return tuple(sorted(result, key=lambda s: (-s.first, -s.total)))

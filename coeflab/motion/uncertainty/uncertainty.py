@@ -340,22 +340,22 @@ def _run(
     """Every row, in batches, those that the store has not run again."""
     size = int(np.clip(MEMORY / (STATE_BYTES * (plan.duration / setup.record + 2.0)), LEAST_BATCH, BATCH))
     parts = [every[i : i + size] for i in range(0, len(every), size)]
-    kept = None if store is None else Store(store, _key(setup, question, names, size))
+    selected = None if store is None else Store(store, _key(setup, question, names, size))
     done: dict[int, Batch] = {}
     for index, rows in enumerate(parts):
-        found, wrong = (None, "") if kept is None else kept.load(index, len(rows), len(names))
+        found, wrong = (None, "") if selected is None else selected.load(index, len(rows), len(names))
         if found is not None:
             done[index] = found
-        elif kept is not None and wrong:
-            LOGGER.info("%s: %s and is run again", kept.path(index), wrong)
-    if kept is not None and done:
-        LOGGER.info("%d of %d batches were found in %s", len(done), len(parts), kept.path(0).parent)
+        elif selected is not None and wrong:
+            LOGGER.info("%s: %s and is run again", selected.path(index), wrong)
+    if selected is not None and done:
+        LOGGER.info("%d of %d batches were found in %s", len(done), len(parts), selected.path(0).parent)
     tasks = {i: (setup, names, rows) for i, rows in enumerate(parts) if i not in done}
     stage(f"{len(done)} of {len(parts)} batches of {size} motions")
     for index, batch in carried_out(run_batch, tasks, workers, scheduler):
         done[index] = batch
-        if kept is not None:
-            kept.save(index, batch)
+        if selected is not None:
+            selected.save(index, batch)
         stage(f"{len(done)} of {len(parts)} batches of {size} motions")
     ordered = [done[i] for i in range(len(parts))]
     return Batch(

@@ -120,12 +120,12 @@ def rows() -> tuple[Row, ...]:
     whole = estimated(replace(suboff("suboff_aff8", True), scaling=plan.scaling), water)
     bare = estimated(replace(suboff("suboff_bare_hull", False), scaling=plan.scaling), water)
     out = []
-    for name, made in (("3", bare), ("2", whole), ("1", whole)):
+    for name, result in (("3", bare), ("2", whole), ("1", whole)):
         reference = by_name[f"Roddy configuration {name}"]
         out += [
-            Row(name, s, v, made.coefficients[s], (reference.name, s) not in COPIES)
+            Row(name, s, v, result.coefficients[s], (reference.name, s) not in COPIES)
             for s, v in _measured(reference).items()
-            if s in made.coefficients
+            if s in result.coefficients
         ]
     return tuple(out)
 
@@ -174,11 +174,11 @@ def goals(found: tuple[Row, ...]) -> str:
         ("median U95", wide, "at most", WIDE, wide <= WIDE),
         ("median |error| of the main ones", apart, "at most", APART, apart <= APART),
     )
-    said = [
+    words = [
         f"{what} {100 * value:.0f} %, goal {bound} {100 * limit:.0f} %, {'met' if met else 'missed'}"
         for what, value, bound, limit, met in each
     ]
-    return f"Goals of the project, not counted: {'; '.join(said)}."
+    return f"Goals of the project, not counted: {'; '.join(words)}."
 
 
 @one_thread()
@@ -239,10 +239,10 @@ def levers() -> tuple[Compared, ...]:
 
 def _beside() -> tuple[str, ...]:
     """Vehicles whose numbers are others' estimates or CFD: no verdict."""
-    said = ["HUUV and THAUV: no verdict; their publications give no shape, and no derivatives of the HUUV."]
+    words = ["HUUV and THAUV: no verdict; their publications give no shape, and no derivatives of the HUUV."]
     body = read_body(Path(shipped("geometry")) / "remus100" / "body.toml")
     if body.outline is None:
-        return tuple(said)
+        return tuple(words)
     theirs = read_parameter_file(Path(shipped("cfd_data")) / "remus100" / "remus100.parameters.json")
     water = Water(theirs.conditions.density, VISCOSITY, theirs.conditions.speed)
     ours = estimated(replace(body, scaling=theirs.scaling), water)
@@ -253,9 +253,11 @@ def _beside() -> tuple[str, ...]:
         for s, p in pairs.items()
         if printed.get(p) is not None
     ]
-    said.append("REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins.")
-    said.append(f"REMUS 100: {', '.join(parts)}.")
-    return tuple(said)
+    words.append(
+        "REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins."
+    )
+    words.append(f"REMUS 100: {', '.join(parts)}.")
+    return tuple(words)
 
 
 def _value(made: Estimates, symbol: str) -> float:

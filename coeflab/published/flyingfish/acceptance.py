@@ -72,7 +72,7 @@ def acceptance() -> Acceptance:
     fish = read_flyingfish()
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     nearest = _nearest(fish, constants)
-    made = craft(fish)
+    result = craft(fish)
     return Acceptance(
         "flyingfish",
         "TJ-FlyingFish, four tilting rotors: ten operating points under water, and air",
@@ -84,7 +84,7 @@ def acceptance() -> Acceptance:
             _corrected(fish, constants),
             *carried(fish, flyingfish_file(fish)),
             air(fish),
-            *compared(made),
+            *compared(result),
         ),
         fish.errata,
         (
@@ -94,7 +94,7 @@ def acceptance() -> Acceptance:
             NO_PICTURES,
         ),
         ("tj_flyingfish",),
-        figures(made, nearest),
+        figures(result, nearest),
         CONVENTIONS,
         tuple(flyingfish_file(fish, medium) for medium in MEDIA),
     )
@@ -346,17 +346,17 @@ def _families(fish: FlyingFish, constants: Array) -> ComparedTable:
 
 def _cold(fish: FlyingFish, constants: Array) -> ComparedTable:
     rows: list[Compared] = []
-    said = []
+    words = []
     for row in ISOLATED:
         found = trim(fish, constants, row, given=(2, 3), starts=12)
         published = _printed(fish, row)
         case = f"motion {row + 1}"
         rows += _rows(case, published, _point(found), 0.005, 0.075, range(2))
         rows += _rows(case, published, _point(found), 0.005, 0.075, range(4, 8))
-        said.append(f"{case}: {found.words()[0]}")
+        words.append(f"{case}: {found.words()[0]}")
     return ComparedTable(
         "cold", "Cold starts with beta3 and beta4 as printed", tuple(rows), "Table 1",
-        (*said, "The tolerance on rotor speed is 0.07 rpm to its last printed digit."), "nearest",
+        (*words, "The tolerance on rotor speed is 0.07 rpm to its last printed digit."), "nearest",
     )  # fmt: skip
 
 

@@ -186,13 +186,15 @@ def _tilt() -> Figure:
 
 def _bench(medium: Medium, test: BenchTest) -> Figure:
     """Fig. 5."""
-    made = bench_figure(
+    result = bench_figure(
         test,
         f"Rotor in {medium}, synthetic series made of equations {'47 and 48' if medium == 'water' else '45 and 46'} with 1 % of noise: the "
         "paper plots its readings in Fig. 5 and prints none.",
     )
     return replace(
-        made, anchor=f"flyingfish-bench-{medium}", svg=made.svg.replace("bench-rotor1", f"flyingfish-bench-{medium}")
+        result,
+        anchor=f"flyingfish-bench-{medium}",
+        svg=result.svg.replace("bench-rotor1", f"flyingfish-bench-{medium}"),
     )
 
 

@@ -165,17 +165,17 @@ def equations(c: Craft, medium: model.Medium) -> ComparedTable:
         )
         for which, what, unit, x, within in found
     ]
-    said = [
+    words = [
         f"{STATES} random states, seed {SEED}, with unequal moments of inertia: with those of the file the gyroscopic terms vanish."
     ]
     if wet:
-        said.append("Added mass X_A .. N_A and X_CA .. N_CA: the paper prints no number of it, and none is in either.")
+        words.append("Added mass X_A .. N_A and X_CA .. N_CA: the paper prints no number of it, and none is in either.")
     else:
         rows.append(
             Compared("equations 7-12", "buoyancy of air they leave out", "N", 0.002 * body.weight, lift, 0.0, Basis.CONSISTENCY,
                      at_most=True)
         )  # fmt: skip
-        said.append(
+        words.append(
             "Rotors by equations 31 to 34 with the signs of Z_P and K_P corrected, curves of 45 and 46 and damping of 49 typed a "
             "second time. The buoyancy of air in the file is added to the equations."
         )
@@ -185,7 +185,7 @@ def equations(c: Craft, medium: model.Medium) -> ComparedTable:
         f"The printed equations in {medium} and what is integrated",
         tuple(rows),
         place,
-        tuple(said),
+        tuple(words),
     )
 
 

@@ -166,9 +166,9 @@ def simulated_rows(huuv: Huuv) -> ComparedTable:
 
 def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
     """(n, 6) velocities that the vehicle of the parameter file settles at."""
-    made, turns = vehicle(file, free=("u", "v", "r")), huuv.accepted
+    result, turns = vehicle(file, free=("u", "v", "r")), huuv.accepted
     commands = [{"left": float(a), "right": float(b)} for a, b in zip(turns.left, turns.right, strict=True)]
-    return steady_state.steady_motions(made, steady_state.wrenches(made, commands))[0]
+    return steady_state.steady_motions(result, steady_state.wrenches(result, commands))[0]
 
 
 def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:

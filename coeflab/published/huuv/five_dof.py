@@ -37,7 +37,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.stated_file import stated_table
+from coeflab.formats.imported_file import stated_table
 from coeflab.law.added_mass import AddedMass, OtherMethod
 from coeflab.law.rigid_body import MassProperties, rigid_body_inertia
 from coeflab.law.transforms import incidence
@@ -391,7 +391,7 @@ def five_dof_file(huuv: FiveDof) -> ParameterFile:
     by, density, primes = own["tuned_by"], huuv.density, base.scaling
     force, moment = (primes.unit(component, density) for component in "XN")
     end, fastest, most = (huuv.level.chosen["largest_drift"], huuv.level.chosen["largest_rate"], own["largest_angle"])
-    made: dict[str, Any] = {
+    result: dict[str, Any] = {
         "form": "polynomial", "table": "five_dof.toml", "campaign": "HUUV, assumed",
         "statements": ("Assumed, see five_dof.toml: neither points nor residuals.",),
     }  # fmt: skip
@@ -411,25 +411,25 @@ def five_dof_file(huuv: FiveDof) -> ParameterFile:
         stated_table(
             "C_D", {"alpha": attack, "beta": drift},
             {"1": ((), c["d0"]), "alpha^2": (power("alpha", 2), c["d2"]), "beta^2": (power("beta", 2), c["d2"])},
-            force, **made,
+            force, **result,
         ),
         *horizontal,
         stated_table(
             "C_L", {"alpha": attack},
-            {"alpha": (power("alpha", 1), c["s1"] / by), "alpha^3": (power("alpha", 3), c["s3"] / by)}, force, **made,
+            {"alpha": (power("alpha", 1), c["s1"] / by), "alpha^3": (power("alpha", 3), c["s3"] / by)}, force, **result,
         ),
         stated_table(
             "C_m", {"alpha": attack},
-            {"alpha": (power("alpha", 1), -pitch_slope(huuv)), "alpha^3": (power("alpha", 3), -c["n3"] / by)}, moment, **made,
+            {"alpha": (power("alpha", 1), -pitch_slope(huuv)), "alpha^3": (power("alpha", 3), -c["n3"] / by)}, moment, **result,
         ),
         stated_table(
             "M", {"q": ("rad/s", -fastest, fastest)}, {"q|q|": ((("q", 1, False), ("q", 1, True)), -c["nrr"] / by)}, 1.0,
-            unit="N*m", **made,
+            unit="N*m", **result,
         ),
         *(
             stated_table(
                 response, {"alpha": attack, "db": ("rad", -most, most)},
-                _effective(powers, [pressed * v for v in values]), unit, **made,
+                _effective(powers, [pressed * v for v in values]), unit, **result,
             )
             for response, (unit, powers, values) in elevator.items()
         ),
@@ -464,9 +464,9 @@ def _effective(powers: Sequence[int], values: Sequence[float]) -> dict[str, Any]
 
 def _added_mass(huuv: FiveDof) -> AddedMass:
     other = OtherMethod("assumed geometry, equations 28-32 as corrected", huuv.geometry)
-    said = (MASSES[huuv.masses],)
+    words = (MASSES[huuv.masses],)
     return AddedMass(
-        huuv.added, datum=Datum("cb"), body="HUUV", method="stated" if huuv.masses == "stated" else "primitives:huuv", statements=said, density=huuv.density,
+        huuv.added, datum=Datum("cb"), body="HUUV", method="stated" if huuv.masses == "stated" else "primitives:huuv", statements=words, density=huuv.density,
         others=(other,) if huuv.masses == "stated" else (),
     )  # fmt: skip
 

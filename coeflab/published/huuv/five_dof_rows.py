@@ -60,9 +60,9 @@ def dived(file: ParameterFile) -> dict[float, Dive]:
     out = {}
     for angle in DIVES:
         orders = [f"left={COMMAND:g}", f"right={COMMAND:g}", f"db={float(np.radians(angle))!r}"]
-        made = simulate(file, "straight_run", {"commands": orders, "duration": DURATION}, free=FREE).trajectory
-        end = made.velocity[-1, five_dof.AT]
-        out[angle] = Dive(made.time, made.position[:, 2], made.angles[:, 1], made.velocity[:, 0], end)
+        result = simulate(file, "straight_run", {"commands": orders, "duration": DURATION}, free=FREE).trajectory
+        end = result.velocity[-1, five_dof.AT]
+        out[angle] = Dive(result.time, result.position[:, 2], result.angles[:, 1], result.velocity[:, 0], end)
     return out
 
 
@@ -109,10 +109,10 @@ def _commanded(five: five_dof.FiveDof) -> list[Compared]:
     apart = float(
         np.max(np.abs(five_dof.damping(moved, ahead, np.array([0.3])) - five_dof.damping(five, ahead, np.array([0.3]))))
     )
-    told, beyond = "inputs 50 % and 10 %", "elevators ordered to 40 deg, held at 30 deg"
+    words, beyond = "inputs 50 % and 10 %", "elevators ordered to 40 deg, held at 30 deg"
     return [
-        _row(told, "X", "N", 11.864, float(tau[0]), 1e-5),
-        _row(told, "N", "N m", -0.3308, float(tau[4]), 1e-5),
+        _row(words, "X", "N", 11.864, float(tau[0]), 1e-5),
+        _row(words, "N", "N m", -0.3308, float(tau[4]), 1e-5),
         _row(beyond, "X", "N", -6.031425, float(held[0]), 1e-5),
         _row(beyond, "Z", "N", 20.826314, float(held[2]), 1e-5),
         _row(beyond, "M", "N m", -4.436358, float(held[3]), 1e-5),
@@ -146,13 +146,13 @@ def _forces(five: five_dof.FiveDof, file: ParameterFile) -> ComparedTable:
     pitch, delta = rng.uniform(-0.5, 0.5, MOTIONS), rng.uniform(-0.5, 0.5, MOTIONS)
     level = nu * (1.0, 0.0, 1.0, 1.0, 1.0)
     cases = (("elevators deflected, no drift", level, delta), ("elevators neutral, drift", nu, np.zeros(MOTIONS)))
-    made, none = vehicle(file, free=FREE), np.zeros((MOTIONS, 5))
+    result, none = vehicle(file, free=FREE), np.zeros((MOTIONS, 5))
     rows = [*_by_hand(five), *_commanded(five), *_matrices(five)]
     for case, motion, angle in cases:
         whole, controls = np.zeros((MOTIONS, 6)), np.zeros((MOTIONS, 3))
         whole[:, five_dof.AT], controls[:, 2] = motion, angle
         attitude = np.array([from_euler(0.0, float(p), 0.0) for p in pitch])
-        found = made.unbalanced(whole, attitude, controls, np.zeros(6))[:, five_dof.AT]
+        found = result.unbalanced(whole, attitude, controls, np.zeros(6))[:, five_dof.AT]
         apart = np.max(np.abs(found - five_dof.unbalanced(five, motion, pitch, angle, none)))
         rows.append(_row(case, "parameter file less equations", "N, N m", 0.0, max(float(apart), FINEST), EXACT))
     speed, alpha, beta = five_dof.angles(nu)
@@ -310,11 +310,11 @@ def _turns(five: five_dof.FiveDof) -> ComparedTable:
         ]  # fmt: skip
     steep = float(np.degrees(np.max(np.abs(found[:, 3]))))
     all_of = five.level.turns[MATLAB]
-    said = [_departure(label, with_masses(five, how, all_of), all_of) for label, how in SETS]
+    words = [_departure(label, with_masses(five, how, all_of), all_of) for label, how in SETS]
     stable = "all are stable" if np.all(growth < 0.0) else "some are not stable"
     return ComparedTable(
         "five_dof_turns", "Steady turns with heave and pitch", tuple(rows), "equations 1-17, 23-38",
-        (f"1 % allowed: heave and pitch change a turn by that at most. Pitch reaches {steep:.2g} deg; {stable}.", *said),
+        (f"1 % allowed: heave and pitch change a turn by that at most. Pitch reaches {steep:.2g} deg; {stable}.", *words),
         "steady_turns",
     )  # fmt: skip
 

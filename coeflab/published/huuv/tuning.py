@@ -102,11 +102,11 @@ def tuned(huuv: Huuv, source: str, free: Sequence[str] = FREE, errors: Sequence[
         for one in parameters
         if one.name in DAMPING
     ]
-    said = (*statements(p, found), *(remark(f) for f in drives if f is not None))
+    words = (*statements(p, found), *(remark(f) for f in drives if f is not None))
     return Tuning(
         f"huuv_{source}", parameters, found.correlation, found.covariance,
         _quantities(p, found), tuple(together_in_words([IN_WORDS[n] for n in free], c, found.parameters) for c in found.undetermined),
-        found.singular, found.birge, found.freedom, found.converged, said,
+        found.singular, found.birge, found.freedom, found.converged, words,
     )  # fmt: skip
 
 
@@ -146,10 +146,10 @@ def origin_rows(huuv: Huuv) -> ComparedTable:
         for n in BASE
         if (p := fit.parameter(n))
     )
-    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    words = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
     return ComparedTable(
         "origin", "Where the constants of the steady turns come from", rows, "Fig. 17 b, d, f",
-        (f"Quadratic yaw damping held at 1, none linear. Root mean square: {said}; its radius does not reach 0.027 m.",),
+        (f"Quadratic yaw damping held at 1, none linear. Root mean square: {words}; its radius does not reach 0.027 m.",),
     )  # fmt: skip
 
 
@@ -170,10 +170,10 @@ def tuned_rows(fit: Tuning) -> ComparedTable:
         Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, Basis.CALIBRATION, at_most=True)
         for n, (unit, most) in LIMITS.items()
     ]
-    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    words = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
     return ComparedTable(
         "tuned_matlab", "Tuned to the paper's simulation, 28 turns", tuple(rows), "Fig. 17 b, d, f",
-        (f"Root mean square: {said}.", *(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
+        (f"Root mean square: {words}.", *(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
     )  # fmt: skip
 
 
@@ -191,7 +191,7 @@ def pool_rows(fit: Tuning) -> ComparedTable:
 
 def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
     """Held constants that the turns would not tell apart from what is free."""
-    rows, said = [], []
+    rows, words = [], []
     for name in ("m", "my", "arm"):
         found = hidden(huuv, fit, MATLAB, name)
         rows.append(
@@ -199,12 +199,12 @@ def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
                 "MATLAB", f"sets that {IN_WORDS[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY
             )
         )
-        said += list(found)
+        words += list(found)
     both = sum("beta^3" in text and "r|r|" in text for text in fit.together)
     rows.append(
         Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, Basis.CONSISTENCY)
     )
     return ComparedTable(
         "hidden", "What the turns do not determine", tuple(rows), "Fig. 17 b, d, f",
-        (*said, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
+        (*words, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
     )  # fmt: skip

@@ -108,10 +108,10 @@ def _closed_forms() -> ComparedTable:
         ),
     ]  # fmt: skip
     sizes = cell_sizes(np.array(EDGES, dtype=float) ** 3)
-    made = grid_convergence(1.0 + 0.01 * (EDGES[0] / np.array(EDGES)) ** ORDER, sizes)
+    result = grid_convergence(1.0 + 0.01 * (EDGES[0] / np.array(EDGES)) ** ORDER, sizes)
     rows += [
-        Compared("cubes of 64, 32 and 16 cells an edge", "order", "1", ORDER, made.order, 1e-6, Basis.CONSISTENCY, True),
-        Compared("cubes of 64, 32 and 16 cells an edge", "value without cells", "1", 1.0, made.extrapolated, 1e-9, Basis.CONSISTENCY, True),
+        Compared("cubes of 64, 32 and 16 cells an edge", "order", "1", ORDER, result.order, 1e-6, Basis.CONSISTENCY, True),
+        Compared("cubes of 64, 32 and 16 cells an edge", "value without cells", "1", 1.0, result.extrapolated, 1e-9, Basis.CONSISTENCY, True),
     ]  # fmt: skip
     return ComparedTable(
         "closed_forms", "Formulas where theory has a closed form", tuple(rows),

@@ -400,8 +400,8 @@ def _radians(gliders: dict[str, Flown]) -> str:
 
 
 def _motion(gliders: dict[str, Flown]) -> tuple[str, ...]:
-    said = dict.fromkeys(s for f in gliders.values() for s in f.run.statements)
-    return tuple(cast(Sequence[str], said))
+    words = dict.fromkeys(s for f in gliders.values() for s in f.run.statements)
+    return tuple(cast(Sequence[str], words))
 
 
 def _case(published: dict[str, str]) -> str:

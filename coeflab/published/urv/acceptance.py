@@ -279,8 +279,8 @@ def errata() -> ComparedTable:
         within: float,
     ) -> None:
         """Theory and found of the printed form, then of the corrected one."""
-        for said, (expected, found) in (("as printed", of_printed), ("corrected", of_corrected)):
-            rows.append(same(f"{what}, {said}", quantity, unit, expected, found, within))
+        for words, (expected, found) in (("as printed", of_printed), ("corrected", of_corrected)):
+            rows.append(same(f"{what}, {words}", quantity, unit, expected, found, within))
 
     for i, (name, (true, wrong)) in enumerate(SPHEROID.items()):
         forms = [model.spheroid_by_paper(1.0, 0.4, printed=printed)[i] for printed in (True, False)]
@@ -306,7 +306,7 @@ def errata() -> ComparedTable:
     )
     chain, spin = model.swung(radius, length), np.array([0.3, 0.5, 0.9])
     moving = in_frame_0(chain, np.array([0.0, 0.0, 0.0, spin[0], spin[1], 0.0, spin[2]]))
-    made = [
+    result = [
         from_nothing(chain, np.zeros(1), moving, law(chain, np.zeros(1), moving))
         for law in (model.bias_by_equation_16, kane.bias)
     ]
@@ -314,8 +314,8 @@ def errata() -> ComparedTable:
         "4 equation 16",
         "power from nothing",
         "W",
-        (-turning / 12.0 * float(np.prod(spin)), made[0]),
-        (0.0, made[1]),
+        (-turning / 12.0 * float(np.prod(spin)), result[0]),
+        (0.0, result[1]),
         SECOND,
     )
     rate, per = SWING["rate"], 0.5 * DENSITY * model.BASIC * 2.0 * radius

@@ -31,13 +31,13 @@ LASTS, RELATIVE = 5.0, 1e-9
 def energy() -> ComparedTable:
     """Free motion, and motion with drag and torques: energy and momentum after five seconds."""
     rows = []
-    for said, chain in (("free, without water", dry()), ("free, with added mass", _ideal(wet()))):
+    for words, chain in (("free, without water", dry()), ("free, with added mass", _ideal(wet()))):
         start, end, _ = _motion(chain, lambda _: np.zeros(9))
         apart = _kinetic(chain, end) / _kinetic(chain, start) - 1.0
-        rows.append(none(f"{said}, {LASTS:g} s", "change of kinetic energy over itself", "1", apart, CONSERVED))
+        rows.append(none(f"{words}, {LASTS:g} s", "change of kinetic energy over itself", "1", apart, CONSERVED))
         if chain is dry():
             gone = _momentum(chain, end) - _momentum(chain, start)
-            rows.append(none(f"{said}, {LASTS:g} s", "change of momentum", "N s, N m s", gone, 1e-7))
+            rows.append(none(f"{words}, {LASTS:g} s", "change of momentum", "N s, N m s", gone, 1e-7))
     start, end, work = _motion(wet(), _driven)
     gained = _kinetic(wet(), end) - _kinetic(wet(), start)
     largest = max(abs(gained), abs(work))
@@ -174,7 +174,7 @@ def control(runs: dict[str, ControlledRun]) -> ComparedTable:
         same("computed torque that does not know the current", "distance that stays", "m", float(np.linalg.norm(steady)), float(pushed.apart[-1]), 1e-4),
         same("station keeping of a heavy vehicle", "force down that is asked for", "N", -excess, float(lifted[2]), 1e-9),
     ]  # fmt: skip
-    said = [
+    words = [
         f"{TITLES[name]}: up to {1e3 * float(run.apart.max()):.2g} mm and {np.degrees(float(run.turned.max())):.2g} deg off station, the end "
         f"effector up to {1e3 * float(run.end_apart.max()):.2g} mm off its track; thrust up to {float(np.abs(run.thrust).max()):.2g} N, "
         f"joint torque up to {float(np.abs(run.torque).max()):.2g} N m; {'; '.join(run.status) or 'nothing at its limit'}."
@@ -187,7 +187,7 @@ def control(runs: dict[str, ControlledRun]) -> ComparedTable:
             "The paper prints no controller and no run. The law and its gains are ours: 1 rad/s for the vehicle, 4 rad/s for joints, critical "
             "damping.",
             "M^-1 F / w^2 is the distance that a current leaves whose force F the controller does not know.",
-            *said,
+            *words,
         ),
     )  # fmt: skip
 
@@ -208,11 +208,11 @@ TITLES = {
 def figures() -> Iterator[tuple[str, Figure]]:
     """Our pictures: of the paper's only figure, and of the runs under control."""
     runs = tasks()
-    end, kept = runs["end"], runs["torque"]
+    end, selected = runs["end"], runs["torque"]
     yield (
         "urv_frames",
         arm.frames_figure(
-            arm.ArmMotion(end.chain, model.hull(), kept.time[:1], kept.state[:1]),
+            arm.ArmMotion(end.chain, model.hull(), selected.time[:1], selected.state[:1]),
             "urv-frames",
             "Our picture of the paper's Figure 1: frame 0 on the vehicle at c₀ from its centre of mass, x forward, y left and z up; frames 1 "
             "to 3 of the arm; north, east, down. Hull and links are the chosen spheroid and cylinders.",
@@ -232,7 +232,10 @@ def figures() -> Iterator[tuple[str, Figure]]:
             "The same run; dots where the track asks for it. The axes have scales of their own.",
         ),
     )  # fmt: skip
-    yield "urv_joints", arm.joints_figure(kept, "urv-joints", "Joints that move while the vehicle keeps its station")
+    yield (
+        "urv_joints",
+        arm.joints_figure(selected, "urv-joints", "Joints that move while the vehicle keeps its station"),
+    )
     named = [
         (TITLES[name].split(", ")[-1] if name != "station" else "station keeping", runs[name])
         for name in ("torque", "voltage", "station")
@@ -247,7 +250,7 @@ def figures() -> Iterator[tuple[str, Figure]]:
     yield (
         "urv_thrust",
         arm.thrust_figure(
-            kept,
+            selected,
             "urv-thrust",
             "Thrust while the joints move",
             "Torque-driven thrusters; dots where thrust is asked for.",
@@ -258,12 +261,12 @@ def figures() -> Iterator[tuple[str, Figure]]:
 def page() -> bytes:
     """The straight line of the end effector, as a page that plays it."""
     run = tasks()["end"]
-    said = (
+    words = (
         f"Vehicle with links 1 to 3 of a PUMA 560: the end effector goes {float(np.linalg.norm(REACH)):.2g} m along a straight line while the "
         "vehicle keeps its station, by computed torque with torque-driven thrusters."
     )
     return arm.animation(
         arm.ArmMotion(run.chain, model.hull(), run.time, run.state),
         "URV with an arm: end effector on a straight line",
-        said,
+        words,
     )

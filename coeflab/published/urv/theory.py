@@ -76,15 +76,17 @@ def hamel_bias(chain: Chain, q: Array, speeds: Array) -> Array:
 def principles() -> ComparedTable:
     """M, C and the generalised forces by principles other than Kane's."""
     rows = []
-    for said, chain in (("without water", dry()), ("with added mass", wet()), ("with a sliding joint", _sliding())):
+    for words, chain in (("without water", dry()), ("with added mass", wet()), ("with a sliding joint", _sliding())):
         speeds = in_frame_0(chain, SPEEDS)
         bias = kane.bias(chain, Q, speeds)
-        rows.append(none(said, "C apart from Hamel's equations", "N, N m", bias - hamel_bias(chain, Q, speeds), SECOND))
-        rows.append(none(said, "power from nothing", "W", from_nothing(chain, Q, speeds, bias), SECOND))
+        rows.append(
+            none(words, "C apart from Hamel's equations", "N, N m", bias - hamel_bias(chain, Q, speeds), SECOND)
+        )
+        rows.append(none(words, "power from nothing", "W", from_nothing(chain, Q, speeds, bias), SECOND))
         found, step = kane.partial_velocities(chain, kane.pose(chain, Q)), 1e-6
         rows.append(
             none(
-                said,
+                words,
                 "partial velocities apart from slopes of p",
                 "1, m",
                 _position_slopes(chain, step) - found[:, :3, 6:],

@@ -168,10 +168,10 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
     }
     for part in shape.parts:
         form, poor = form_name(part.form), is_poor(part)
-        told: dict[str, Any] = {"form": form, "volume_m3": part.form.volume}
+        words: dict[str, Any] = {"form": form, "volume_m3": part.form.volume}
         if part.fit is not None:
-            told |= {"class": part.fit.kind, "poor": list(part.fit.poor)}
-        out.node(part.name, *_triangles(part_facets(part)), material[form, poor], told)
+            words |= {"class": part.fit.kind, "poor": list(part.fit.poor)}
+        out.node(part.name, *_triangles(part_facets(part)), material[form, poor], words)
     if mesh is not None:
         vertices, faces = picture_surface(mesh)
         taken = {p.name for p in shape.parts}
@@ -183,8 +183,8 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
 def _triangles(facets: Array) -> tuple[Array, Indices]:
     corners = facets[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3, 3)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    kept = corners[area > 1e-12 * float(area.max())].reshape(-1, 3)
-    vertices, index = np.unique(np.round(kept, 9), axis=0, return_inverse=True)
+    selected = corners[area > 1e-12 * float(area.max())].reshape(-1, 3)
+    vertices, index = np.unique(np.round(selected, 9), axis=0, return_inverse=True)
     return vertices, index.reshape(-1, 3)
 
 
@@ -238,8 +238,8 @@ class _Scene:
     def file(self, name: str) -> bytes:
         """Header, JSON chunk and binary chunk."""
         children = list(range(len(self.lists["nodes"])))
-        said = {"units": "m", "axes": AXES}
-        root = self._add("nodes", {"name": name, "rotation": FROM_FRD, "children": children, "extras": said})
+        words = {"units": "m", "axes": AXES}
+        root = self._add("nodes", {"name": name, "rotation": FROM_FRD, "children": children, "extras": words})
         content = {
             "asset": {"version": "2.0", "generator": "coeflab"},
             "scene": 0,

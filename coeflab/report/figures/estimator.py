@@ -142,10 +142,10 @@ def _drawn(sweep: Sweep) -> list[_Drawn]:
 
 def _inside(sweep: Sweep, d: _Drawn, x: Array, frame: tuple[float, float]) -> Series:
     """The points inside the frame, in groups of one window."""
-    kept = (d.value >= frame[0]) & (d.value <= frame[1])
-    groups = [f"{w:.3g}" for w in on_axis(sweep, d.window[kept])]
-    notes = [note for note, k in zip(d.notes, kept, strict=True) if k]
-    return points(d.key, d.name, x[kept], d.value[kept], notes, groups)
+    selected = (d.value >= frame[0]) & (d.value <= frame[1])
+    groups = [f"{w:.3g}" for w in on_axis(sweep, d.window[selected])]
+    notes = [note for note, k in zip(d.notes, selected, strict=True) if k]
+    return points(d.key, d.name, x[selected], d.value[selected], notes, groups)
 
 
 def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, float]:

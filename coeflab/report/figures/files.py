@@ -85,13 +85,13 @@ def printed(picture: bytes, kind: Literal["pdf", "png"]) -> bytes:
 
     text = picture.decode().replace(FAMILY, 'font-family="DejaVu Sans"')
     try:
-        made = typst.compile(
+        result = typst.compile(
             PAGE, format=kind, ppi=DENSITY, sys_inputs={"svg": text}, timestamp=CLOCK, ignore_system_fonts=True,
             font_paths=typst.Fonts(include_system_fonts=False, font_paths=[f"{get_data_path()}/fonts/ttf"]),
         )  # fmt: skip
     except typst.TypstError as why:
         raise OutputError(f"a figure could not be written as {kind}: {why}") from None
-    return bytes(made[0] if isinstance(made, list) else made)
+    return bytes(result[0] if isinstance(result, list) else result)
 
 
 def as_kind(picture: bytes, kind: str) -> bytes:

@@ -123,7 +123,7 @@ def _sides(
     for side, (size, quotient) in sides:
         key, colour = ("plus", COLOURS["a"]) if side > 0.0 else ("minus", COLOURS["b"])
         mine = (np.sign(x) == side) & ~np.isin(moving, sweep.wrong)
-        said = f"{sweep.variable}' {'>' if side > 0.0 else '<'} 0"
+        words = f"{sweep.variable}' {'>' if side > 0.0 else '<'} 0"
         look: dict[str, Any] = {
             "color": colour, "marker": "o" if side > 0.0 else "s", "markersize": 3.8, "markeredgewidth": 0.9,
             "markerfacecolor": colour if side > 0.0 else "none", "linestyle": "-" if side > 0.0 else (0, (4.0, 2.0)),
@@ -131,10 +131,10 @@ def _sides(
         tagged(axes.plot(size, quotient * factor, color=colour, linewidth=1.0, linestyle=look["linestyle"]), key)
         marks = {k: v for k, v in look.items() if k not in ("linestyle", "color")}
         tagged(axes.plot(np.abs(x[mine]), y[mine] * factor, linestyle="none", color=colour, zorder=3, **marks), key)
-        handles.append(tagged(Line2D([], [], linewidth=1.0, label=f"{said}, fitted curve", **look), key))
+        handles.append(tagged(Line2D([], [], linewidth=1.0, label=f"{words}, fitted curve", **look), key))
         notes = [f"point {sweep.labels[i]}" for i, yes in zip(moving, mine, strict=True) if yes]
-        series.append(points(key, said, np.abs(x[mine]), y[mine], notes))
-        series.append(curve(key, f"{said}, fitted curve", size, quotient))
+        series.append(points(key, words, np.abs(x[mine]), y[mine], notes))
+        series.append(curve(key, f"{words}, fitted curve", size, quotient))
     wrong = np.isin(moving, sweep.wrong)
     if np.any(wrong):
         look = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.1}
@@ -155,8 +155,8 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         The column that all are divided by; empty divides each by itself.
     """
     first = columns.index(compared) if compared in columns else None
-    kept = [(r, by) for r in rows if (by := r.value if first is None else r.published[first])]
-    if not kept:
+    selected = [(r, by) for r in rows if (by := r.value if first is None else r.published[first])]
+    if not selected:
         return None
     name = f"value / {compared}" if compared else "value ± U95, over the value"
     title = (
@@ -164,19 +164,21 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         if compared
         else "U95 of every coefficient, divided by its value"
     )
-    n = len(kept)
+    n = len(selected)
     level = np.arange(n, 0.0, -1.0)
-    across = _reach(kept)
+    across = _reach(selected)
     legend_rows = -(-(1 + len(columns)) // 2)
-    said = "; ".join(f"{primed(r.symbol)}: {_beside(r, by, columns)}" for r, by in kept)
+    words = "; ".join(f"{primed(r.symbol)}: {_beside(r, by, columns)}" for r, by in selected)
     with settings():
-        names = [primed(r.symbol) for r, _ in kept]
-        beyond = [f"± {share_text(r.u95 / r.value)}" if r.u95 and r.value else r.status or "no U95" for r, _ in kept]
+        names = [primed(r.symbol) for r, _ in selected]
+        beyond = [
+            f"± {share_text(r.u95 / r.value)}" if r.u95 and r.value else r.status or "no U95" for r, _ in selected
+        ]
         left, right = (max(text_width(text, SIZE) for text in texts) + 10.0 for texts in (names, beyond))
         figure, axes = _drawing(
             left, right, legend_rows, across=across, up=(0.4, n + 0.6), name_across=name, rows=names, beyond=beyond
         )
-        handles, series = _ours(axes, kept, level, across)
+        handles, series = _ours(axes, selected, level, across)
         if compared:
             axes.axvline(1.0, color=COLOURS["ink"], linewidth=0.9, zorder=1)
         for i, column in enumerate(columns):
@@ -186,7 +188,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
                 "markeredgewidth": 1.0, "linestyle": "none",
             }  # fmt: skip
             pairs = [
-                (p / by, k, r) for (r, by), k in zip(kept, level, strict=True) if (p := r.published[i]) is not None
+                (p / by, k, r) for (r, by), k in zip(selected, level, strict=True) if (p := r.published[i]) is not None
             ]
             at, high = np.array([p[0] for p in pairs]), np.array([p[1] for p in pairs])
             inside = (at >= across[0]) & (at <= across[1])
@@ -196,15 +198,17 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
             series.append(points(f"column{i}", column, at, high, notes))
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - legend_rows * ROW)
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
-        svg = svg_text(figure, "answer-forest", title, said)
-    outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
+        svg = svg_text(figure, "answer-forest", title, words)
+    outside = [
+        primed(r.symbol) for r, by in selected if r.value is not None and not across[0] <= r.value / by <= across[1]
+    ]
     caption = "Bars: our U95, at the right in % of ours." + (f" Line: {compared}." if compared else "")
     caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
-    ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in kept if r.value is not None for k in (-1.0, 1.0)]
+    ends = [r.value / by + k * (r.u95 or 0.0) / by for r, by in selected if r.value is not None for k in (-1.0, 1.0)]
     caption += (
         " Arrow: the bar goes on." if min(ends, default=1.0) < across[0] or max(ends, default=1.0) > across[1] else ""
     )
-    return Figure("answer-forest", svg, title, caption, said, (panel,))
+    return Figure("answer-forest", svg, title, caption, words, (panel,))
 
 
 def _reach(kept: Sequence[tuple[AnswerRow, float]]) -> Range:
@@ -290,20 +294,20 @@ def _drawing(
         levels = BOTTOM + high * (np.arange(len(rows), 0.0, -1.0) - up[0]) / (up[1] - up[0])
         place, lift = (left, 5.0) if above else (left - 6.0, -2.9)
         side: Literal["left", "right"] = "left" if above else "right"
-        for k, name, said in zip(levels, rows, beyond, strict=True):
+        for k, name, words in zip(levels, rows, beyond, strict=True):
             label(figure, place / WIDTH, (k + lift) / height, name, side)
-            label(figure, (WIDTH - 3.0) / WIDTH, (k + lift) / height, said, "right", color=COLOURS["muted"])
+            label(figure, (WIDTH - 3.0) / WIDTH, (k + lift) / height, words, "right", color=COLOURS["muted"])
     else:
         strokes(axes, across, (at_y, at_y), color=COLOURS["rule"], linewidth=0.5, zorder=0)
         levels = BOTTOM + high * (at_y - up[0]) / (up[1] - up[0])
-        for k, said in zip(levels, tick_texts(at_y), strict=True):
-            label(figure, (left - 5.0) / WIDTH, (k - 2.9) / height, said, "right")
+        for k, words in zip(levels, tick_texts(at_y), strict=True):
+            label(figure, (left - 5.0) / WIDTH, (k - 2.9) / height, words, "right")
         label(figure, (7.5 + 0.35 * SIZE) / WIDTH, (BOTTOM + high / 2.0) / height, name_up, rotation=90)
     axes.add_artist(
         Line2D([across[0], across[1]], [up[0], up[0]], color=COLOURS["muted"], linewidth=0.9, clip_on=False, zorder=1.5)
     )
-    for place, said in zip(x, tick_texts(at_x), strict=True):
-        label(figure, place / WIDTH, (BOTTOM - 12.5) / height, said)
+    for place, words in zip(x, tick_texts(at_x), strict=True):
+        label(figure, place / WIDTH, (BOTTOM - 12.5) / height, words)
     label(figure, (left + wide / 2.0) / WIDTH, (BOTTOM - 26.5) / height, name_across)
     return figure, axes
 
@@ -398,7 +402,7 @@ def shares_figure(found: Acceptance) -> Figure:
     found_largest = [round(max(s, default=0.0), 2) for s in shares]
     largest = np.minimum(found_largest, WIDEST)
     n = len(found.tables)
-    said = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
+    words = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
         counts = [f"{sum(r.holds for r in t.rows)} of {len(t.rows)}" for t in found.tables]
@@ -420,18 +424,20 @@ def shares_figure(found: Acceptance) -> Figure:
         panel = numbers(
             axes, [points("share", "share", largest, level, notes)], "worst / tolerance  [-]", "table", bars="across"
         )
-        svg = svg_text(figure, "answer-shares", title, said)
+        svg = svg_text(figure, "answer-shares", title, words)
     caption = "A bar is the worst number of a table, at the right how many are within the tolerance; the dotted line is the tolerance."
     if np.any(cut):
         caption += f" An arrow means that the bar continues beyond {WIDEST:g}; the table has its length."
-    return Figure("answer-shares", svg, title, caption, said, (panel,))
+    return Figure("answer-shares", svg, title, caption, words, (panel,))
 
 
 def _cut(text: str, room: float) -> str:
     """As many words as fit above a bar."""
     words = text.split()
-    kept = next(n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]) + " …", SIZE) <= room or n <= 1)
-    return text if kept == len(words) else " ".join(words[:kept]).rstrip(",") + " …"
+    selected = next(
+        n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]) + " …", SIZE) <= room or n <= 1
+    )
+    return text if selected == len(words) else " ".join(words[:selected]).rstrip(",") + " …"
 
 
 def renamed(drawn: Drawn, anchor: str) -> Figure:

@@ -94,13 +94,13 @@ def incidence_figure(table: ForceTable, rate: str, body: Body | None, anchor: st
             figure, BOTTOM, TALL, across=limits(x, 0.02) or (0.0, 1.0), up=limits(np.append(curves, 0.0), 0.06) or (-1.0, 1.0),
             name_up=name_up, name_across=name_across,
         )  # fmt: skip
-        handles, told = [], []
+        handles, words = [], []
         for k, (y, name, style) in enumerate(zip(curves, names, STYLES, strict=False)):
             look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
             handles += tagged(axes.plot(x, y, label=name, **look), f"setting{k}")
-            told.append(plotted.curve(f"setting{k}", name, x, y))
+            words.append(plotted.curve(f"setting{k}", name, x, y))
         legend(figure, handles, BOTTOM + TALL)
-        shown = numbers(axes, told, name_across, name_up)
+        shown = numbers(axes, words, name_across, name_up)
         svg = svg_text(figure, anchor, title, description)
     where = (
         f"Stern at {stern:.4g} m, nose at {nose:.4g} m."

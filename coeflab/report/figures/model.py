@@ -155,12 +155,12 @@ def _panel(
     )  # fmt: skip
     draw_along(axes, model, variable, factor)
     shown = shown_values(variable, fine)
-    told = (
+    words = (
         points("points", "points", x, model.y[mine], [f"point {model.labels[i]}" for i in np.flatnonzero(mine)]),
         points("aside", "rejected or doubtful", at, beside / factor),
         curve("fit", "fit", shown, values / factor),
     )
-    return numbers(axes, told, axis_name(variable, model), f"{name[0]}  {unit}", factor)
+    return numbers(axes, words, axis_name(variable, model), f"{name[0]}  {unit}", factor)
 
 
 def _caption(model: FittedModel, names: tuple[str, ...]) -> str:
@@ -204,9 +204,9 @@ def residual_figure(model: FittedModel, anchor: str) -> Figure:
         legend(figure, handles, above)
         labels = [f"point {label}" for label in model.labels]
         unit = f"[{response_unit(model)}]"
-        told = points("points", "points", fitted, model.y, labels)
+        words = points("points", "points", fitted, model.y, labels)
         # The factor of the upright axis is that of the other as well.
-        top = numbers(axes, (told,), f"{name} fitted  {unit}", f"{name} measured  {unit}", factor)
+        top = numbers(axes, (words,), f"{name} fitted  {unit}", f"{name} measured  {unit}", factor)
         panels = [replace(top, across=top.up)]
         for i, variable in enumerate(names):
             bottom = (len(names) - 1 - i) * (RESIDUALS + BOTTOM + RESIDUAL_ROOM) + BOTTOM
@@ -303,7 +303,7 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
             name_across=axis_name(first, model),
         )  # fmt: skip
         handles: list[Any] = []
-        told: list[Series] = []
+        words: list[Series] = []
         for i, (level, mine, style) in enumerate(zip(levels, rows, STYLES, strict=False)):
             fine = np.linspace(model.x[first].min(), model.x[first].max(), SLICE_FINE)
             columns = {v: np.zeros_like(fine) for v in model.domain.variables}
@@ -325,10 +325,10 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
             label = f"{symbol_of(second, model)} = {_spoken(model, second, level)}"
             handles += tagged([Line2D([], [], label=label, markeredgecolor=style.colour, **mark, **look)], f"slice{i}")
             labels = [f"point {model.labels[j]}" for j in np.flatnonzero(mine)]
-            told.append(points(f"slice{i}", label, seen_at, model.y[mine], labels))
-            told.append(curve(f"slice{i}", f"{label}, fit", shown_values(first, fine), curved))
+            words.append(points(f"slice{i}", label, seen_at, model.y[mine], labels))
+            words.append(curve(f"slice{i}", f"{label}, fit", shown_values(first, fine), curved))
         legend(figure, handles, BOTTOM + SLICE_FIELD)
-        shown = numbers(axes, told, axis_name(first, model), f"{name}  [{response_unit(model)}]", factor)
+        shown = numbers(axes, words, axis_name(first, model), f"{name}  [{response_unit(model)}]", factor)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, _slices_caption(model), description, (shown,))
 

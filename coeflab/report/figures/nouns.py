@@ -63,9 +63,9 @@ def table_figure(table: ForceTable, anchor: str) -> Figure | None:
             traces.append(Trace("not used by fits", x[aside], values[aside] * factor, -1, "hollow", _of(notes, aside)))
         plots.append(_plot(c, power, variable, traces, is_last=c == wanted[:PANELS][-1]))
     rest = f", {' and '.join(f'{v}' for v in others)} at rest" if others else ""
-    said = f"{int(np.sum(rows))} of {len(table)} rows{rest}"
+    words = f"{int(np.sum(rows))} of {len(table)} rows{rest}"
     title = f"{table.name}: {' and '.join(wanted[:PANELS])} over {_name(variable)}"
-    return laws_figure(anchor, title, f"{said[0].upper()}{said[1:]}.", f"{title}; {said}.", plots)
+    return laws_figure(anchor, title, f"{words[0].upper()}{words[1:]}.", f"{title}; {words}.", plots)
 
 
 @as_users_wrote
@@ -105,8 +105,8 @@ def law_figure(parameters: ParameterFile, anchor: str) -> Figure | None:
             plots.append(_plot(c, power, variable, traces, is_last=c == wanted[-1]))
         if plots:
             title = f"{parameters.name}: {' and '.join(wanted)} over {_name(variable)}"
-            said = f"Force law at {at.speed:.4g} m/s over the range that its data cover, all other motions at rest."
-            return laws_figure(anchor, title, said, f"{title}. {said}", plots)
+            words = f"Force law at {at.speed:.4g} m/s over the range that its data cover, all other motions at rest."
+            return laws_figure(anchor, title, words, f"{title}. {words}", plots)
     return None
 
 

@@ -105,9 +105,9 @@ def points(
     key: str, name: str, x: NDArray[Any], y: NDArray[Any], notes: Sequence[str] = (), groups: Sequence[str] = ()
 ) -> Series:
     """Points of a drawing; those that are not finite are left out."""
-    kept = [int(i) for i in np.flatnonzero(np.isfinite(x) & np.isfinite(y))]
-    told, grouped = (tuple(texts[i] for i in kept) if texts else () for texts in (notes, groups))
-    return Series(key, name, rounded(np.asarray(x)[kept]), rounded(np.asarray(y)[kept]), told, grouped)
+    selected = [int(i) for i in np.flatnonzero(np.isfinite(x) & np.isfinite(y))]
+    words, grouped = (tuple(texts[i] for i in selected) if texts else () for texts in (notes, groups))
+    return Series(key, name, rounded(np.asarray(x)[selected]), rounded(np.asarray(y)[selected]), words, grouped)
 
 
 def curve(key: str, name: str, x: Array, y: Array) -> Series:

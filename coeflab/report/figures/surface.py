@@ -57,21 +57,21 @@ def surface_scene(model: FittedModel) -> Scene | None:
     grid = dict(zip(names, (first, second), strict=True))
     rest = {v: np.zeros(SCENE_GRID * SCENE_GRID) for v in model.domain.variables if v not in grid}
     values, _, inside = model.evaluate({**grid, **rest})
-    kept = inside & np.isfinite(values)
-    if not np.any(kept):
+    selected = inside & np.isfinite(values)
+    if not np.any(selected):
         return None
-    places = np.column_stack([shown_values(v, grid[v]) for v in names] + [np.where(kept, values, 0.0)])
+    places = np.column_stack([shown_values(v, grid[v]) for v in names] + [np.where(selected, values, 0.0)])
     measured = np.column_stack([shown_values(v, model.x[v]) for v in names] + [model.y])
     fitted = np.column_stack([measured[:, :2], model.y - model.fit.residuals])
     layers = (
-        Layer("fitted surface", "a", places, _triangles(kept)),
-        Layer("lines of one angle" if _angles(names) else "grid lines", "ink", places, _lines(kept)),
+        Layer("fitted surface", "a", places, _triangles(selected)),
+        Layer("lines of one angle" if _angles(names) else "grid lines", "ink", places, _lines(selected)),
         Layer("distances", "b", np.vstack([measured, fitted]), _pairs(len(measured))),
         Layer("points", "ink", measured, np.arange(len(measured)), notes=_notes(model, measured)),
     )
     name = response_name(model)
     title = f"{name}, {model.campaign}: surface in space"
-    everything = np.vstack([places[kept], measured, fitted[np.isfinite(fitted).all(axis=1)]])
+    everything = np.vstack([places[selected], measured, fitted[np.isfinite(fitted).all(axis=1)]])
     flat = [
         _axis(symbol_of(v, model).removesuffix("_deg"), unit_of(v, model), everything[:, i])
         for i, v in enumerate(names)

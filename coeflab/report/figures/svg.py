@@ -223,12 +223,12 @@ def label(
     figure: Figure, x: float, y: float, text: str, align: Align = "center", *, shown: bool = True, **look: Any
 ) -> Text:
     """A line of text, its baseline at a point in fractions of the figure; not ``shown``: another artist draws it."""
-    made = _Label(x, y, text, horizontalalignment=align, rotation_mode="anchor", transform=figure.transFigure, **look)
+    result = _Label(x, y, text, horizontalalignment=align, rotation_mode="anchor", transform=figure.transFigure, **look)
     if shown:
-        figure.add_artist(made)
+        figure.add_artist(result)
     else:
-        made.set_figure(figure)
-    return made
+        result.set_figure(figure)
+    return result
 
 
 @lru_cache(1 << 12)

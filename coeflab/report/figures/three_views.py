@@ -51,14 +51,14 @@ def three_views(body: Body) -> dict[str, bytes]:
         A body without a shape.
     """
     title = f"{body.name}: {body.title}" if body.title else body.name
-    said = f"Three views of {body.name} with dimensions in metres, FRD, from the datum: {body.datum}."
+    words = f"Three views of {body.name} with dimensions in metres, FRD, from the datum: {body.datum}."
     with settings():
         drawn = _drawn(body)
-        svg = svg_text(drawn, "views", title, said)
+        svg = svg_text(drawn, "views", title, words)
         drawn.text(MARGIN / WIDTH, 0.01, title, fontsize=8.5, color=COLOURS["ink"])
         png = io.BytesIO()
         drawn.savefig(png, format="png", dpi=INCH, facecolor="white", metadata={"Software": "coeflab"})
-    return {"svg": sheet([[Figure("views", svg, title, said, said)]], said), "png": png.getvalue()}
+    return {"svg": sheet([[Figure("views", svg, title, words, words)]], words), "png": png.getvalue()}
 
 
 def surfaces_of(body: Body) -> Iterator[tuple[str, Surface]]:

@@ -76,8 +76,8 @@ def histogram(s: Spread, sample: Array, anchor: str) -> Figure:
             handles.append(Line2D([], [], color=COLOURS["b"], linewidth=1.4, label="values of the file"))
         legend(figure, handles, TALL - LEGEND)
         ranges = [f"{a:.4g} to {b:.4g}{f' {unit}' if unit else ''}" for a, b in itertools.pairwise(edges)]
-        told = points("members", "members in the bar", (edges[:-1] + edges[1:]) / 2.0, counts + 0.0, ranges)
-        shown = numbers(axes, (told,), name, "members", bars="up")
+        words = points("members", "members in the bar", (edges[:-1] + edges[1:]) / 2.0, counts + 0.0, ranges)
+        shown = numbers(axes, (words,), name, "members", bars="up")
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, f"{title}; the outermost 0.4 % lie outside of the axis.", description, (shown,))
 
@@ -134,8 +134,8 @@ def _label(symbols: tuple[str, ...]) -> str:
     whole = " ".join(symbols)
     if len(whole) <= LONGEST:
         return whole
-    kept = [s for k, s in enumerate(symbols) if len(" ".join(symbols[: k + 1])) <= LONGEST - 5]
-    return f"{' '.join(kept)} + {len(symbols) - len(kept)}"
+    selected = [s for k, s in enumerate(symbols) if len(" ".join(symbols[: k + 1])) <= LONGEST - 5]
+    return f"{' '.join(selected)} + {len(symbols) - len(selected)}"
 
 
 def _draw(figure: Drawing, rows: list[Bar], height: float, name: str) -> Axes:

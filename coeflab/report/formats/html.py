@@ -39,8 +39,8 @@ KINDS = {1: "points", 2: "lines", 3: "triangles"}
 
 def panels_json(figure: Figure) -> str:
     """What a page needs to tell the values of a drawing; empty where there is nothing to tell."""
-    told = [p for p in figure.panels if p.series]
-    return _inside_a_page({"title": visible(figure.title), "panels": [_panel(p) for p in told]}) if told else ""
+    words = [p for p in figure.panels if p.series]
+    return _inside_a_page({"title": visible(figure.title), "panels": [_panel(p) for p in words]}) if words else ""
 
 
 def scene_json(scene: Scene) -> str:

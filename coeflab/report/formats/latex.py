@@ -81,11 +81,11 @@ def render(document: Document) -> Mapping[str, bytes]:
     with keeping(document.verbatim):
         title = shortened(visible(document.title), LONGEST_TITLE)
         digest = f", inputs {document.digest}" if document.digest else ""
-        made = [HEAD.format(title=_comment(title), version=VERSION, digest=digest, file=FILE)]
-        made.append(f"\\section*{{{tex(title)}}}\n")
+        result = [HEAD.format(title=_comment(title), version=VERSION, digest=digest, file=FILE)]
+        result.append(f"\\section*{{{tex(title)}}}\n")
         tables = [*_first(document.answer), *(part for s in document.sections for part in _section(s, 0))]
-        made += tables or ["This report has no tables.\n"]
-    return {FILE: "\n".join([*made, END]).encode()}
+        result += tables or ["This report has no tables.\n"]
+    return {FILE: "\n".join([*result, END]).encode()}
 
 
 def _comment(text: str) -> str:
@@ -113,8 +113,8 @@ def _wanted(answer: Answer) -> Table:
 def _ours(row: AnswerRow) -> tuple[str, str, str]:
     if row.value is None:
         return primed(row.symbol), row.status or "no data", ABSENT
-    said = " ".join(filter(None, (plus_minus(row.value, row.u95), row.status)))
-    return primed(row.symbol), said, percent(row.u95, row.value)
+    words = " ".join(filter(None, (plus_minus(row.value, row.u95), row.status)))
+    return primed(row.symbol), words, percent(row.u95, row.value)
 
 
 def _published(row: AnswerRow, answer: Answer) -> tuple[str, ...]:
@@ -131,7 +131,7 @@ def _difference(row: AnswerRow) -> tuple[str, str]:
 def _section(section: Section, level: int) -> Iterator[str]:
     """Its heading and tables, where it or a part of it has any."""
     parts = [set_table(t, f"{section.anchor}-table-{k}") for k, t in enumerate(section.tables, 1)]
-    parts += [made for inner in section.subsections for made in _section(inner, level + 1)]
+    parts += [result for inner in section.subsections for result in _section(inner, level + 1)]
     if parts:
         yield f"\\{LEVELS[min(level, len(LEVELS) - 1)]}*{{{tex(shortened(section.title, LONGEST_TITLE))}}}\n"
         yield from parts
@@ -249,9 +249,9 @@ def _pieces(run: Run) -> Sequence[Piece]:
 
 def _factor(factor: Factor) -> str:
     letter = _formula(factor.letter)
-    made = f"\\dot{{{letter}}}" if factor.dotted else letter
-    made += f"_{{{factor.index}}}" * bool(factor.index)
-    return f"|{made}|" if factor.absolute else made
+    result = f"\\dot{{{letter}}}" if factor.dotted else letter
+    result += f"_{{{factor.index}}}" * bool(factor.index)
+    return f"|{result}|" if factor.absolute else result
 
 
 def _formula(text: str) -> str:

@@ -74,9 +74,9 @@ def _averaged(page: bytes) -> bytes:
     fine = imread(io.BytesIO(page))[..., :3]
     rows, columns = (n // FINER for n in fine.shape[:2])
     mean = fine[: rows * FINER, : columns * FINER].reshape(rows, FINER, columns, FINER, 3).mean((1, 3))
-    made = io.BytesIO()
-    imsave(made, np.rint(255.0 * mean).astype(np.uint8), format="png", metadata={"Software": "coeflab"})
-    return made.getvalue()
+    result = io.BytesIO()
+    imsave(result, np.rint(255.0 * mean).astype(np.uint8), format="png", metadata={"Software": "coeflab"})
+    return result.getvalue()
 
 
 def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: float | None) -> tuple[bytes, ...]:
@@ -86,7 +86,7 @@ def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: floa
     folder = files("coeflab.report.formats") / "_pdf"
     template = b"\n".join(own_bytes(folder / f"{name}.typ") for name in TEMPLATE)
     try:
-        made, warnings = typst.compile_with_warnings(
+        result, warnings = typst.compile_with_warnings(
             template,
             format=form,
             ppi=ppi,
@@ -99,7 +99,7 @@ def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: floa
         raise OutputError(f"the PDF could not be typeset: {why}") from None
     if warnings:
         raise OutputError(f"the PDF could not be typeset: {warnings[0].message}")
-    return tuple(map(bytes, made)) if isinstance(made, list) else (bytes(made),)
+    return tuple(map(bytes, result)) if isinstance(result, list) else (bytes(result),)
 
 
 def content(document: Document) -> dict[str, Any]:

@@ -369,15 +369,15 @@ def _report(path: Path, name: str) -> ReportEntry | None:
         if not head.startswith(b"%PDF-"):
             return ReportEntry(name, fault="found no PDF; expected one by its name.")
         return ReportEntry(name, keys=(("PDF", key_of(name)),))
-    said, text = _Said(), head.decode("utf-8", "replace")
-    said.feed(text)
-    if said.generator != "coeflab":
+    given, text = _Said(), head.decode("utf-8", "replace")
+    given.feed(text)
+    if given.generator != "coeflab":
         own = path.name in OWN_REPORTS
         return ReportEntry(name, fault="found another page; expected a report of coeflab.") if own else None
-    study, _, digest = said.subject.removeprefix("Study ").rpartition(", inputs ")
+    study, _, digest = given.subject.removeprefix("Study ").rpartition(", inputs ")
     return ReportEntry(
-        name, shortened(said.title, LONGEST), shortened(study, LONGEST), digest[:64], (("HTML", key_of(name)),),
-        verdict=shortened(" ".join(said.verdict.split()), LONGEST), picture=key_of(name) if DRAWN.search(text) else "",
+        name, shortened(given.title, LONGEST), shortened(study, LONGEST), digest[:64], (("HTML", key_of(name)),),
+        verdict=shortened(" ".join(given.verdict.split()), LONGEST), picture=key_of(name) if DRAWN.search(text) else "",
         coefficients=_rows(text),
     )  # fmt: skip
 
@@ -434,12 +434,12 @@ def _parameters(path: Path, name: str) -> ParameterEntry | None:
 
 def _verdict(found: ParameterFile) -> str:
     """Whether straight motion is stable, and the widest interval of the derivatives that say so; empty without either."""
-    said = [f"{sense(d)}, {d.name} = {d.value:.2f}" for d in stability(found)]
+    words = [f"{sense(d)}, {d.name} = {d.value:.2f}" for d in stability(found)]
     wide = [(abs(c.u95 / c.value), c) for c in found.coefficients if c.value and c.u95 and c.symbol in SLOPES]
     if wide:
         share, c = max(wide, key=lambda pair: pair[0])
-        said.append(f"largest U95 {percent(share, 1.0)}, of {c.symbol}")
-    return "; ".join(said)
+        words.append(f"largest U95 {percent(share, 1.0)}, of {c.symbol}")
+    return "; ".join(words)
 
 
 def fault(why: CoeflabError, path: Path) -> str:

@@ -201,13 +201,13 @@ def _templates() -> Any:
     texts: Mapping[str, str] = {
         name: own_text(folder / f"{name}.html.j2") for name in ("frame", "index", "comparison", "refusal")
     }
-    made = Environment(
+    result = Environment(
         loader=DictLoader(texts), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    made.filters |= {
+    result.filters |= {
         "symbols": symbols, "named": named, "shortened": cut, "spelled": spelled, "spelled_cell": spelled_cell
     }  # fmt: skip
-    return made
+    return result
 
 
 def _page(template: str, **content: Any) -> bytes:
@@ -381,13 +381,13 @@ class _Request(BaseHTTPRequestHandler):
         names = _apart([shortened(p.name, COLUMN) for p in found])
         pairs = [compare(found[0], other) for other in found[1:]]
         tables = [comparison_tables.side_by_side(found[0], pairs, names)]
-        said = [
+        words = [
             (f"{name} against {names[0]}", (*p.statements, *comparison_tables.reasons(p)))
             for name, p in zip(names[1:], pairs, strict=True)
         ]
         tables += [comparison_tables.models(p, with_statements=False) for p in pairs]
         with keeping(users_texts(*found)):
-            self._page(HTTPStatus.OK, comparison(tables, [s for s in said if s[1]], names))
+            self._page(HTTPStatus.OK, comparison(tables, [s for s in words if s[1]], names))
 
     def _picture(self, shelf: Shelf, key: str) -> None:
         try:
@@ -422,8 +422,8 @@ class _Request(BaseHTTPRequestHandler):
 
     def _head(self, status: HTTPStatus, kind: str, size: int, policy: str, more: dict[str, str] | None = None) -> None:
         self.send_response(status)
-        told = {"Content-Type": kind, "Content-Length": str(size), "Content-Security-Policy": policy}
-        for name, value in (told | ALWAYS | (more or {})).items():
+        words = {"Content-Type": kind, "Content-Length": str(size), "Content-Security-Policy": policy}
+        for name, value in (words | ALWAYS | (more or {})).items():
             self.send_header(name, value)
         self.end_headers()
 

@@ -20,8 +20,8 @@ def axes_of(ax: Axes | None) -> Axes:
         return ax
     import matplotlib.pyplot as plt
 
-    made: Axes = plt.subplots()[1]
-    return made
+    result: Axes = plt.subplots()[1]
+    return result
 
 
 def palette() -> Mapping[str, str]:

@@ -131,8 +131,8 @@ def _drawn(
     if np.any(mine):
         seen = np.where(np.isnan(x), BEYOND, np.clip(x, -BEYOND, BEYOND))
         tagged(axes.plot(seen[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
-    told = mine & (np.abs(x) <= BEYOND)
-    return points(key, name, x[told], y[told], [_told(r) for r, yes in zip(rows, told, strict=True) if yes])
+    words = mine & (np.abs(x) <= BEYOND)
+    return points(key, name, x[words], y[words], [_told(r) for r, yes in zip(rows, words, strict=True) if yes])
 
 
 def _told(r: Compared) -> str:

@@ -78,7 +78,7 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH, gravity: Array | 
     lines = -(-len(marks) // 2)
     height = sum(rows) + GAP + 2.0 * MARGIN + CAPTION * lines
     title = f"{body.name}: outline"
-    said = f"Outlines of {body.name} from starboard and from above, {size[0]:.3g} by {size[1]:.3g} by {size[2]:.3g} m."
+    words = f"Outlines of {body.name} from starboard and from above, {size[0]:.3g} by {size[1]:.3g} by {size[2]:.3g} m."
     with settings():
         figure = Drawing(figsize=(width / POINTS, height / POINTS))
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -93,9 +93,9 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH, gravity: Array | 
             at, low = MARGIN + 6.0 + 0.5 * width * (k % 2), MARGIN + CAPTION * (lines - 1 - k // 2)
             axes.plot(at, low, marker=marker, markersize=6.0, color=COLOURS["ink"], fillstyle="none", linestyle="none")
             axes.text(at + 10.0, low - 3.0, name, fontsize=8.75)
-        svg = svg_text(figure, anchor, title, said)
+        svg = svg_text(figure, anchor, title, words)
     caption = f"Outlines of {body.name} at one scale; the bow points to the right."
-    return Figure(anchor, svg, title, caption, said)
+    return Figure(anchor, svg, title, caption, words)
 
 
 def _view(
@@ -178,11 +178,11 @@ def hull_scene(
     )
     each = " ".join(f"{m.label}: {m.name}, {m.note or _at(m.place)}." for m in marks)
     caption = " ".join([each, *unknown, "Drag to turn it."])
-    said = f"{'Solid parts' if isinstance(shape, Parts) else 'A translucent skin'} of {name} with {len(marks)} marked points."
+    words = f"{'Solid parts' if isinstance(shape, Parts) else 'A translucent skin'} of {name} with {len(marks)} marked points."
     return Scene(
         f"{name} in space",
         caption,
-        said,
+        words,
         (*layers, *_axis_line(marks, layers), *points),
         (axes[0], axes[1], axes[2]),
         True,

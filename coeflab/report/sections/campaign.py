@@ -129,8 +129,8 @@ def says_nothing(section: Section) -> bool:
 
 def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient]) -> str:
     """Slopes without a section: turned by symmetry, or of an own tow and not among those that the plan wants."""
-    said = {s.symbol for s in alone} | {c.symbol for c in zero}
-    left = [primed(s.symbol) for s in fit.sweeps if s.symbol not in said]
+    words = {s.symbol for s in alone} | {c.symbol for c in zero}
+    left = [primed(s.symbol) for s in fit.sweeps if s.symbol not in words]
     return (
         f"In the table only, by symmetry from other points, not among those wanted, or of an own tow: {listed(left)}."
         if left
@@ -241,11 +241,11 @@ def tornado_figure(b: Budget, anchor: str) -> Figure:
         height = BOTTOM + TOP + ROW * max(len(bars), 1)
         figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
         axes = _bars(figure, bars, height, factor, f"change of {name}{power}")
-        told = points(
+        words = points(
             "bars", "95 % half-width", np.array([h for _, h in bars]), np.arange(len(bars))[::-1] + 0.0,
             [f"{label}, {percent(half, b.value)} of the value" for label, half in bars],
         )  # fmt: skip
-        shown = numbers(axes, (told,), f"change of {name}", "", factor_across=factor, bars="across")
+        shown = numbers(axes, (words,), f"change of {name}", "", factor_across=factor, bars="across")
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, _caption(b), description, (shown,))
 

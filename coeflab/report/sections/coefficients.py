@@ -69,11 +69,11 @@ def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
     is_swept = any(f.sweeps for f in study.fits)
     text: tuple[str, ...] = () if is_swept else FIXED if study.coefficients else NONE
-    made = {
+    result = {
         fit: t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
     }
     apart = {t.campaign for t in study.plan.tows if t.added is not None}
-    found = tuple(t for (campaign, _), t in made.items() if campaign not in apart)
+    found = tuple(t for (campaign, _), t in result.items() if campaign not in apart)
     text = _covered(study, found) if is_swept else text
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
         text += (UNBOUNDED,)

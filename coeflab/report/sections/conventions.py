@@ -74,7 +74,7 @@ def axes_figures(anchor: str, *, controls: bool = True) -> tuple[Figure, ...]:
     out = []
     for key, view, title, *texts in VIEWS:
         turned = TURNED.get(key) if controls else None
-        caption, said = (" ".join(both) for both in zip(texts, turned or ("", ""), strict=True))
+        caption, words = (" ".join(both) for both in zip(texts, turned or ("", ""), strict=True))
         with settings():
             figure = Drawing(figsize=(WIDTH / POINTS, HEIGHT / POINTS))
             axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -85,8 +85,8 @@ def axes_figures(anchor: str, *, controls: bool = True) -> tuple[Figure, ...]:
             if turned:
                 _control(axes, key)
             axes.text(14.0, HEIGHT - 14.0, view, color=COLOURS["muted"], fontsize=8.75)
-            svg = svg_text(figure, f"{anchor}-{key}", title, said.strip())
-        out.append(Figure(f"{anchor}-{key}", svg, title, caption.strip(), said.strip()))
+            svg = svg_text(figure, f"{anchor}-{key}", title, words.strip())
+        out.append(Figure(f"{anchor}-{key}", svg, title, caption.strip(), words.strip()))
     return tuple(out)
 
 

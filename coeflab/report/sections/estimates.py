@@ -169,8 +169,8 @@ def _made_of(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
         kind = name.rpartition(", ")[2]
         kinds[kind] = kinds.get(kind, 0.0) + value
     largest = sorted(kinds.items(), key=lambda p: -abs(p[1]))
-    said = [f"{name} {100.0 * v / c.value:.0f} %" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
-    return ", ".join(said[:MOST_PARTS]) + (f" and {len(said) - MOST_PARTS} more" if len(said) > MOST_PARTS else "")
+    words = [f"{name} {100.0 * v / c.value:.0f} %" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
+    return ", ".join(words[:MOST_PARTS]) + (f" and {len(words) - MOST_PARTS} more" if len(words) > MOST_PARTS else "")
 
 
 def shares_figure(parameters: ParameterFile, carried: Sequence[Carried], anchor: str) -> Figure | None:
@@ -227,24 +227,24 @@ def _held(moves: Sequence[Simulation]) -> tuple[str, ...]:
     straight = [m for m in moves if "v" not in m.vehicle.free]
     if not straight:
         return ("In the horizontal plane: heave, roll and pitch are held. Every number is an estimate.",)
-    said = [s for s in straight[0].statements if "straight" in s]
-    return (*(f"{s[:1].upper()}{s[1:]}." for s in said), "Every number is an estimate.")
+    words = [s for s in straight[0].statements if "straight" in s]
+    return (*(f"{s[:1].upper()}{s[1:]}." for s in words), "Every number is an estimate.")
 
 
 def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> Table:
     """Figures of the first manoeuvres, with intervals where the uncertainty was carried through."""
     bounds = {(c.question.manoeuvre, s.figure.name): s for c in carried for s in c.spreads if s.status == "ok"}
     rows, notes = [], []
-    for made in moves:
-        name = made.manoeuvre.name
-        called = "coast-down" if OFF in made.manoeuvre.statements else name.replace("_", " ")
-        notes.append(f"{called}: {_how(made)}.")
+    for result in moves:
+        name = result.manoeuvre.name
+        called = "coast-down" if OFF in result.manoeuvre.statements else name.replace("_", " ")
+        notes.append(f"{called}: {_how(result)}.")
         if carried and not any(c.question.manoeuvre == name for c in carried):
             notes.append(
                 f"{called}: no 95 %, as only the first manoeuvre is repeated with random coefficients; coeflab uncertainty FILE --manoeuvre {name} has it."
             )
-        notes += [f"{called}: {s.removeprefix('limit: ')}." for s in made.statements if s.startswith("limit: ")]
-        for f in made.figures:
+        notes += [f"{called}: {s.removeprefix('limit: ')}." for s in result.statements if s.startswith("limit: ")]
+        for f in result.figures:
             factor, unit = shown_unit(f.unit)
             s = bounds.get((name, f.name))
             ends = f"{(s.low or 0.0) * factor:.3g} to {(s.high or 0.0) * factor:.3g}" if s is not None else ABSENT
@@ -298,14 +298,14 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
-    made = Answer(
+    result = Answer(
         sentence(study),
         rows=tuple(rows),
         chips=chips,
         notes=(by, *(f"{s[:1].upper()}{s[1:]}." for s in shape.said[:2])),
     )
     if not drawn:
-        return made
+        return result
     first = next(iter(study.manoeuvres), None)
     left = (
         track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
@@ -316,7 +316,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     is_stated = mass is not None and "centre" not in of.assumed
     gravity = of.body.reference_point + mass.centre_of_gravity if mass is not None and is_stated else None
     outline = hull_figure(of.body, "answer-body", COLUMN, gravity)
-    return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
+    return replace(result, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
 
 
 def _missing(missing: Sequence[str]) -> str:
@@ -336,11 +336,11 @@ def _stability(index: Derived) -> str:
 
 def _exports(study: Study) -> Chip:
     """How many exports were made, and how many refused."""
-    made, refused = len(study.exports), len(study.refused)
+    result, refused = len(study.exports), len(study.refused)
     loss = sum(not e.lossless for e in study.exports)
-    said = f"{made} made{f', {loss} with losses' if loss else ''}" if made else "" if refused else "none asked for"
-    said = ", ".join(filter(None, (said, f"{refused} refused" if refused else "")))
-    return Chip("Exports", said, Severity.WARN if refused else Severity.NOTE, "exports" if made else "")
+    words = f"{result} made{f', {loss} with losses' if loss else ''}" if result else "" if refused else "none asked for"
+    words = ", ".join(filter(None, (words, f"{refused} refused" if refused else "")))
+    return Chip("Exports", words, Severity.WARN if refused else Severity.NOTE, "exports" if result else "")
 
 
 def verdict_of_shape(study: Study) -> Section:
@@ -432,7 +432,7 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
     given = sum(r.after is not None for r in made.replaced)
     turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
-    said = f"{p.name}: {_many(given, 'number')} replaced, {_many(left, 'estimate')} left{f'; {turn}' if turn else ''}."
+    words = f"{p.name}: {_many(given, 'number')} replaced, {_many(left, 'estimate')} left{f'; {turn}' if turn else ''}."
     chips = (
         Chip("Replaced", _many(given, "number"), Severity.PASS if given else Severity.WARN, "coefficients"),
         Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
@@ -446,7 +446,7 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
     )
     right = forest_figure(rows, (BEFORE,), BEFORE) or forest_figure(rows, (BEFORE,), "")
     note = f"{BEFORE}: the value that was replaced, of the base. Made dimensionless with {p.scaling.length_name} = {p.scaling.length:.5g} m."
-    return Answer(said[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))
+    return Answer(words[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))
 
 
 def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:

@@ -160,21 +160,21 @@ def _over_amplitude(o: Oscillation, at: AtZero, each: list[tuple[float, float]],
             )
             handles += tagged(line, f"form{i}")
             series.append(curve(f"form{i}", name, reach, law))
-        for key, name, kept, colour in (("runs", "runs", used, "ink"), ("aside", "runs not used", ~used, "muted")):
-            if not np.any(kept):
+        for key, name, selected, colour in (("runs", "runs", used, "ink"), ("aside", "runs not used", ~used, "muted")):
+            if not np.any(selected):
                 continue
             axes.vlines(
-                x[kept],
-                (y - half)[kept] * factor,
-                (y + half)[kept] * factor,
+                x[selected],
+                (y - half)[selected] * factor,
+                (y + half)[selected] * factor,
                 color=COLOURS[colour],
                 linewidth=0.9,
                 zorder=2.5,
             )
             look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.4, "color": COLOURS[colour]}
-            handles += tagged(axes.plot(x[kept], y[kept] * factor, zorder=2.6, label=name, **look), key)
-            notes = [f"{r.label}, omega' {r.frequency:.3g}" for r, k in zip(o.runs, kept, strict=True) if k]
-            series.append(points(key, name, x[kept], y[kept], notes))
+            handles += tagged(axes.plot(x[selected], y[selected] * factor, zorder=2.6, label=name, **look), key)
+            notes = [f"{r.label}, omega' {r.frequency:.3g}" for r, k in zip(o.runs, selected, strict=True) if k]
+            series.append(points(key, name, x[selected], y[selected], notes))
         if bounded:
             axes.vlines(
                 0.0,
@@ -186,8 +186,8 @@ def _over_amplitude(o: Oscillation, at: AtZero, each: list[tuple[float, float]],
             )
             look = {"linestyle": "none", "marker": "D", "markersize": 4.2, "color": COLOURS["d"]}
             handles += tagged(axes.plot([0.0], [at.value * factor], zorder=2.9, label="zero amplitude", **look), "zero")
-            told = [plus_minus(at.value, finite(at.half_width))]
-            series.append(points("zero", "zero amplitude", np.zeros(1), np.array([at.value]), told))
+            words = [plus_minus(at.value, finite(at.half_width))]
+            series.append(points("zero", "zero amplitude", np.zeros(1), np.array([at.value]), words))
         legend(figure, handles, UNDER_LEGEND)
         shown = numbers(axes, series, *names, factor)
         svg = svg_text(figure, anchor, title, description)

@@ -109,17 +109,17 @@ TEXT = (
 
 def in_words(study: Study) -> list[str]:
     """Which parameter files are unstable, and which are not, plane by plane; none where no index can be given."""
-    said: dict[str, dict[str, dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
+    named: dict[str, dict[str, dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
     for parameters in study.parameter_files.values():
         for d in stability(parameters):
-            said[d.name].setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
+            named[d.name].setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
     lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
     out: list[str] = []
-    for index, senses in said.items():
+    for index, senses in named.items():
         each = [
-            said
+            named
             for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
-            for said in _of_one_sense(index, v, senses[v], lacking)
+            for named in _of_one_sense(index, v, senses[v], lacking)
         ]
         if each:
             start = (
@@ -160,8 +160,8 @@ def _of_one_sense(
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
         open_at = f". {index} gives no verdict at {speeds} m/s, because BG is unknown" if speeds else ""
     undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
-    said = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
-    groups = [f"{said}: {', '.join(group)}" for group in grouped(each, PLACES, ", ".join)]
+    words = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
+    groups = [f"{words}: {', '.join(group)}" for group in grouped(each, PLACES, ", ".join)]
     return [*groups[:-1], groups[-1] + open_at]
 
 
@@ -262,12 +262,12 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
         return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
-    told = (
+    words = (
         "published: the index that the source prints. We do not judge ours by it, as ours uses our own Yv', Nv', Zw' or Mw'.",
         *notes,
     )
     return Table(
-        "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
+        "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), words, frozenset({0, 1, 5, 6})
     )
 
 
@@ -349,14 +349,14 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
 def without_u95(study: Study) -> str:
     """Why the quantities of the manoeuvres have no U95, or that there is none to have one."""
     if drawn := _drawn(study):
-        names = list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres))
+        names = list(dict.fromkeys(result.manoeuvre.name.replace("_", " ") for result in study.manoeuvres))
         single = [n for n in names if n not in drawn]
         rest = f" The {listed(single)} is computed once: coeflab uncertainty FILE gives intervals." if single else ""
         members = ", ".join(f"{name} {count}" for name, count in drawn.items())
         return f"The 95 % ranges on the first page are of draws of the coefficients: {members}.{rest}"
-    if any(f.value is not None for made in study.manoeuvres for f in made.figures):
+    if any(f.value is not None for result in study.manoeuvres for f in result.figures):
         return WITHOUT_U95
-    every = listed(list(dict.fromkeys(made.manoeuvre.name.replace("_", " ") for made in study.manoeuvres)))
+    every = listed(list(dict.fromkeys(result.manoeuvre.name.replace("_", " ") for result in study.manoeuvres)))
     return f"{every[:1].upper()}{every[1:]} could not be computed, so there is no U95."
 
 
@@ -419,10 +419,13 @@ def export_sections(study: Study) -> tuple[Section, ...]:
         return ()
     each = tuple(
         Section(
-            f"export-{i}", f"{made.parameters} for {made.target}", tables=_tables(made.target, made.loss), appendix=True
+            f"export-{i}",
+            f"{result.parameters} for {result.target}",
+            tables=_tables(result.target, result.loss),
+            appendix=True,
         )
-        for i, made in enumerate(study.exports)
-        if made.loss is not None
+        for i, result in enumerate(study.exports)
+        if result.loss is not None
     )
     refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
     text = (*EXPORTED, *refused, *added_masses(study))
@@ -431,12 +434,12 @@ def export_sections(study: Study) -> tuple[Section, ...]:
 
 def added_masses(study: Study) -> tuple[str, ...]:
     """Of every parameter file that is exported, where its added mass rests on a mean or differs from the computed one."""
-    waters = {made.parameters: made.loss.water for made in study.exports if made.loss is not None}
+    waters = {result.parameters: result.loss.water for result in study.exports if result.loss is not None}
     files = {p.name: p for p in study.parameter_files.values()}
     each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
-    said = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
+    named = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
     return tuple(
-        f"Added mass of {name} for stability, motions and exports: {words}." for name, words in said.items() if words
+        f"Added mass of {name} for stability, motions and exports: {words}." for name, words in named.items() if words
     )
 
 
@@ -468,12 +471,12 @@ ACCELERATIONS = {
 def summary(study: Study) -> Table:
     """One row an export, those that were refused last."""
     rows = tuple(
-        (made.parameters, made.target, _verdict(made), _worst(made), _accelerations(made), _place(made))
-        for made in study.exports
+        (result.parameters, result.target, _verdict(result), _worst(result), _accelerations(result), _place(result))
+        for result in study.exports
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
     headers = ("parameter file", "target", "loss", "largest difference in %", "added mass", "files")
-    lossy = [made.loss for made in study.exports if made.loss is not None]
+    lossy = [result.loss for result in study.exports if result.loss is not None]
     kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
         *(

@@ -240,8 +240,8 @@ def mass_table(study: Study) -> tuple[Table, ...]:
 def _added(study: Study) -> tuple[str, ...]:
     """The added mass that goes with them, of each parameter file with a mass."""
     massive = [p for p in study.parameter_files.values() if p.mass is not None]
-    said = [(p.name, *water_inertia(p).statements) for p in massive]
-    return tuple(f"{name}: {'; '.join(each)}" for name, *each in said)
+    words = [(p.name, *water_inertia(p).statements) for p in massive]
+    return tuple(f"{name}: {'; '.join(each)}" for name, *each in words)
 
 
 def _rows(parameters: ParameterFile, source: str, stated: str) -> tuple[tuple[str, ...], ...]:

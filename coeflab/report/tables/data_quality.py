@@ -63,14 +63,14 @@ def convergence(tables: Sequence[ForceTable]) -> Table:
     for t in tables:
         length = t.scaling.length
         for component, errors in t.errors.items():
-            kept = np.flatnonzero(t.usable[component] & np.isfinite(errors))
-            if not len(kept):
+            selected = np.flatnonzero(t.usable[component] & np.isfinite(errors))
+            if not len(selected):
                 continue
-            se = t.primed_force(component, length, errors)[kept]
-            largest = float(np.nanmax(np.abs(t.primed_force(component, length)[kept])))
+            se = t.primed_force(component, length, errors)[selected]
+            largest = float(np.nanmax(np.abs(t.primed_force(component, length)[selected])))
             worst = int(np.argmax(se))
             shares = (f"{100.0 * v / largest:.2g} %" if largest else ABSENT for v in (np.median(se), se[worst]))
-            rows.append((t.name, f"{component}'", str(len(kept)), *shares, t.labels[kept[worst]]))
+            rows.append((t.name, f"{component}'", str(len(selected)), *shares, t.labels[selected[worst]]))
     headers = ("table", "force", "rows", "median, of largest", "worst, of largest", "worst row")
     note = "Standard errors as the tables state them, over the largest force; they hold no grid or model error."
     return Table("Convergence of readings", headers, tuple(rows), (note,), frozenset({0, 1, 5}))
@@ -88,9 +88,9 @@ def mirror_pairs(table: ForceTable) -> NDArray[np.intp]:
     far, other = cKDTree(here).query(here * sign, p=np.inf, distance_upper_bound=MIRRORED)
     moved = np.any([np.abs(primes[m]) > MIRRORED for m in across], axis=0)
     own = np.arange(len(table))
-    kept = np.isfinite(far) & moved
-    kept[kept] &= (own < other)[kept]
-    pairs: NDArray[np.intp] = np.column_stack([own, other])[kept]
+    selected = np.isfinite(far) & moved
+    selected[selected] &= (own < other)[selected]
+    pairs: NDArray[np.intp] = np.column_stack([own, other])[selected]
     return pairs
 
 
@@ -141,14 +141,14 @@ def tares(tables: Sequence[ForceTable]) -> Table:
         moving = [np.abs(t.primed_motion(m, length)) > AT_REST for m in (*MOTIONS[1:], *t.controls)]
         still = ~np.any(moving, axis=0)
         for component, usable in t.usable.items():
-            kept = np.flatnonzero(still & usable)
-            if len(kept) < 2 or component == "X":
+            selected = np.flatnonzero(still & usable)
+            if len(selected) < 2 or component == "X":
                 continue
             y = t.primed_force(component, length)
             largest = float(np.nanmax(np.abs(y[usable])))
-            spread = f"{100.0 * float(np.ptp(y[kept])) / largest:.2g} %" if largest else ABSENT
-            ends = (coefficient(float(y[kept[i]])) for i in (0, -1))
-            rows.append((t.name, f"{component}'", str(len(kept)), *ends, spread))
+            spread = f"{100.0 * float(np.ptp(y[selected])) / largest:.2g} %" if largest else ABSENT
+            ends = (coefficient(float(y[selected[i]])) for i in (0, -1))
+            rows.append((t.name, f"{component}'", str(len(selected)), *ends, spread))
     headers = ("table", "force", "readings", "first", "last", "range, of largest")
     return Table("Tares: readings ahead at no angle", headers, tuple(rows), (), frozenset({0, 1}))
 
@@ -161,11 +161,11 @@ def repeats(tables: Sequence[ForceTable]) -> Table:
         length = t.scaling.length
         settings = np.column_stack([t.primed_motion(v, length) for v in names] + [t.speed / float(np.max(t.speed))])
         for component, usable in t.usable.items():
-            kept = np.flatnonzero(usable & np.isfinite(t.forces[component]))
-            groups = _groups(settings[kept])
+            selected = np.flatnonzero(usable & np.isfinite(t.forces[component]))
+            groups = _groups(settings[selected])
             if not groups:
                 continue
-            y = t.primed_force(component, length)[kept]
+            y = t.primed_force(component, length)[selected]
             freedom = sum(len(g) - 1 for g in groups)
             pooled = np.sqrt(sum(float(np.sum((y[g] - y[g].mean()) ** 2)) for g in groups) / freedom)
             largest = float(np.max(np.abs(y)))
@@ -225,7 +225,7 @@ def _some(labels: list[str]) -> str:
 
 def of_tables(tables: Sequence[ForceTable]) -> Iterator[Table]:
     """What the tables alone say, those that have rows."""
-    for made in (coverage, convergence, symmetry, repeats, tares):
-        table = made(tables)
+    for result in (coverage, convergence, symmetry, repeats, tares):
+        table = result(tables)
         if table.rows:
             yield table

@@ -25,7 +25,11 @@ SENSES = {"dr": ("r", "N"), "ds": ("q", "M"), "db": ("q", "M")}
 
 def matrix_tables(model: LinearModel) -> tuple[Table, Table]:
     """A and B with the units of their rows."""
-    notes = (f"{ABOUT}; {AXES}.", *(f"{said}." for said in senses(model)), *(f"{said}." for said in model.statements))
+    notes = (
+        f"{ABOUT}; {AXES}.",
+        *(f"{words}." for words in senses(model)),
+        *(f"{words}." for words in model.statements),
+    )
     return (
         _matrix("A", model, model.a.matrix, model.states, ()),
         _matrix("B", model, model.b.matrix, model.commands, notes),
@@ -107,11 +111,11 @@ def _m_file(model: LinearModel) -> str:
             "%",
             f"%   {one_line(model.vehicle)}: {ABOUT}.",
             f"%   {AXES}.",
-            *(f"%   {said}." for said in senses(model)),
+            *(f"%   {words}." for words in senses(model)),
             "%",
             "%   names = struct of cell rows: states, state_units, commands, command_units",
             "%   at    = struct of columns: states and commands in the steady motion, where x and d are zero",
-            *(line for said in model.statements for line in folded(one_line(f"{said}."), 78, "%   ", "%     ")),
+            *(line for words in model.statements for line in folded(one_line(f"{words}."), 78, "%   ", "%     ")),
             "",
             f"A = {_rows(model.a.matrix, 'A = [')};",
             f"B = {_rows(model.b.matrix, 'B = [')};",

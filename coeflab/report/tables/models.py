@@ -126,8 +126,8 @@ def _close_pairs(model: FittedModel, title: str) -> Table:
     pairs = [(float(model.fit.correlation[i, j]), i, j) for i, j in combinations(range(len(model.symbols)), 2)]
     close = sorted((p for p in pairs if abs(p[0]) > CLOSE), key=lambda p: (-abs(p[0]), p[1:]))
     rows = tuple((model.symbols[i], model.symbols[j], number(r, 3)) for r, i, j in close[:MOST_PAIRS])
-    said = f"{len(close)} of {len(pairs)} pairs lie beyond {CLOSE} in magnitude"
-    notes = (f"{said}; the closest {MOST_PAIRS} are shown." if len(close) > MOST_PAIRS else f"{said}.",)
+    words = f"{len(close)} of {len(pairs)} pairs lie beyond {CLOSE} in magnitude"
+    notes = (f"{words}; the closest {MOST_PAIRS} are shown." if len(close) > MOST_PAIRS else f"{words}.",)
     return Table(title, ("", "with", "correlation"), rows, notes, frozenset({0, 1}))
 
 
@@ -307,11 +307,11 @@ def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequ
 
 def reasons(found: Comparison) -> tuple[str, ...]:
     """What a pair's rows have to say, each reason once with its symbols."""
-    said: dict[str, list[str]] = {}
+    named: dict[str, list[str]] = {}
     for r in found.rows:
         if r.reason:
-            said.setdefault(r.reason, []).append(r.symbol)
-    return tuple(f"{', '.join(symbols)}: {reason}" for reason, symbols in said.items())
+            named.setdefault(r.reason, []).append(r.symbol)
+    return tuple(f"{', '.join(symbols)}: {reason}" for reason, symbols in named.items())
 
 
 def _cells(r: Compared) -> list[str]:

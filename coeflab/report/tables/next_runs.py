@@ -39,7 +39,7 @@ def next_points(study: Study, fit: FitResult, count: int, symbols: Sequence[str]
         ran = [*s.x]
         for i, (x, after) in enumerate(next_runs(study, s, count), 1):
             first = i == 1
-            said = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if first else ("", "", "", "")
+            words = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if first else ("", "", "", "")
             again = any(math.isclose(x, other, rel_tol=1e-9, abs_tol=1e-9) for other in ran)
             ran.append(x)
             repeats |= again
@@ -50,7 +50,7 @@ def next_points(study: Study, fit: FitResult, count: int, symbols: Sequence[str]
             )
             narrower = f"{100.0 * after / now:.1f} %" if now else ABSENT
             at = signed(s, x) + " again" * again
-            rows.append((*said, str(i), over, at, with_u95(s.value, after)[1], narrower))
+            rows.append((*words, str(i), over, at, with_u95(s.value, after)[1], narrower))
     headers = ("", "campaign", "value", "U95 now", "run", "over", "at", "U95 then", "of now")
     notes = [
         "One more reading at each, one after the other, at the present noise; predicted from the present fit, before "

@@ -30,17 +30,17 @@ def own_tow(found: Towed) -> Table:
         value = value if r.is_result else NO_RESULT
         line = ABSENT if r.line is None else as_printed(float(f"{r.line:.3g}"))
         rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), line, *map(as_printed, r.published)))
-    said: dict[str, list[str]] = {}
+    named: dict[str, list[str]] = {}
     for r in found.rows:
-        said.setdefault(r.why, []).append(primed(r.symbol))
+        named.setdefault(r.why, []).append(primed(r.symbol))
     absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
     run_at = "" if found.reynolds is None else f", Re {in_millions(found.reynolds)}"
     where = f"Campaign {found.tow.campaign}{absent}{run_at}." if found.tow.campaign else ""
-    every = len(found.rows) > 1 and len(said) == 1
+    every = len(found.rows) > 1 and len(named) == 1
     lacking = {r.why for r in found.rows if r.missing}
     reasons = [
         f"{'All' if every else ', '.join(symbols)}: {'no value, ' * (why in lacking)}{why}."
-        for why, symbols in said.items()
+        for why, symbols in named.items()
         if why
     ]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)

@@ -61,10 +61,10 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
 
 def of_run(run: Run) -> tuple[Table, ...]:
     """One run: its conditions with their places, and the columns of its history."""
-    said = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]
+    words = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]
     rows = tuple((shortened(c.name, 34), shortened(c.unit, UNIT), limits(c), c.means) for c in run.history.columns)
     return (
-        Table("Conditions", ("condition", "value", "where"), tuple(said), (), frozenset({0, 1, 2})),
+        Table("Conditions", ("condition", "value", "where"), tuple(words), (), frozenset({0, 1, 2})),
         Table(
             "History", ("column", "unit", "range", "is"), rows, (f"{len(run.history)} rows",), frozenset({0, 1, 2, 3})
         ),
@@ -89,13 +89,13 @@ def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: S
             "low": float(ok.min()) if ok.size else None, "high": float(ok.max()) if ok.size else None,
             "proposed": proposal.text, "certain": proposal.certain, "why": proposal.why,
         })  # fmt: skip
-    said = {
+    words = {
         key: {"value": list(s.value) if isinstance(s.value, tuple) else s.value, "place": s.place, "offered": s.offered}
         for key, s in raw.stated.items()
     }
     return {
         "path": str(raw.path), "importer": importer, "rows": len(raw), "dialect": dict(raw.dialect), "columns": described,
-        "stated": said, "remarks": list(raw.remarks), "shows": [e.text for e in shows],
+        "stated": words, "remarks": list(raw.remarks), "shows": [e.text for e in shows],
     }  # fmt: skip
 
 

@@ -64,13 +64,13 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
         Only the coefficients of one campaign.
     """
     chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
-    made = noun_tables.coefficients(chosen, covers=covers(study, chosen))
+    result = noun_tables.coefficients(chosen, covers=covers(study, chosen))
     flags = [assumed_of(study, c) for c in chosen]
-    rows = tuple((f"{row[0]}{FLAG}", *row[1:]) if found else row for row, found in zip(made.rows, flags, strict=True))
-    said = tuple(
+    rows = tuple((f"{row[0]}{FLAG}", *row[1:]) if found else row for row, found in zip(result.rows, flags, strict=True))
+    phrases = tuple(
         f"{FLAG.strip()} {f.subject}: {words(f).statement}." for f in dict.fromkeys(f for some in flags for f in some)
     )
-    return Table(made.title, made.headers, rows, (*said, *made.notes), made.left)
+    return Table(result.title, result.headers, rows, (*phrases, *result.notes), result.left)
 
 
 FLAG = " *"  # behind a coefficient that hangs on something which no source states
@@ -116,10 +116,10 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
     notes += [f"No table of the campaign varies the motion of {', '.join(absent)}."] if absent else []
     notes += [f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else []
     of = f" of {campaigns[0]}" if len(campaigns) == 1 and "campaign" in gone and campaigns[0] != ABSENT else ""
-    kept = tuple(tuple(row[i] for i in chosen) for row in rows)
+    selected = tuple(tuple(row[i] for i in chosen) for row in rows)
     left = frozenset(chosen.index(i) for i in whole.left if i in chosen)
     title = whole.title.replace("Coefficients", f"Coefficients{of}", 1)
-    return Table(title, tuple(whole.headers[i] for i in chosen), kept, tuple(notes), left)
+    return Table(title, tuple(whole.headers[i] for i in chosen), selected, tuple(notes), left)
 
 
 def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
@@ -282,9 +282,9 @@ def side_by_side(study: Study) -> Table:
     )
     twice = {name for name, _ in columns if sum(n == name for n, _ in columns) > 1}
     beside: dict[tuple[str | None, str], dict[tuple[str, str], str]] = {}
-    for made in study.comparisons:
-        key = (made.coefficient.campaign, made.coefficient.symbol)
-        beside.setdefault(key, {})[made.reference, made.reading] = made.shown or as_printed(made.published)
+    for result in study.comparisons:
+        key = (result.coefficient.campaign, result.coefficient.symbol)
+        beside.setdefault(key, {})[result.reference, result.reading] = result.shown or as_printed(result.published)
     rows = []
     quoted = {r.body for r in study.references if r.relation is Relation.QUOTED}
     for symbol in study.plan.wanted:
@@ -526,8 +526,8 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     keys += [r.citation for r in study.references] + ([study.body.source.citation] if study.body else [])
     keys += [k for found in study.hulls.values() for k in found.citations]
     keys += ["feldman1979"] if study.parameter_files else []
-    keys += [k for made in study.exports for k in made.citations]
-    keys += [k for made in study.manoeuvres for k in made.citations]
+    keys += [k for result in study.exports for k in result.citations]
+    keys += [k for result in study.manoeuvres for k in result.citations]
     keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
     return tuple((k, work(k)) for k in dict.fromkeys(keys) if k != NO_WORK)
 
@@ -569,12 +569,12 @@ def unused(tables: Sequence[ForceTable]) -> str:
             name = t.labels[row] + f" of {short[t.name]}" * (len(tables) > 1)
             parts |= of != "row"
             by.setdefault(kind, []).append(name if of == "row" else f"{name} {of}")
-    said = [
+    phrases = [
         f"{', '.join(rows[:NAMED])}{f' and {len(rows) - NAMED} more' * (len(rows) > NAMED)}: {STATES.get(why, why).replace(': ', ', ')}"
         for why, rows in by.items()
     ]
     what = "Readings left out (point, components)" if parts else "Points left out"
-    return in_sentences(f"{what}: ", said) if said else ""
+    return in_sentences(f"{what}: ", phrases) if phrases else ""
 
 
 def inspected(table: ForceTable, most: int = 0) -> Table:
@@ -598,8 +598,8 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
     excluded = []
     for (row, line), reasons in by_row.items():
         place = table.labels[row] + f" (line {line})" * (table.labels.count(table.labels[row]) > 1)
-        said = "; ".join(f"{_of(components, table)}: excluded, {reason}" for reason, components in reasons.items())
-        excluded.append(f"{place}, {said}")
+        phrases = "; ".join(f"{_of(components, table)}: excluded, {reason}" for reason, components in reasons.items())
+        excluded.append(f"{place}, {phrases}")
     notes = [
         *excluded[: most or None],
         *([f"{len(excluded) - most} more are excluded"] if 0 < most < len(excluded) else []),
@@ -619,8 +619,8 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
 
 def without(table: Table, *names: str) -> Table:
     """The table without some columns, and without the notes on them."""
-    kept = [i for i, header in enumerate(table.headers) if header not in names]
-    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
+    selected = [i for i, header in enumerate(table.headers) if header not in names]
+    rows = tuple(tuple(row[i] for i in selected) for row in table.rows)
     notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
-    left = frozenset(kept.index(i) for i in table.left if i in kept)
-    return Table(table.title, tuple(table.headers[i] for i in kept), rows, notes, left)
+    left = frozenset(selected.index(i) for i in table.left if i in selected)
+    return Table(table.title, tuple(table.headers[i] for i in selected), rows, notes, left)

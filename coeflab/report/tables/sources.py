@@ -26,8 +26,8 @@ def declared(tables: Sequence[ForceTable]) -> Table:
         each = [
             ("frame", d.frame),
             *(
-                (f"sign of the {sign.get(angle, angle)}", said + ", assumed" * (angle in t.assumed))
-                for angle, said in d.signs
+                (f"sign of the {sign.get(angle, angle)}", words + ", assumed" * (angle in t.assumed))
+                for angle, words in d.signs
             ),
             ("moments about", point_in_words(d.reference_point, t.datum)),
             ("datum", str(t.datum)),
@@ -37,13 +37,13 @@ def declared(tables: Sequence[ForceTable]) -> Table:
             ("symmetry", ", ".join(t.symmetry) or "none declared"),
             ("made from a file of sha256", d.source_sha256),
         ]
-        for matter, said in each:
-            if said:
-                rows.setdefault((matter, said), []).append(t.name)
+        for matter, words in each:
+            if words:
+                rows.setdefault((matter, words), []).append(t.name)
     several = len(tables) > 1
-    made = tuple(
-        (matter, said, *((", ".join(names) if len(names) < len(tables) else "all",) if several else ()))
-        for (matter, said), names in rows.items()
+    result = tuple(
+        (matter, words, *((", ".join(names) if len(names) < len(tables) else "all",) if several else ()))
+        for (matter, words), names in rows.items()
     )
     notes = tuple(
         dict.fromkeys(f"Notes: {' '.join(t.declared.notes.split())}" for t in tables if t.declared and t.declared.notes)
@@ -51,7 +51,7 @@ def declared(tables: Sequence[ForceTable]) -> Table:
     return Table(
         "As campaign.toml declares it",
         ("", "declared", *(("tables",) if several else ())),
-        made,
+        result,
         notes,
         frozenset(range(2 + several)),
     )

@@ -117,14 +117,14 @@ def known_table(carried: Carried) -> Table:
 
 def ranking(carried: Carried) -> tuple[str, ...]:
     """What is worth another test or CFD run: over all figures of the manoeuvre, then figure by figure, in words."""
-    told = [i for i in carried.importances if i.shares or i.known]
-    own = [_parts(i) for i in told if i.figure in carried.names]
+    words = [i for i in carried.importances if i.shares or i.known]
+    own = [_parts(i) for i in words if i.figure in carried.names]
     mean: dict[str, float] = {}
     for name, share in (p for parts in own for p in parts):
         mean[name] = mean.get(name, 0.0) + share / len(own)
     first = [name for name, share in sorted(mean.items(), key=lambda p: -p[1]) if share >= SMALL][:LISTED]
     whole = f"worth another test or CFD run, by the mean share in the variance of {_counted(len(own))}: {', then '.join(first)}"
-    return (*([whole] if first else []), *map(_narrowing, told))
+    return (*([whole] if first else []), *map(_narrowing, words))
 
 
 def _counted(figures: int) -> str:
@@ -138,10 +138,10 @@ def _parts(found: Importance) -> list[tuple[str, float]]:
 
 
 def _narrowing(found: Importance) -> str:
-    told = [(name, share) for name, share in _parts(found) if share >= SMALL][:LISTED]
-    if not told:
+    words = [(name, share) for name, share in _parts(found) if share >= SMALL][:LISTED]
+    if not words:
         return f"{found.figure}: nothing alone narrows its interval, which is a joint effect"
-    each = ", ".join(f"{name} by {_narrower(share)}" for name, share in told)
+    each = ", ".join(f"{name} by {_narrower(share)}" for name, share in words)
     pair = found.shares[:2]
     close = len(pair) == 2 and pair[1].first_bounds[1] > pair[0].first_bounds[0]
     return f"{found.figure}: if known exactly, its interval narrows: {each}" + (
@@ -192,8 +192,8 @@ def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str
     rest = [n for n in left if n not in fixed]
     read = [n.removeprefix("error of ") for n in rest if n in READ]
     others = [n for n in rest if n not in READ]
-    said = [*([f"errors of {listed(read)}"] if read else []), *others]
-    out = [f"{what}: {'; '.join(said)}."] if said else []
+    words = [*([f"errors of {listed(read)}"] if read else []), *others]
+    out = [f"{what}: {'; '.join(words)}."] if words else []
     known = [n for n in fixed if n != COUPLED]
     return [*out, f"In CFD these are prescribed and carry no measurement error: {listed(known)}."] if known else out
 
@@ -313,8 +313,8 @@ def grids(budgets: Sequence[Budget]) -> Table:
     headers = (
         "", "setting", "cells", "values", "order", "extrapolated", "factor", "U95", "U95 %", "convergence",
     )  # fmt: skip
-    said = tuple(f"{g.component} at {g.setting}: {g.convergence.statement}." for g in found.values())
-    notes = ("Half-widths are those of the grid in use. SI units.", *said)
+    words = tuple(f"{g.component} at {g.setting}: {g.convergence.statement}." for g in found.values())
+    notes = ("Half-widths are those of the grid in use. SI units.", *words)
     return Table("Grid convergence", headers, rows, notes, frozenset({0, 1, 2, 3, 9}))
 
 

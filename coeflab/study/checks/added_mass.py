@@ -19,8 +19,8 @@ def check(study: Study) -> Sequence[Check]:
     """A warning for each finding of an added mass; else that there is none."""
     out = []
     for name, found in study.hulls.items():
-        told = [as_check("added_mass", f) for f in found.findings]
-        out += told or [
+        words = [as_check("added_mass", f) for f in found.findings]
+        out += words or [
             Check("added_mass", name, Severity.PASS, f"by {found.recommended.method}", "good for the body", "")
         ]
     return out

@@ -202,12 +202,12 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
         )
         strange = data_gate.strange_settings(first.x, y, scatter, signs)
         for at, other in strange.items():
-            said = rows.setdefault(int(first.rows[at]), _Row())
-            said.cells.append(f"{setting_in_words(name, first.x[at])} is isolated")
-            said.components += [c for c in by_component if c not in said.components]
+            given = rows.setdefault(int(first.rows[at]), _Row())
+            given.cells.append(f"{setting_in_words(name, first.x[at])} is isolated")
+            given.components += [c for c in by_component if c not in given.components]
             if other is not None:
                 partner, mirror = setting_in_words(name, first.x[other]), setting_in_words(name, -first.x[other])
-                said.comments.append(
+                given.comments.append(
                     f"{mirror} instead of {setting_in_words(name, first.x[at])} makes it the image of {partner}."
                 )
         p = data_gate.wrong_setting(first.x, y - expected, expected, scatter, probability)
@@ -215,12 +215,12 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
             if not any(cells[int(row), c].sweep.rows is by_component[c].sweep.rows for c in by_component):
                 continue
             if p[at] < limit and int(row) not in rows:
-                said = rows.setdefault(int(row), _Row())
-                said.components += list(by_component)
-                said.cells += [
+                given = rows.setdefault(int(row), _Row())
+                given.components += list(by_component)
+                given.cells += [
                     _cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()
                 ]
-                said.comments.append("No single component is off; together they are.")
+                given.comments.append("No single component is off; together they are.")
             if int(row) in rows and len(rows[int(row)].components) > 1 and at not in strange:
                 suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter)
                 if suits is not None:
@@ -275,23 +275,23 @@ def _slopes(
             decides = abs(without.value - found.with_all) > found.u95
             if not (left_out or decides or failed):
                 continue
-            said = rows.setdefault(row, _Row())
-            said.values.append(
+            given = rows.setdefault(row, _Row())
+            given.values.append(
                 f"{primed(symbol)} = {_value(found.with_all, found.u95_with_all)} with the row, "
                 f"{_value(without.value, without.u95)} without it"
             )
-            (said.used if found.used[at] else said.left_out).append(primed(symbol))
+            (given.used if found.used[at] else given.left_out).append(primed(symbol))
             if decides and not failed and not left_out:
-                said.comments.append(f"The row decides {primed(symbol)}: U95 of all rows is {number(found.u95, 2)}.")
+                given.comments.append(f"The row decides {primed(symbol)}: U95 of all rows is {number(found.u95, 2)}.")
             elif left_out and not failed:
-                said.components.append(component)
+                given.components.append(component)
 
 
 def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: float, rows: dict[int, _Row]) -> None:
     """X0 and Xvv, Xww, Xrr, Xqq with and without the rows whose X fails."""
-    for row, said in rows.items():
+    for row, given in rows.items():
         cell = cells.get((row, "X"))
-        if cell is None or "X" not in said.components or not cell.sweep.still or cell.sweep.variable not in EVEN:
+        if cell is None or "X" not in given.components or not cell.sweep.still or cell.sweep.variable not in EVEN:
             continue
         name, usual = cell.sweep.variable, table.scaling.length
         x = cell.sweep.x * (length / usual if name in "qr" else 1.0)
@@ -300,7 +300,7 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
         for symbol, at in ((f"X{EVEN[name] * 2}", 1), ("X0", 0)):
             if both[0][at] is None:
                 continue
-            said.values.append(
+            given.values.append(
                 f"{primed(symbol)} = {number(both[0][at], 3)} with the row, {number(both[1][at], 3)} without it"
             )
 
@@ -333,7 +333,7 @@ def _together(table: ForceTable, tables: Sequence[ForceTable], length: float, ro
                 f"{primed(symbol)} = {_value(found.with_all, found.u95_with_all)} with these rows, "
                 f"{_value(without.value, without.u95)} without them"
             )
-    components = listed([c for c in table.forces if any(c in said.components for said in rows.values())])
+    components = listed([c for c in table.forces if any(c in given.components for given in rows.values())])
     where = [str(table.lines[i]) if table.lines else table.labels[i] for i in sorted(rows)]
     return Check(
         "data_gate", table.name, Severity.WARN,
@@ -414,16 +414,16 @@ def _astern(table: ForceTable, ahead: NDArray[np.bool_]) -> list[Check]:
 
 def _summary(campaign: str, readings: int, missed: int, found: Sequence[Check]) -> Check:
     grave = sum(c.severity is Severity.WARN for c in found)
-    said = f"{readings - missed} of {readings} readings predicted from their sweep, {grave} warnings"
+    words = f"{readings - missed} of {readings} readings predicted from their sweep, {grave} warnings"
     if missed:
-        return Check("data_gate", campaign, Severity.NOTE, said, "every reading in a sweep of at least five",
+        return Check("data_gate", campaign, Severity.NOTE, words, "every reading in a sweep of at least five",
                      f"{missed} readings are in no sweep of five in which one variable alone changes: not checked.")  # fmt: skip
     severity = Severity.NOTE if grave else Severity.PASS
     return Check(
         "data_gate",
         campaign,
         severity,
-        said,
+        words,
         "every reading in a sweep of at least five",
         "Each is compared with the others.",
     )
@@ -465,9 +465,9 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
         rows: dict[int, _Row] = {}
         for (row, component), cell in cells.items():
             if cell.seen.wrong[cell.at]:
-                said = rows.setdefault(row, _Row())
-                said.cells.append(_cell_text(table, component, row, cell))
-                said.components.append(component)
+                given = rows.setdefault(row, _Row())
+                given.cells.append(_cell_text(table, component, row, cell))
+                given.components.append(component)
         _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
         swapped = _exchanged(table, about, turned, length, cells)
         for row in {row for one in swapped for row in one.rows}:
@@ -479,7 +479,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
         else:
             _slopes(about, turned, length, again, rows)
             _curvatures(table, cells, length, rows)
-            out += [_as_check(table, row, said, readings) for row, said in sorted(rows.items())]
+            out += [_as_check(table, row, given, readings) for row, given in sorted(rows.items())]
         out += _open_ends(table, cells, rows)
         out += _pasted(table, again)
         out += _astern(table, ahead)

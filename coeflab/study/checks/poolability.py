@@ -27,7 +27,7 @@ def check(study: Study) -> Sequence[Check]:
         for p in fit.poolings:
             if len(p.shares) < 2:
                 continue
-            severity, said = {
+            severity, words = {
                 None: (Severity.NOTE, "The rows cannot show whether one law fits all campaigns."),
                 False: (Severity.PASS, "The campaigns do not contradict one law."),
                 True: (
@@ -36,8 +36,8 @@ def check(study: Study) -> Sequence[Check]:
                 ),
             }[p.rejected]
             if p.doubtful:
-                severity, said = Severity.WARN, f"One law is neither contradicted nor shown. {p.values_alone}"
+                severity, words = Severity.WARN, f"One law is neither contradicted nor shown. {p.values_alone}"
             out.append(
-                Check("poolability", f"{fit.campaign} {p.response}'", severity, p.statistic, "p of 0.1 or more", said)
+                Check("poolability", f"{fit.campaign} {p.response}'", severity, p.statistic, "p of 0.1 or more", words)
             )
     return out

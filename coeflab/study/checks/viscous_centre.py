@@ -203,7 +203,7 @@ def _doubted(p: _Plane, c: Coefficient, found: str, rule: str, readings: Sequenc
     if p.mass is None and c is p.rate:
         comment = f"Check {own}, its sign and its point. The mass is not known here: does the force contain the model's inertia?"
     if readings:
-        said = "; ".join(f"{words}, {c.symbol} = {value:.4g}" for words, value in readings)
+        phrases = "; ".join(f"{words}, {c.symbol} = {value:.4g}" for words, value in readings)
         held = f" m' = {p.mass:.4g}." if p.mass is not None and any("inertia" in w for w, _ in readings) else ""
-        comment = f"As it stands, {own}; {said}.{held}"
+        comment = f"As it stands, {own}; {phrases}.{held}"
     return Check("viscous_centre", f"{p.file.name} {c.symbol}", Severity.WARN, found, rule, comment)

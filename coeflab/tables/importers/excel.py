@@ -290,8 +290,8 @@ def _require_whole_xml(packed: zipfile.ZipFile) -> None:
 def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
     """Why a workbook unpacks to too much, by its directory and by itself; empty where it does not."""
     left = SHEET_UNPACKED
-    if (said := sum(part.file_size for part in parts)) > left:
-        return f"{said:,} bytes when unpacked"
+    if (words := sum(part.file_size for part in parts)) > left:
+        return f"{words:,} bytes when unpacked"
     for part in parts:
         with part_of(packed, part) as stream:
             while piece := stream.read(_CHUNK):
@@ -374,8 +374,8 @@ def _read_texts(rows: list[list[Value]]) -> tuple[list[list[Value]], list[str]]:
                 out[i][k] = number
                 found.append(_place(i + 1, k))
     many = len(found)
-    said = f"{many} cell{'s hold numbers' * (many > 1) or ' holds a number'} as text with a decimal comma, first {found[0]}; read as numbers"
-    return out, [said]
+    words = f"{many} cell{'s hold numbers' * (many > 1) or ' holds a number'} as text with a decimal comma, first {found[0]}; read as numbers"
+    return out, [words]
 
 
 def _place(row: int, column: int) -> str:
@@ -453,7 +453,7 @@ def _kept(
     rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path
 ) -> tuple[list[int], list[str], list[Title]]:
     """Indices of the rows of data, what is said of the others, and the words among them."""
-    kept: list[int] = []
+    selected: list[int] = []
     titles: list[Title] = []
     remarks: list[str] = []
     numbers = numbered([[_text(v) for v in row] for row in rows[begin:] if _filled(row)], PLAIN)
@@ -462,7 +462,7 @@ def _kept(
         if not any(v != "" for v in row):
             continue
         if _filled(row):
-            kept.append(i)
+            selected.append(i)
         elif tuple(_text(v) for v in row) in head.written:
             remarks.append(f"row {i + 1}: the head again; left out")
         elif not any(_filled(r) for r in rows[i + 1 :]):
@@ -471,9 +471,9 @@ def _kept(
             )
             break
         elif 2 * sum(rows[i][k] != "" for k in numbers) < len(numbers):
-            said = shown(words := " ".join(t for t in map(_text, row) if t))
-            titles.append(Title(len(kept), i + 1, words))
-            remarks.append(f"row {i + 1}: a remark among the rows ({said}); left out")
+            phrases = shown(words := " ".join(t for t in map(_text, row) if t))
+            titles.append(Title(len(selected), i + 1, words))
+            remarks.append(f"row {i + 1}: a remark among the rows ({phrases}); left out")
         elif options.header > 0:
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
             break
@@ -482,7 +482,7 @@ def _kept(
                 f"words among the rows ({shown(' '.join(t for t in map(_text, row) if t))})", "rows of numbers under one header",
                 file=path, line=i + 1, advice="Say the row of the table's header by the option header.",
             )  # fmt: skip
-    return kept, remarks, titles
+    return selected, remarks, titles
 
 
 def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Path) -> tuple[Array, list[str]]:
@@ -536,12 +536,12 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     name = _chosen(sheets, given, path)
     rows = sheets[name]
     begin, head = _body(rows, given, path)
-    kept, left, titles = _kept(rows, begin, head, given, path)
-    lines = [i + 1 for i in kept]
+    selected, left, titles = _kept(rows, begin, head, given, path)
+    lines = [i + 1 for i in selected]
     met = [Cells() for _ in rows[0]]
     values, texts = [], {}
     for k, cells in enumerate(met):
-        column, words = _values([rows[i][k] for i in kept], lines, k, cells, path)
+        column, words = _values([rows[i][k] for i in selected], lines, k, cells, path)
         values.append(column)
         if words:
             texts[k] = words

@@ -285,17 +285,17 @@ def _force_report(path: Path) -> Run:
     count = RawColumn("report", "", np.arange(1.0, rows + 1.0), means="iteration")
     lines = np.array([t.line for t in next(iter(kinds.values()))[:rows]])
     dialect = {"format": "Fluent force report", "delimiter": "blanks", "decimal mark": "point"}
-    made = {
+    result = {
         zone: RawTable(path, (count, *columns), tables[0].line, lines, files=(path,), dialect=dialect)
         for zone, columns in per_zone.items()
     }
-    net = next(zone for zone in made if zone.lower() == "net")
-    history = replace(made.pop(net), stated=stated, remarks=tuple(remarks), files=(path, *texts))
+    net = next(zone for zone in result if zone.lower() == "net")
+    history = replace(result.pop(net), stated=stated, remarks=tuple(remarks), files=(path, *texts))
     last = [c.values[-1] for c in history.columns]
     ended, why = (Ended.CRASHED, cut) if cut else (Ended.WHOLE, "")
     if not np.isfinite(last).all():
         ended, why = Ended.DIVERGED, f"{path.name}:{lines[-1]}: a force that is no number"
-    return Run(path, path.stem, history, patches=made, ended=ended, why=why, is_final=True)
+    return Run(path, path.stem, history, patches=result, ended=ended, why=why, is_final=True)
 
 
 def _shown(direction: tuple[float, ...] | None) -> str:

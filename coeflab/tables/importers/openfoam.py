@@ -195,7 +195,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     for name, value in (("cells", of.stated_cells(case)), ("y_plus", of.stated_y_plus(case, body))):
         if value is not None:
             conditions[name] = value
-    said, broken, ended = of.read_log(case, of.word(case, "system/controlDict", "application"))
+    phrases, broken, ended = of.read_log(case, of.word(case, "system/controlDict", "application"))
     scheme = of.word(case, "system/fvSchemes", "ddtSchemes", "default")
     counted = scheme in ("steadyState", "localEuler")
     time = RawColumn(
@@ -203,9 +203,9 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     )
     ending, why = _ending(len(time.values), main, broken, ended)
     stated = _stated(case, main, conditions, density, point, whole)
-    if "solver" in said:
+    if "solver" in phrases:
         stated["source.how_obtained"] = Stated(
-            f"{said['solver']} of OpenFOAM {said.get('version', '')}".strip(), "log of the solver"
+            f"{phrases['solver']} of OpenFOAM {phrases.get('version', '')}".strip(), "log of the solver"
         )
     tables = {s: _table(main, s, case, time, unit) for s in main.shares}
     for name, history in histories.items():
@@ -214,7 +214,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
         remarks += history.remarks
     table = _table(
         main, "", case, time, unit, files=tuple(dict.fromkeys(case.files)), stated=stated,
-        dialect={"function object": ", ".join(whole), **said}, remarks=(*main.remarks, *remarks, *case.notes),
+        dialect={"function object": ", ".join(whole), **phrases}, remarks=(*main.remarks, *remarks, *case.notes),
     )  # fmt: skip
     return Run(case.root, case.root.resolve().name, table, conditions, tables, ending, why)
 

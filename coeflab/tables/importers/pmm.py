@@ -324,14 +324,14 @@ def _turned(
 ) -> TimeSeries:
     """A record from ``start`` on, in FRD."""
     keep = time >= start
-    made: dict[str, dict[str, Array]] = {}
+    result: dict[str, dict[str, Array]] = {}
     for kind, groups in GROUPS.items():
         frd = [n for names, _ in groups for n in names if turn[n][0] in columns]
-        made[kind] = {n: turn[n][1] * columns[turn[n][0]][keep] for n in frd}
-    if not made["forces"]:
+        result[kind] = {n: turn[n][1] * columns[turn[n][0]][keep] for n in frd}
+    if not result["forces"]:
         raise InputError("no force column", "at least one of X Y Z K M N", file=path)
-    made["accelerations"] = {n.removesuffix("dot"): v for n, v in made["accelerations"].items()}
-    return TimeSeries(file=path, time=time[keep], **made)
+    result["accelerations"] = {n.removesuffix("dot"): v for n, v in result["accelerations"].items()}
+    return TimeSeries(file=path, time=time[keep], **result)
 
 
 def _inertia(campaign: Campaign, table: TableDeclaration, runs: tuple[PlanarMotionRun, ...]) -> TowedInertia | None:

@@ -90,13 +90,13 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     judged = [j for j, name in enumerate(pieces[-1].names) if _SURFACE.sub(r"\g<name>", name) in JUDGED]
     ended, why = how_ended(pieces[-1], judged)
     monitor = pieced(pieces, index)
-    conditions, stated, said = _stated(config, monitor)
+    conditions, stated, words = _stated(config, monitor)
     planes, texts = _symmetry_planes(files[0], beside)
     if half := stated_plane(planes):
         stated[HALF_MODEL] = half
         files = (*files, *texts)
     if config is not None and (change := _rescaled(config, conditions, monitor)):
-        said = [*said, change]
+        words = [*words, change]
     dialect = {
         "format": f"SU2 history, {'6 or before' if 'Iteration' in monitor.names else '7 or later'}",
         "delimiter": "comma",
@@ -109,7 +109,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [
         (j, name, *_meaning(name, j == index)) for j, name in enumerate(monitor.names) if not _SURFACE.fullmatch(name)
     ]
-    whole = raw_table(monitor, path, columns, files, dialect, stated, (*remarks, *said))
+    whole = raw_table(monitor, path, columns, files, dialect, stated, (*remarks, *words))
     return Run(path, path.stem, whole, conditions, tables, ended, why)
 
 

@@ -190,9 +190,9 @@ class _Body:
     def _leave_out(self, n: int, why: str, ended: bool) -> None:
         self.cut.append((n, why if ended else f"{why}, and the line has no end: the file is cut there"))
         if len(self.cut) > TABLE_CUT_LINES and len(self.cut) > 0.01 * self.rows + TABLE_CUT_LINES:
-            first, said = self.cut[0]
+            first, words = self.cut[0]
             raise InputError(
-                f"{said} here and in {len(self.cut) - 1} more lines", f"{self.dialect.width} cells in a row", file=self.path,
+                f"{words} here and in {len(self.cut) - 1} more lines", f"{self.dialect.width} cells in a row", file=self.path,
                 line=first, advice="Say delimiter, decimal or header by the options.",
             )  # fmt: skip
 
@@ -225,10 +225,10 @@ def _remarks(body: _Body) -> list[str]:
     if len(body.cut) > 10:
         out.append(f"{len(body.cut) - 10} more lines left out for the same reason")
     if body.again:
-        said = listed([str(n) for n in body.again[:5]]) + (
+        words = listed([str(n) for n in body.again[:5]]) + (
             f" and {len(body.again) - 5} more" if len(body.again) > 5 else ""
         )
-        out.append(f"the header is repeated in line {said}; left out")
+        out.append(f"the header is repeated in line {words}; left out")
     return out
 
 

@@ -134,15 +134,15 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         against = f"{volume} speaks of primes by the volume V: for these the length is V^(1/3)"
         length = found.get("scaling.length", Stated("", volume, offered=True))
         found["scaling.length"] = replace(length, contradicted=against)
-    told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
-    told |= prime_basis(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
-    water = told.get("conditions.density")
+    phrases = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
+    phrases |= prime_basis(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
+    water = phrases.get("conditions.density")
     own = found.pop("conditions.density", None)
     if own and not (water and states_density(water.place)):  # a number without a unit, or in another one
         far = water is not None and abs(float(str(own.value)) / float(str(water.value)) - 1.0) > APART
         against = f"{own.place}, but {water.value} by {water.place}" if water and far else ""
-        told["conditions.density"] = replace(own, contradicted=against)
-    return told | found
+        phrases["conditions.density"] = replace(own, contradicted=against)
+    return phrases | found
 
 
 def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dict[str, Stated]:
@@ -168,10 +168,10 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
                 found[POINT_FROM] = replace(one, contradicted=f"{one.place}, but {other.place}")
         elif datum := datum_in_words(place, text):
             found.setdefault("axes.datum", datum)
-        for key, said in _of_the_turn(place, text, marks):
-            one = found.setdefault(key, said)
-            if one.value != said.value and not one.contradicted:
-                found[key] = replace(one, contradicted=f"{one.place}, but {said.place}")
+        for key, given in _of_the_turn(place, text, marks):
+            one = found.setdefault(key, given)
+            if one.value != given.value and not one.contradicted:
+                found[key] = replace(one, contradicted=f"{one.place}, but {given.place}")
     if half := half_in_words(texts):
         found[HALF_MODEL] = half
     if density := density_in_words(texts, marks):
@@ -184,10 +184,13 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
 def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Stated]]:
     """What a line says of a rotating test: whether forces hold inertia, where its mass lies, to which side it turns."""
     for clause in re.split(r"[;:]|,\s|\.\s", text):
-        said = set(_holds_inertia(clause))
-        if said:
+        phrases = set(_holds_inertia(clause))
+        if phrases:
             where = f'{place}: "{" ".join(clause.split())}"'
-            yield "table.contains_inertia", Stated(True in said, where, True, f"{where} says both" * (len(said) == 2))
+            yield (
+                "table.contains_inertia",
+                Stated(True in phrases, where, True, f"{where} says both" * (len(phrases) == 2)),
+            )
     yield from signs(place, text)
     if arm := arm_point(place, text, marks):
         yield ARM_FROM, arm

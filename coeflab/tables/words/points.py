@@ -136,8 +136,8 @@ def moments_point(place: str, text: str, marks: Marks) -> dict[str, Stated]:
     if _HEIGHT.search(re.split(r"[;]|\.\s", text[m.end() :])[0]):
         open_ = "and its height: say x, y, z"
     against = f"{words}, {open_}" if open_ else ""
-    said = Stated(f"{x:.12g} {'L' if share else 'm'} {point or UNSAID}", words, offered=True, contradicted=against)
-    return {POINT_FROM: said} | ({"axes.datum": Stated(point, words, offered=True)} if point else {})
+    phrases = Stated(f"{x:.12g} {'L' if share else 'm'} {point or UNSAID}", words, offered=True, contradicted=against)
+    return {POINT_FROM: phrases} | ({"axes.datum": Stated(point, words, offered=True)} if point else {})
 
 
 def arm_point(place: str, text: str, marks: Marks) -> Stated | None:

@@ -104,10 +104,10 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
         found = _of_formula(text) or _of_sentence(text)
         if found:
             basis, words = found
-            said = Stated(basis, f'{place}: "{" ".join(words.split())}"', offered=True)
-            before = out.setdefault(BASIS, said)
+            given = Stated(basis, f'{place}: "{" ".join(words.split())}"', offered=True)
+            before = out.setdefault(BASIS, given)
             if before.value != basis and not before.contradicted:
-                out[BASIS] = Stated(before.value, before.place, True, f"{before.place}, but {said.place}")
+                out[BASIS] = Stated(before.value, before.place, True, f"{before.place}, but {given.place}")
     return out
 
 

@@ -195,8 +195,8 @@ def _place(folder: Path, temporary: bool) -> Iterator[Path]:
     if not temporary:
         yield folder
         return
-    with tempfile.TemporaryDirectory(prefix="coeflab_tow_") as made:
-        yield Path(made)
+    with tempfile.TemporaryDirectory(prefix="coeflab_tow_") as result:
+        yield Path(result)
 
 
 def _dry(
@@ -304,14 +304,14 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
         _stopped(tow, folder)
         raise typer.Exit(INTERRUPTED) from None
     show.step("fitting and drawing the report", json)
-    made = tank_room.collected(tow)
+    result = tank_room.collected(tow)
     if tow.solver.table is not None and not json and not tank_room.filled(tow):
         show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
         show.text(f"Run list: {folder / 'external' / 'run_list.csv'}")
         show.text("Next:")
-        show.sentence(f"  {_next(tow, made, folder)}")
+        show.sentence(f"  {_next(tow, result, folder)}")
         return
-    _answer(tow, made, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
+    _answer(tow, result, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
 
 
 def _stopped(tow: Tow, folder: Path) -> None:
@@ -336,16 +336,16 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
     from coeflab.tank.states import states_of, time_left
 
     shown = tables.shown_of(read_plan(tow.folder))
-    said: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
+    words: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
     trouble: list[str] = []
     last = [-REFRESH]
     on_terminal = sys.stdout.isatty() and not json
 
     def rows_now() -> tuple[JobRow, ...]:
         rows = states_of(tow.folder)
-        fresh = [r for r in rows if said.get(r.job.name) != str(r.progress.state)]
+        fresh = [r for r in rows if words.get(r.job.name) != str(r.progress.state)]
         for r in fresh:
-            said[r.job.name] = str(r.progress.state)
+            words[r.job.name] = str(r.progress.state)
         over = [r for r in fresh if r.progress.state.is_kept or r.progress.why]
         if any(not r.job.name.startswith("mesh/") for r in over):
             try:
@@ -412,10 +412,10 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
     cells = tables.states((row,), shown).rows[0]
     values = "".join(f", 1e3 {v}" for v in cells[3:5] if v)
     at = f" at {cells[2]}" if cells[2] else ""
-    said = f"{row.job.name}: {cells[1]}{at}{values} ({tables.counted(rows).partition(' finished')[0]})"
+    words = f"{row.job.name}: {cells[1]}{at}{values} ({tables.counted(rows).partition(' finished')[0]})"
     return "\n".join(
         [
-            *textwrap.wrap(said, 79, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False),
+            *textwrap.wrap(words, 79, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False),
             *(textwrap.wrap(row.progress.why, 75, initial_indent="  ", subsequent_indent="  ", break_long_words=False)),
         ]
     )
@@ -491,8 +491,8 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = F
         show.table(tables.six(tow.tank, made.six, made.unfitted))
         estimated = tables.is_estimated(made.six)
         checks = () if estimated else tables.symmetry_checks(made.study)
-        for said in (tables.covers(made.six), *checks):
-            show.sentence(said)
+        for words in (tables.covers(made.six), *checks):
+            show.sentence(words)
         show.sentence(tables.outcome(made.runs, estimated))
         for remark, names in tables.remarks(made.runs).items():
             show.sentence(f"  {remark} ({names})")

@@ -81,13 +81,13 @@ def _environment() -> Environment:
     from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     folder = files(__name__) / "templates"
-    made = Environment(
+    result = Environment(
         loader=FunctionLoader(lambda name: own_text(folder / name)),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         autoescape=False,
     )
-    made.filters["n"] = number
-    made.filters["p"] = lambda point: f"({' '.join(number(float(x)) for x in point)})"
-    return made
+    result.filters["n"] = number
+    result.filters["p"] = lambda point: f"({' '.join(number(float(x)) for x in point)})"
+    return result

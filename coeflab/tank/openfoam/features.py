@@ -115,8 +115,8 @@ def edges(body: TowedBody, angle: float = SHARP) -> Edges:
     sharp &= trusted[one] & trusted[other]
     ends = points[sides[first]]
     long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST * body.length
-    kept = (sharp | (patch[one] != patch[other])) & long
-    return Edges(ends[kept], np.stack([patch[one], patch[other]], axis=1)[kept], sharp[kept])
+    selected = (sharp | (patch[one] != patch[other])) & long
+    return Edges(ends[selected], np.stack([patch[one], patch[other]], axis=1)[selected], sharp[selected])
 
 
 def features(body: TowedBody, low: Array, high: Array) -> dict[str, Array]:

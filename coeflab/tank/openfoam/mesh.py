@@ -112,7 +112,7 @@ def mesh_job(
     twins = images(body, half, mirrored)
     contents = _files(body, sizes, half, twins, cores)
     planned = {"cells": round(cells), **_geometry(body, half)}
-    planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
+    planned["layers"] = {patch: result.count for patch, result in sizes.layers.items()}
     planned["images"] = {image: patch for pairs in twins.values() for patch, image in pairs}
     planned["coverage"] = {
         patch: options.coverage or (FOIL_COVERAGE if patch in foils(body) else HULL_COVERAGE) for patch in sizes.layers
@@ -159,7 +159,7 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, twins: Twins, cores: i
         "between_levels": BETWEEN_LEVELS,
         "most_cells": round(2.0 * MOST_CELLS),  # a tow is refused before, by the cells expected
         "cores": cores,
-        "thin_layers": any(made.count > THIN for made in sizes.layers.values()),
+        "thin_layers": any(result.count > THIN for result in sizes.layers.values()),
     }
     names = ("blockMeshDict", "snappyHexMeshDict", *WITHOUT_VALUES, *(("decomposeParDict",) if cores > 1 else ()))
     contents = {f"system/{name}": rendered(f"mesh/{name}", **values) for name in names}

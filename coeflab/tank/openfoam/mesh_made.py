@@ -93,30 +93,30 @@ def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
     """
     planned = read_record(job.folder / PLANNED, _PLANNED, "what was planned of a mesh", advice=ANEW)
     try:
-        made = _read(job.folder, planned)
+        result = _read(job.folder, planned)
     except FileNotFoundError as why:
         return (), f"no mesh was made: {Path(why.filename).relative_to(job.folder)} is missing"
     except (ValueError, IndexError) as why:
         return (), f"the mesh cannot be read: {why}"
-    write_all(job.folder, {MADE: (json.dumps(asdict(made), indent=1) + "\n").encode()})
-    return tuple(map(remark, findings(made, planned))), next(_faults(made), "")
+    write_all(job.folder, {MADE: (json.dumps(asdict(result), indent=1) + "\n").encode()})
+    return tuple(map(remark, findings(result, planned))), next(_faults(result), "")
 
 
 def mesh_made(folder: Path) -> MeshMade | None:
     """The mesh in a folder as its job left it; None before it is made."""
     if not (folder / MADE).is_file():
         return None
-    kept = read_record(folder / MADE, _MADE, "what a mesh became", advice=ANEW)
-    kept = {f.name: kept[f.name] for f in fields(MeshMade)}
-    tables = {name: MappingProxyType(kept[name]) for name in ("layers", "surface")}
-    return MeshMade(**(kept | tables | {"marked": tuple(kept["marked"])}))
+    selected = read_record(folder / MADE, _MADE, "what a mesh became", advice=ANEW)
+    selected = {f.name: selected[f.name] for f in fields(MeshMade)}
+    tables = {name: MappingProxyType(selected[name]) for name in ("layers", "surface")}
+    return MeshMade(**(selected | tables | {"marked": tuple(selected["marked"])}))
 
 
 def expected_cells(folder: Path) -> float:
     """Cells of the mesh in a folder: counted once it is made, expected before."""
-    made = mesh_made(folder)
-    if made:
-        return float(made.cells)
+    result = mesh_made(folder)
+    if result:
+        return float(result.cells)
     return float(read_record(folder / PLANNED, _PLANNED, "what was planned of a mesh", advice=ANEW)["cells"])
 
 

@@ -201,9 +201,9 @@ def mesh_sizes(
         levels=levels,
         regions=regions,
         layers={
-            name: made
+            name: result
             for name in patches
-            if (made := layers(body, name, base / 2 ** levels[name], keys.wall, keys.y_plus, conditions))
+            if (result := layers(body, name, base / 2 ** levels[name], keys.wall, keys.y_plus, conditions))
         },
         inside=low + (high - low) * np.array([0.9713, 0.0387, 0.0431]),
     )

@@ -134,9 +134,9 @@ def _refused(job: Job, future: Any) -> list[str]:
     import distributed
 
     try:
-        code, said = future.result()
+        code, words = future.result()
     except ModuleNotFoundError as why:
         raise CoeflabError(f"A Dask worker has no module {why.name}: install this release of coeflab there.") from None
     except distributed.KilledWorker:
         return [f"{job.name}: every worker that carried it out died."]
-    return [f"{job.name}: {said or 'it printed nothing'}"] if code == REFUSED else []
+    return [f"{job.name}: {words or 'it printed nothing'}"] if code == REFUSED else []

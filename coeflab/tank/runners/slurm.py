@@ -227,8 +227,8 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Slurm, look: Callable[
         Slurm does not answer any more.
     """
     _there()
-    kept = folder / ".runner" / LEFT
-    queue, keys = _left(kept, folder)
+    selected = folder / ".runner" / LEFT
+    queue, keys = _left(selected, folder)
     waiting = _taken_over(jobs, queue, keys)
     given: list[str] = []
     try:
@@ -238,7 +238,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Slurm, look: Callable[
             keys.update({job.name: job.key for job in group})
             given += [job.name for job in group]
             content = {name: {"id": number, "key": keys[name]} for name, number in queue.ids.items()}
-            write_atomically(kept, (json.dumps(content, indent=1) + "\n").encode())
+            write_atomically(selected, (json.dumps(content, indent=1) + "\n").encode())
         _watched(jobs, queue, look)
     except InputError:
         queue.cancel(given)
@@ -247,8 +247,8 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Slurm, look: Callable[
         if options.cancel:
             queue.cancel(job.name for job in jobs)
         else:
-            said = "the jobs go on in Slurm; `coeflab tow --continue` finds them, `scancel --name=%s` ends them."
-            logging.getLogger("coeflab").warning(said, queue.name)
+            words = "the jobs go on in Slurm; `coeflab tow --continue` finds them, `scancel --name=%s` ends them."
+            logging.getLogger("coeflab").warning(words, queue.name)
         raise
 
 
@@ -321,9 +321,9 @@ def _submitted(group: Sequence[Job], before: Sequence[str], name: str, folder: P
     try:
         given = executor.submit_array([Attempt(COMMAND, str(job.folder)) for job in group])
     except (submitit.core.utils.UncompletedJobError, submitit.core.utils.FailedSubmissionError) as why:
-        said = re.sub(r"sbatch: (error: )?", "", str(why)).strip().replace("\n", " ")
+        words = re.sub(r"sbatch: (error: )?", "", str(why)).strip().replace("\n", " ")
         raise InputError(
-            f"options that Slurm refuses ({said})", "options of this cluster", key="[runner.slurm]"
+            f"options that Slurm refuses ({words})", "options of this cluster", key="[runner.slurm]"
         ) from None
     return {job.name: one.job_id for job, one in zip(group, given, strict=True)}
 

@@ -126,7 +126,7 @@ def table(tank: Tank, body: TowedBody, folder: Path | None = None) -> RawTable: 
             complaints += [why, *why.others]
     if complaints:
         raise together(sorted(complaints, key=lambda c: c.line or 0))
-    made = tank.options.get("made_by") or "an outside solver"
+    result = tank.options.get("made_by") or "an outside solver"
     return RawTable(
         path=path,
         columns=tuple(columns),
@@ -134,7 +134,7 @@ def table(tank: Tank, body: TowedBody, folder: Path | None = None) -> RawTable: 
         lines=np.arange(len(cells), dtype=np.int64) + cells.first_line,
         row_labels=names,
         files=(path,),
-        stated={"source.how_obtained": Stated(str(made), f"{path.name}")},
+        stated={"source.how_obtained": Stated(str(result), f"{path.name}")},
     )
 
 

@@ -121,10 +121,10 @@ def installed() -> Installation:
             "openfoam.com or openfoam.org, then source its etc/bashrc. --solver external writes the runs for any other solver."
         )
         return Installation("", what)
-    said = subprocess.run(
+    words = subprocess.run(
         step("help", SOLVER, "-help").command, capture_output=True, text=True, timeout=60, check=False
     ).stdout
-    using, build = (re.search(rf"^{w}:\s*(.*)$", said, re.MULTILINE) for w in ("Using", "Build"))
+    using, build = (re.search(rf"^{w}:\s*(.*)$", words, re.MULTILINE) for w in ("Using", "Build"))
     number = re.search(r"v?\d[\w.]*", using[1]) if using is not None else None
     text = f"OpenFOAM {number[0]}" if number is not None else "OpenFOAM of unknown version"
     return Installation(f"{text}, {build[1].strip()}" if build is not None and build[1].strip() else text)
@@ -154,7 +154,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
             turned = (
                 towed(body.body, tank.reference_point, condition.controls) if any(condition.controls.values()) else body
             )
-            made = mesh_job(
+            result = mesh_job(
                 tank,
                 turned,
                 tank.grid(condition.grid),
@@ -165,7 +165,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
                 version,
                 domain,
             )
-            meshes[which] = turned, _with_zone(made)
+            meshes[which] = turned, _with_zone(result)
         turned, mesh = meshes[which]
         runs.append(_run(tank, turned, condition, given, mesh, folder / condition.name, version))
     return (*(mesh for _, mesh in meshes.values()), *runs)
@@ -221,10 +221,10 @@ def _run(
     viscosity = tank.conditions.viscosity
     if viscosity is None:
         raise InputError("no viscosity", "the kinematic viscosity of the water", column="conditions.viscosity")
-    said = condition.variant.get("turbulence", given.turbulence)
-    if said not in MODELS:
-        raise InputError(f'turbulence "{said}"', " or ".join(f'"{m}"' for m in MODELS), column="study.turbulence")
-    model, most = MODELS[said], int(float(condition.variant.get("iterations", given.iterations)))
+    words = condition.variant.get("turbulence", given.turbulence)
+    if words not in MODELS:
+        raise InputError(f'turbulence "{words}"', " or ".join(f'"{m}"' for m in MODELS), column="study.turbulence")
+    model, most = MODELS[words], int(float(condition.variant.get("iterations", given.iterations)))
     to_the_end = "iterations" in condition.variant
     speed = condition.speed or case.fastest(body, condition)
     fields = case.turbulent_fields(model, given.wall, speed, viscosity, given.intensity, given.viscosity_ratio)
@@ -238,7 +238,7 @@ def _run(
     steps += [step(SOLVER, SOLVER, cores=cores, watched=True)]
     usual = ITERATIONS_A_CELL_ACROSS * cells ** (1.0 / 3.0)
     speed_up = cores * PARALLEL ** np.log2(cores)
-    seconds = SECONDS_A_CELL * (1.0 - SHARE_OF_AN_EQUATION * (2 - EQUATIONS.get(said, 2)))
+    seconds = SECONDS_A_CELL * (1.0 - SHARE_OF_AN_EQUATION * (2 - EQUATIONS.get(words, 2)))
     return Job(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
@@ -281,9 +281,9 @@ def _towing(folder: Path) -> tuple[Half, tuple[str, ...], tuple[tuple[str, str],
     """Half, patches that the cut divides, patches and their images, length of the body, speed of its fastest point."""
     about = FoamCase(folder)
     towing = about.read("constant/towProperties")
-    said = [about.value(towing, n) for n in ("half", "divided", "mirrored", "length", "fastest")]
+    words = [about.value(towing, n) for n in ("half", "divided", "mirrored", "length", "fastest")]
     try:
-        half, divided, pairs, length, fastest = (v[0] for v in said if v is not None)
+        half, divided, pairs, length, fastest = (v[0] for v in words if v is not None)
         return Half(half.strip('"')), tuple(divided), tuple((a, b) for a, b in pairs), float(length), float(fastest)
     except (ValueError, AttributeError, TypeError):
         raise InputError(

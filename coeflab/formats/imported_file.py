@@ -86,7 +86,7 @@ class Stated:
     findings: tuple[Finding, ...] = ()
 
 
-def stated_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
+def imported_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
     """The parameter file; every coefficient has status ``stated`` and no interval.
 
     Raises
@@ -273,8 +273,8 @@ def stated_coefficients(
     from u|u|, v^2 and w^2. A product that is just the ideal fluid's is left to the added
     mass.
     """
-    kept = kept_matrix(matrix)
-    ideal = np.zeros((6, 6, 6)) if kept is None else products_once(ideal_quadratics(kept))
+    selected = kept_matrix(matrix)
+    ideal = np.zeros((6, 6, 6)) if selected is None else products_once(ideal_quadratics(selected))
     own = products_once(added)
     out: Coefficients = {}
     signed, absolute = form.signed.copy(), form.absolute.copy()
@@ -301,7 +301,7 @@ def stated_coefficients(
     apart = np.abs(total - ideal) > ROUNDING * np.maximum(np.abs(total), np.abs(ideal))
     for i, j, k in np.argwhere(apart):
         motion(COMPONENTS[i] + MOTIONS[j] + MOTIONS[k], total[i, j, k])
-    if kept is None:
+    if selected is None:
         for i, j in np.argwhere((matrix != 0.0) | (matrix.T != 0.0)):
             motion(f"{COMPONENTS[i]}{MOTIONS[j]}dot", 0.0 - matrix[i, j])
     return out
@@ -461,4 +461,4 @@ def link_file(
         findings=(),
     )
     stated = replace(stated, findings=tuple(findings))
-    return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+    return imported_file(stated, [InputFile(path.name, sha256_of(path))], citations)

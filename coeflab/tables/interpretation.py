@@ -37,7 +37,7 @@ from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
-from coeflab.tables.stated_settings import against_words, overruled
+from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
@@ -71,7 +71,7 @@ class Doubt:
 
 
 @dataclass(frozen=True, slots=True)
-class Understood:
+class Interpretation:
     """How far a file is understood.
 
     Attributes
@@ -109,10 +109,10 @@ class Understood:
     accepted: frozenset[str] = frozenset()
 
 
-def understood(
+def interpreted(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False,
     judged: Collection[str] | None = None,
-) -> Understood:  # fmt: skip
+) -> Interpretation:  # fmt: skip
     """What of a file is settled, what is open, and what its numbers show.
 
     Parameters
@@ -187,7 +187,7 @@ def understood(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    return Understood(
+    return Interpretation(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
 
@@ -238,7 +238,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     )  # fmt: skip
 
 
-def accepted_without_source(found: Understood, settings: Settings) -> tuple[str, ...]:
+def accepted_without_source(found: Interpretation, settings: Settings) -> tuple[str, ...]:
     """Keys, and columns with a guessed unit, that were accepted although neither a person nor the file states them."""
     keys = [k for k, one in settings.items() if one.assumed and (k not in OF_ARMS or k in found.about)]
     units = {o.text for o in found.proposals if o.assumed}
@@ -276,11 +276,11 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
-    said = read_column_map(offer.text.partition(" [")[0]) if offer.text else None
+    given = read_column_map(offer.text.partition(" [")[0]) if offer.text else None
     own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.lost}
-    if said is None or said.role not in ("force", "error") or said.name not in [own[c] for c in cut.lost]:
+    if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
         return offer
-    return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {said} of the whole is not known", certain=True)
+    return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
 
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
@@ -334,10 +334,10 @@ def _is_straight(columns: Sequence[Assigned]) -> bool:
 
 def _with_frame(raw: RawTable, settings: Settings) -> Settings:
     """The settings, with the axes that words over the table say where nobody has declared any."""
-    said = raw.stated.get("axes.frame")
-    if said is None or not said.offered or said.contradicted or "axes.frame" in settings:
+    given = raw.stated.get("axes.frame")
+    if given is None or not given.offered or given.contradicted or "axes.frame" in settings:
         return settings
-    return {**settings, "axes.frame": Setting(read_setting("axes.frame", said.value), said.place)}
+    return {**settings, "axes.frame": Setting(read_setting("axes.frame", given.value), given.place)}
 
 
 def _turned_by_words(
@@ -354,8 +354,8 @@ def _turned_by_words(
 
 
 def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:
-    said = replace(one.said, name=shows.instead, negative=False) if shows.instead else one.said
-    return Doubt(one.column, said, shows.text, turn_of(said, frame) if frame else "", bool(shows.instead))
+    words = replace(one.said, name=shows.instead, negative=False) if shows.instead else one.said
+    return Doubt(one.column, words, shows.text, turn_of(words, frame) if frame else "", bool(shows.instead))
 
 
 def _against(shows: Evidence, settings: Settings) -> Evidence:

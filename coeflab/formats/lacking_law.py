@@ -72,7 +72,7 @@ def unstated(parameters: ParameterFile, names: dict[str, str] | None = None) -> 
         "mass.inertia_matrix": mass is None or mass.inertia_matrix is None,
         "hydrostatics": parameters.hydrostatics is None,
     }
-    said = [
+    words = [
         f"{key} ({names[key]})" if names and key in names else key for key, is_lacking in lacking.items() if is_lacking
     ]
-    return (f"for a simulation in six degrees of freedom the file lacks {listed(said)}",) if said else ()
+    return (f"for a simulation in six degrees of freedom the file lacks {listed(words)}",) if words else ()

@@ -9,27 +9,27 @@ from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.form import Line, argument, column_lines, form, is_shown, question_line, setting_line, with_reynolds
+from coeflab.tables.interpretation import Interpretation, interpreted
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import Question
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import Setting, Settings, read_in
-from coeflab.tables.stated_settings import against_words
-from coeflab.tables.understood import Understood, understood
+from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.words.points import POINT_FROM, POINT_OF
 
 
-def understood_together(
+def interpreted_together(
     parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool = False
-) -> tuple[Understood, ...]:
+) -> tuple[Interpretation, ...]:
     """`understood` of every part, by what is said of all and of it."""
     out = []
     for part in parts:
-        said = own(columns, part, parts)
+        named = own(columns, part, parts)
         if part.name:
             known = {n for c in part.raw.columns for n in (c.name, *known_as(c))}
-            said = {name: one for name, one in said.items() if name in known}
-        found = understood(part.raw, said, own(settings, part, parts), accept)
+            named = {name: one for name, one in named.items() if name in known}
+        found = interpreted(part.raw, named, own(settings, part, parts), accept)
         if part.name:
             found = replace(found, shows=tuple(_placed(part.name, e) for e in found.shows))
         out.append(found)
@@ -42,7 +42,7 @@ def _placed(name: str, shows: Evidence) -> Evidence:
 
 
 def questions_together(
-    parts: Sequence[Part], founds: Sequence[Understood], whole: str = ""
+    parts: Sequence[Part], founds: Sequence[Interpretation], whole: str = ""
 ) -> list[tuple[str, Question]]:
     """What is not said yet: one question a key where the parts agree, else one a part, or one that names what differs.
 
@@ -94,7 +94,7 @@ def _points_differ(parts: Sequence[Part]) -> bool:
 
 def settled_together(
     parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool, whole: str = ""
-) -> tuple[tuple[Understood, ...], dict[str, Setting]]:
+) -> tuple[tuple[Interpretation, ...], dict[str, Setting]]:
     """What follows when proposals are accepted, one from the other until nothing more does; else of harmless ones alone.
 
     Parameters
@@ -108,7 +108,7 @@ def settled_together(
     """
     out = dict(settings)
     while True:
-        founds = understood_together(parts, columns, out, accept)
+        founds = interpreted_together(parts, columns, out, accept)
         fresh: dict[str, Setting] = {}
         for key, q in questions_together(parts, founds, whole):
             if q.default and (accept or q.harmless):
@@ -119,19 +119,19 @@ def settled_together(
         out |= fresh
 
 
-def complaints_of(founds: Sequence[Understood]) -> list[InputError]:
+def complaints_of(founds: Sequence[Interpretation]) -> list[InputError]:
     """Those of all parts."""
     return [one for found in founds for one in found.complaints]
 
 
-def is_pending(parts: Sequence[Part], founds: Sequence[Understood]) -> bool:
+def is_pending(parts: Sequence[Part], founds: Sequence[Interpretation]) -> bool:
     """Whether something is open or waits to be accepted."""
     waits = any(found.doubts or found.open for found in founds)
     return waits or any(not q.harmless for _, q in questions_together(parts, founds))
 
 
 def form_together(
-    parts: Sequence[Part], founds: Sequence[Understood], settings: Settings, read_by: Sequence[Line] = (),
+    parts: Sequence[Part], founds: Sequence[Interpretation], settings: Settings, read_by: Sequence[Line] = (),
     numbers: dict[str, int] | None = None, whole: str = "",
 ) -> tuple[Line, ...]:  # fmt: skip
     """All lines of the form, open ones first: one for what the parts share.
@@ -166,7 +166,7 @@ def form_together(
     return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
 
 
-def _columns(parts: Sequence[Part], founds: Sequence[Understood]) -> Iterator[Line]:
+def _columns(parts: Sequence[Part], founds: Sequence[Interpretation]) -> Iterator[Line]:
     """One line for columns of one name that are the same in all parts, else one a part."""
     have: dict[str, list[tuple[Part, Line]]] = {}
     for part, found in zip(parts, founds, strict=True):
@@ -181,8 +181,8 @@ def _columns(parts: Sequence[Part], founds: Sequence[Understood]) -> Iterator[Li
             yield replace(first, why=f"{head}{where};{span}".rstrip(";"))
             continue
         for part, line in lines:
-            said = line.argument.replace(f"{name}=", f"{part.name}/{name}=", 1)
-            yield replace(line, key=f"{part.name}/{name}", argument=said)
+            words = line.argument.replace(f"{name}=", f"{part.name}/{name}=", 1)
+            yield replace(line, key=f"{part.name}/{name}", argument=words)
 
 
 def columns_by_name(parts: Sequence[Part]) -> dict[str, tuple[str, tuple[tuple[RawTable, RawColumn], ...]]]:

@@ -36,11 +36,11 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     A reference point is left out: a file counts it in its own axes from its own origin.
     """
     out = {}
-    for key, said in raw.stated.items():
+    for key, given in raw.stated.items():
         section, _, name = key.partition(".")
-        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF) and not said.offered:
-            plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
-            out[key] = Setting(plain, f"stated: {said.place}")
+        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF) and not given.offered:
+            plain = list(map(float, given.value)) if isinstance(given.value, tuple) else given.value
+            out[key] = Setting(plain, f"stated: {given.place}")
     return out
 
 
@@ -69,9 +69,9 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
                 if isinstance(stated.value, tuple)
                 else str(stated.value)
             )
-            said = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
+            words = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
             out.append(InputError(
-                f"{key} = {said}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
+                f"{key} = {words}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
                 file=raw.path, column=key, advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
             ))  # fmt: skip
     return out
@@ -131,8 +131,8 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
         else:
             continue
         if not same:
-            said = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
-            out.append((POINT_OF if key == POINT_FROM else key, said, words.place))
+            phrases = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
+            out.append((POINT_OF if key == POINT_FROM else key, phrases, words.place))
     return out
 
 
@@ -141,10 +141,10 @@ def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float |
 
     Shares of the length have no x while it is open: ``-0.45 L from nose``. Empty texts where no words give a number.
     """
-    said = raw.stated.get(POINT_FROM)
-    if said is None:
+    given = raw.stated.get(POINT_FROM)
+    if given is None:
         return "", "", None
-    number, unit, named = str(said.value).split()
+    number, unit, named = str(given.value).split()
     datum = named.rstrip("?")
     length = settings.get("scaling.length") or raw.stated.get("scaling.length")
     known = unit == "m" or (length is not None and not getattr(length, "contradicted", ""))
@@ -163,17 +163,17 @@ def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | No
         x, y, z from the datum; or what it will be once the reference point or the datum is known. Both empty where open.
     line : str
     """
-    said = raw.stated.get(ARM_FROM)
-    if said is None:
+    given = raw.stated.get(ARM_FROM)
+    if given is None:
         return None
-    if said.contradicted or not said.value:
-        return "", "", said.contradicted or said.place
-    number, unit, point = str(said.value).split()
+    if given.contradicted or not given.value:
+        return "", "", given.contradicted or given.place
+    number, unit, point = str(given.value).split()
     length = settings.get("scaling.length") or raw.stated.get("scaling.length")
     by = 1.0
     if unit == "L":
         if length is None or (not isinstance(length, Setting) and length.contradicted):
-            return "", "", said.place
+            return "", "", given.place
         by = quantity(length.value, "length")
     x = float(number) * by
     known, datum = settings.get(POINT_OF), settings.get("axes.datum")
@@ -184,12 +184,12 @@ def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | No
                 f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of the reference point"
                 if x
                 else "the reference point",
-                said.place,
+                given.place,
             )
-        return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", said.place
+        return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", given.place
     if datum is None:
-        return "", f"{x:.12g} from {point}" if x else point, said.place
-    return (f"{x:.12g}, 0, 0" if of_datum(str(datum.value), point) else ""), "", said.place
+        return "", f"{x:.12g} from {point}" if x else point, given.place
+    return (f"{x:.12g}, 0, 0" if of_datum(str(datum.value), point) else ""), "", given.place
 
 
 def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
