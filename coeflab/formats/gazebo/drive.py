@@ -177,8 +177,7 @@ def driven_force(
     for plugin in root.iter("plugin"):
         if plugin.get("name") == LIFT_DRAG["name"]:
             foil = read_lift_drag(plugin)
-            turned = np.broadcast_to(angles.get(foil.joint, 0.0), len(nu)).tolist()
-            out += np.array([at_hull(foil, HERE, None, row * FLU, a) * FLU for row, a in zip(nu, turned, strict=True)])
+            out += at_hull(foil, HERE, None, nu * FLU, angles.get(foil.joint, 0.0)) * FLU
         elif plugin.get("name") == THRUSTER["name"]:
             joint = next(j for j in found.joints if j.name == plugin.findtext("joint_name"))
             low, high = (float(plugin.findtext(t) or "nan") for t in ("min_thrust_cmd", "max_thrust_cmd"))

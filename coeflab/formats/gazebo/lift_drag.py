@@ -52,48 +52,45 @@ class LiftDrag:
         for name in ("cp", "forward", "upward"):
             object.__setattr__(self, name, locked(getattr(self, name)))
 
-    def wrench(self, velocity: Array, rates: Array, angle: float = 0.0) -> Array:
-        """Force and moment (6,) about the link's origin in the link's frame, for its velocity (3,) and rates (3,) there.
+    def wrench(self, velocity: Array, rates: Array, angle: Array | float = 0.0) -> Array:
+        """Force and moment (..., 6) about the link's origin in the link's frame, for its velocity and rates (..., 3) there.
 
-        ``angle`` is that of the control joint, which adds to the lift.
+        ``angle`` (...) is that of the control joint, which adds to the lift.
         """
         n = self.numbers
         v = velocity + np.cross(rates, self.cp)
-        if np.linalg.norm(v) <= SLOWEST or (not self.reversible and self.forward @ v <= 0.0):
-            return np.zeros(6)
-        upward = self.upward
-        if self.radial:
-            upward = _unit(np.cross(self.forward, np.cross(self.forward, _unit(v))))
+        along = _unit(v)
+        at_rest = (np.linalg.norm(v, axis=-1) <= SLOWEST) | (not self.reversible and v @ self.forward <= 0.0)
+        upward = _unit(np.cross(self.forward, np.cross(self.forward, along))) if self.radial else self.upward
         span = _unit(np.cross(self.forward, upward))
-        cos2 = 1.0 - float(np.clip(span @ _unit(v), -1.0, 1.0)) ** 2
-        plane = v - (v @ span) * span
+        cos2 = 1.0 - np.clip(np.sum(span * along, axis=-1), -1.0, 1.0) ** 2
+        plane = v - np.sum(v * span, axis=-1, keepdims=True) * span
         lift = _unit(np.cross(span, plane))
-        alpha = (
-            math.acos(float(np.clip(lift @ upward, -1.0, 1.0))) * (1.0 if lift @ self.forward >= 0.0 else -1.0)
-            + n["a0"]
-        )
-        while abs(alpha) > 0.5 * math.pi:
-            alpha -= math.copysign(math.pi, alpha)
-        pressure = 0.5 * n["air_density"] * float(plane @ plane) * n["area"]
-        cl = self._coefficient("cla", alpha) * cos2 + (n["control_joint_rad_to_cl"] * angle if self.joint else 0.0)
-        cd = abs(self._coefficient("cda", alpha, floor=False) * cos2)
-        cm = self._coefficient("cma", alpha) * cos2 + (n["cm_delta"] * angle if self.joint else 0.0)
-        force = pressure * (cl * lift - cd * _unit(plane))
-        return np.concatenate([force, pressure * cm * span + np.cross(self.cp, force)])
+        side = np.where(lift @ self.forward >= 0.0, 1.0, -1.0)
+        alpha = np.arccos(np.clip(np.sum(lift * upward, axis=-1), -1.0, 1.0)) * side + n["a0"]
+        while np.any(far := np.abs(alpha) > 0.5 * math.pi):
+            alpha = np.where(far, alpha - np.copysign(math.pi, alpha), alpha)
+        pressure = 0.5 * n["air_density"] * np.sum(plane * plane, axis=-1) * n["area"]
+        turned = angle if self.joint else 0.0
+        cl = self._coefficient("cla", alpha) * cos2 + n["control_joint_rad_to_cl"] * turned
+        cd = np.abs(self._coefficient("cda", alpha, floor=False) * cos2)
+        cm = self._coefficient("cma", alpha) * cos2 + n["cm_delta"] * turned
+        force = pressure[..., None] * (cl[..., None] * lift - cd[..., None] * _unit(plane))
+        moment = (pressure * cm)[..., None] * span + np.cross(self.cp, force)
+        return np.where(at_rest[..., None], 0.0, np.concatenate([force, moment], axis=-1))
 
-    def _coefficient(self, name: str, alpha: float, *, floor: bool = True) -> float:
+    def _coefficient(self, name: str, alpha: Array, *, floor: bool = True) -> Array:
         """Straight to the stall, then by the other slope; lift and moment do not change sign there."""
         n = self.numbers
         slope, stall, beyond = n[name], n["alpha_stall"], n[f"{name}_stall"]
-        if abs(alpha) <= stall:
-            return slope * alpha
-        value = slope * stall + beyond * (abs(alpha) - stall)
-        return math.copysign(max(0.0, value), alpha) if floor else value
+        value = slope * stall + beyond * (np.abs(alpha) - stall)
+        stalled = np.copysign(np.maximum(0.0, value), alpha) if floor else value
+        return np.asarray(np.where(np.abs(alpha) <= stall, slope * alpha, stalled))
 
 
 def _unit(a: Array) -> Array:
-    size = float(np.linalg.norm(a))
-    return a / size if size > 0.0 else a
+    size = np.linalg.norm(a, axis=-1, keepdims=True)
+    return np.asarray(np.divide(a, size, out=np.array(a), where=size > 0.0))
 
 
 def read_lift_drag(plugin: Element, file: Path | str | None = None) -> LiftDrag:
@@ -128,8 +125,8 @@ def read_lift_drag(plugin: Element, file: Path | str | None = None) -> LiftDrag:
     )
 
 
-def at_hull(foil: LiftDrag, link: Pose, axis: Array | None, nu: Array, angle: float = 0.0) -> Array:
-    """Force and moment (6,) of a foil about the hull's origin in the hull's frame.
+def at_hull(foil: LiftDrag, link: Pose, axis: Array | None, nu: Array, angle: Array | float = 0.0) -> Array:
+    """Force and moment (..., 6) of a foil about the hull's origin in the hull's frame.
 
     Parameters
     ----------
@@ -138,13 +135,13 @@ def at_hull(foil: LiftDrag, link: Pose, axis: Array | None, nu: Array, angle: fl
         Of its link in the hull's frame at a joint angle of zero.
     axis : (3,) array or None
         Of the joint that turns the link about its origin, in the hull's frame; None: fixed.
-    nu : (6,) array
+    nu : (..., 6) array
         Velocity of the hull's origin, in the hull's frame.
-    angle : float
+    angle : float, or (...) array where there is no axis
         Of that joint, rad; of the control joint where the foil names one.
     """
-    turn = link.turn if axis is None else turned_about(axis, angle) @ link.turn
-    velocity = nu[:3] + np.cross(nu[3:], link.place)
-    own = foil.wrench(turn.T @ velocity, turn.T @ nu[3:], angle)
-    force, moment = turn @ own[:3], turn @ own[3:]
-    return np.concatenate([force, moment + np.cross(link.place, force)])
+    turn = link.turn if axis is None else turned_about(axis, float(angle)) @ link.turn
+    velocity = nu[..., :3] + np.cross(nu[..., 3:], link.place)
+    own = foil.wrench(velocity @ turn, nu[..., 3:] @ turn, angle)
+    force, moment = own[..., :3] @ turn.T, own[..., 3:] @ turn.T
+    return np.concatenate([force, moment + np.cross(link.place, force)], axis=-1)
