@@ -68,7 +68,7 @@ def nouns():
     return {
         "study": (study, "<Study small: ", "<svg"),
         "answer": (answer(study), "<Answer ", "<svg"),
-        "coefficient": (fit.coefficients["Yv"], "<Coefficient Yv' = -0.02981 +- 0.00013 (0.4 %), ", "<svg"),
+        "coefficient": (fit.coefficients["Yv"], "<Coefficient Yv' = -0.02981 +- 0.00032 (1.1 %), ", "<svg"),
         "set": (fit.coefficients, "<CoefficientSet body of ", "<svg"),
         "fit": (fit, "<FitResult slope_at_origin of ", "<svg"),
         "models": (result, "<FitResult polynomial of suboff_roddy_2: 1 models", "<svg"),
@@ -81,7 +81,7 @@ def nouns():
         "simulation": (run, "<Simulation straight_run of ", "<svg"),
         "figure": (answer(study).slope, "Figure(", "<svg"),
         "check": (checks[1], "<Check fail, signs: ", "axes"),
-        "budget": (study.budgets[0], "<Budget Yv' = -0.02981 +- 0.00013 by 2 parts, most of it ", "<svg"),
+        "budget": (study.budgets[0], "<Budget Yv' = -0.02981 +- 0.00032 by 2 parts, most of it ", "<svg"),
         "coefficients": (study.coefficients, "<Several ", "<svg"),
         "tables": (study.tables, "<Several 1 ForceTable: ", "<svg"),
         "checks": (checks, "<Several 2 Check: symmetry, signs>", "below zero"),

@@ -156,7 +156,7 @@ def _joint(model: Element, name: str, parent: str, child: str, axis: Array) -> E
 
 
 def driven_force(
-    root: Element, hull: str, nu: Array, angles: Mapping[str, float], thrusts: Mapping[str, float]
+    root: Element, hull: str, nu: Array, angles: Mapping[str, float | Array], thrusts: Mapping[str, float]
 ) -> Array:
     """Force and moment (n, 6) of the written fins and propellers about the hull's origin, FRD, by the sources of gz-sim.
 
@@ -167,7 +167,8 @@ def driven_force(
     hull : str
     nu : (n, 6) array
         FRD.
-    angles : mapping of joint to rad
+    angles : mapping of joint to float or (n,) array
+        rad.
     thrusts : mapping of joint to N
         As commanded: limited as Thruster.cc limits it.
     """
@@ -176,8 +177,8 @@ def driven_force(
     for plugin in root.iter("plugin"):
         if plugin.get("name") == LIFT_DRAG["name"]:
             foil = read_lift_drag(plugin)
-            angle = angles.get(foil.joint, 0.0)
-            out += np.array([at_hull(foil, HERE, None, row * FLU, angle) * FLU for row in nu])
+            turned = np.broadcast_to(angles.get(foil.joint, 0.0), len(nu)).tolist()
+            out += np.array([at_hull(foil, HERE, None, row * FLU, a) * FLU for row, a in zip(nu, turned, strict=True)])
         elif plugin.get("name") == THRUSTER["name"]:
             joint = next(j for j in found.joints if j.name == plugin.findtext("joint_name"))
             low, high = (float(plugin.findtext(t) or "nan") for t in ("min_thrust_cmd", "max_thrust_cmd"))

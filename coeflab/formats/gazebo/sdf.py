@@ -203,11 +203,8 @@ def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:
 def sdf_steered_force(files: Mapping[str, bytes], nu: Array, controls: Array) -> Array:
     """The same with the fins at angles dr ds db (n, 3)."""
     root = parse_xml(next(iter(files.values())).decode())
-    fins_alone = [
-        driven_force(root, LINK, nu[i : i + 1], dict(zip(CONTROLS, controls[i].tolist(), strict=True)), {})[0]
-        for i in range(len(nu))
-    ]
-    return np.asarray(sdf_force(files, nu) + np.array(fins_alone).reshape(nu.shape))
+    fins_alone = driven_force(root, LINK, nu, dict(zip(CONTROLS, controls.T, strict=True)), {})
+    return np.asarray(sdf_force(files, nu) + fins_alone)
 
 
 def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
