@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 LOSS = ".loss.txt"
 EXAMPLE = 'coeflab vehicle hull.stl --unit mm --axes FLU --mass "46 kg" --to xdyn --accept-loss'
 
+MERGED = "merged"  # the folder of what a campaign replaces
+
 
 def command(
     body: str = typer.Argument(
@@ -90,7 +92,7 @@ def command(
     from coeflab.cli.export import named
     from coeflab.cli.merge import carried_out
     from coeflab.core.files import located, write_all
-    from coeflab.formats.exporting import refuse_unknown
+    from coeflab.formats.exporting import exports_of, placed, refuse_unknown
     from coeflab.report.rendered import rendered
     from coeflab.study.checking import checked
     from coeflab.study.estimated_vehicle import asked, completed_by_hand, from_shape, subject
@@ -107,16 +109,21 @@ def command(
             "method": method if method != "all" else "", "wall": wall, "distance": distance,
         }, {"repair": repair, "fill": fill, "sheets": sheets, "accept-loss": accept_loss}, named(to)))  # fmt: skip
         refuse_unknown(plan.exports)
-        study = checked(from_shape(plan, found, stated, say, wall, distances), say)
+        of_estimates = replace(plan, exports=()) if campaign else plan  # what a campaign replaces goes to no simulator
+        study = checked(from_shape(of_estimates, found, stated, say, wall, distances), say)
     folder = out if out is not None else Path("reports") / plan.name
-    merged = None
+    merged, exported = None, {}
     if campaign:
         with show.progress(json) as say:
             say(f"fitting {campaign}")
-            merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / "merged", say)
+            merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / MERGED, say)
+            exports, not_made = exports_of(plan.exports, [merged.made.parameters], say)
+            exported = {f"{MERGED}/{place}": content for place, content in placed(exports).items()}
     show.step("drawing the report", json)
     draft, selected = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
-    files = rendered(study) | draft
+    files = rendered(study) | exported | draft
+    if merged is not None:
+        study = replace(study, exports=exports, refused=not_made)
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
     if json:
@@ -126,6 +133,7 @@ def command(
         _print(study, folder, sorted(files), changed, merged is None, _on_draft(folder, draft, selected))
         if merged is not None:
             merged.print()
+            _exported(study, folder / MERGED)
     for refused in study.refused:
         why = (
             str(refused.why)
@@ -163,7 +171,8 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bo
     if on_draft:
         show.marked("draft", on_draft)
     show.findings(study.checks)
-    show.written(folder, names, changed, for_simulators(study))
+    place = "" if alone else f"{MERGED}/"
+    show.written(folder, names, changed, [f"{place}{name}" for name in for_simulators(study)])
     if not alone:
         return
     name = next(iter(study.parameter_files))
@@ -197,7 +206,8 @@ def summarise(study: Study, folder: Path) -> None:
     show.table(tables.particulars_table(shape, parameters.added_mass))
     if parameters.added_mass is not None and parameters.added_mass.walls:
         show.table(near_walls_kept(parameters.added_mass))
-    _exported(study, folder)
+    if all(e.parameters in study.parameter_files for e in study.exports):
+        _exported(study, folder)
     for line in shape.missing:
         show.marked("lacks", line)
 

@@ -162,6 +162,11 @@ def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
             raise PluginError(f"{p.file}, {shown(p.key('to'))}: {why}" if p.file else str(why)) from None
 
 
+def placed(exports: Iterable[Export]) -> dict[str, bytes]:
+    """The files of exports beside their parameter files, by place."""
+    return {f"{e.folder}/{name}" if e.folder else name: content for e in exports for name, content in e.files.items()}
+
+
 def exports_of(
     planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
 ) -> tuple[tuple[Export, ...], tuple[Refused, ...]]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from coeflab.core.machine import one_thread
-from coeflab.formats.exporting import parameter_files_rendered
+from coeflab.formats.exporting import parameter_files_rendered, placed
 from coeflab.report.content import document
 from coeflab.report.document import Document, Section, digest_of
 from coeflab.report.formats import REPORTERS
@@ -28,11 +28,7 @@ def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, byte
         with REPORTERS.guarded(name):
             files.update(REPORTERS.load(name).render(report))
     files.update(parameter_files_rendered(study.parameter_files.values()))
-    for result in study.exports:
-        files.update(
-            {f"{result.folder}/{name}" if result.folder else name: content for name, content in result.files.items()}
-        )
-    return files
+    return files | placed(study.exports)
 
 
 @one_thread()

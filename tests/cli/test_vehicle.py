@@ -82,7 +82,7 @@ def test_a_campaign_replaces_what_it_gives(coeflab: Run, made: tuple[Path, str],
 def test_simplified_mesh_and_table_make_a_vehicle_that_moves_without_a_hand_edit(coeflab: Run, tmp_path: Path) -> None:
     """One command: estimates, a fitted campaign in their place, a parameter file, first manoeuvres, a report."""
     done = coeflab("vehicle", "huuv_mesh_simplified", "--speed", "1 m/s", "--method", "primitives", "--campaign",
-                   "huuv_synthetic", "--out", "made", "--json")  # fmt: skip
+                   "huuv_synthetic", "--to", "mujoco", "--accept-loss", "--out", "made", "--json")  # fmt: skip
     assert done.returncode == 0, done.stderr
     merged = json.loads(done.stdout)["merged"]
     by_symbol = {r["symbol"]: r["after"] for r in merged["replaced"]}
@@ -90,7 +90,14 @@ def test_simplified_mesh_and_table_make_a_vehicle_that_moves_without_a_hand_edit
     assert {"Yr'", "Nr'", "Mq'"} <= set(merged["estimates"])
     folder = tmp_path / "made" / "merged"
     assert (folder / "report.html").is_file()
-    moved = coeflab("simulate", folder / "huuv_mesh_simplified_merged.parameters.json", "--manoeuvre", "straight_run")
+    file = folder / "huuv_mesh_simplified_merged.parameters.json"
+    exported = coeflab("export", file, "--to", "mujoco", "--accept-loss", "--out", "again")
+    assert exported.returncode == 0, exported.stderr
+    (model,) = (tmp_path / "again").rglob("*.xml")  # of the merged file, not of the estimates
+    (made,) = (tmp_path / "made").rglob("*.xml")
+    assert made.parent.parent == folder
+    assert made.read_bytes() == model.read_bytes()
+    moved = coeflab("simulate", file, "--manoeuvre", "straight_run")
     assert moved.returncode == 0, moved.stderr
 
 
