@@ -230,7 +230,7 @@ def reach(polygon: Polygon, origin: Array, way: Array) -> float:
     for ring in polygons(polygon):
         offset = ring - origin
         s, t = offset @ way, offset @ across
-        s1, t1 = np.roll(s, -1), np.roll(t, -1)
+        s1, t1 = np.concatenate((s[1:], s[:1])), np.concatenate((t[1:], t[:1]))  # many times faster than roll
         hit = (t <= 0.0) != (t1 <= 0.0)
         at = s[hit] + (s1 - s)[hit] * t[hit] / (t - t1)[hit]
         most = max(most, float(at.max(initial=0.0)))
@@ -243,7 +243,7 @@ def _crossed(polygon: Polygon, origin: Array, way: Array, level: float) -> Array
     for ring in polygons(polygon):
         offset = ring - origin
         s, t = offset @ way - level, offset @ across
-        s1, t1 = np.roll(s, -1), np.roll(t, -1)
+        s1, t1 = np.concatenate((s[1:], s[:1])), np.concatenate((t[1:], t[:1]))  # many times faster than roll
         hit = (s <= 0.0) != (s1 <= 0.0)
         found.append(t[hit] + (t1 - t)[hit] * s[hit] / (s - s1)[hit])
     return np.concatenate(found)
