@@ -236,7 +236,10 @@ def test_no_prime_factor_is_written_by_hand() -> None:
     known = {name: lines for name, lines in found.items() if name in NO_PRIMES}
     new = {name: lines for name, lines in found.items() if lines and name not in NO_PRIMES}
     assert not new, "use Scaling.unit, or say in NO_PRIMES why it is no unit of the prime system"
-    assert {name: len(lines) for name, lines in known.items()} == {name: n for name, (n, _) in NO_PRIMES.items()}
+    here = {
+        name: n for name, (n, _) in NO_PRIMES.items() if (PACKAGE / name).parent.exists()
+    }  # the core may stand alone
+    assert {name: len(lines) for name, lines in known.items()} == here
 
 
 @pytest.mark.parametrize(
