@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from coeflab.core.errors import InputError, shown
 
@@ -28,6 +29,7 @@ FLOW_ANGLES = {
 PORT_STARBOARD = frozenset("YKNvpr") | {"dr"}
 
 LONGEST = 5  # factors; no model has more
+SEEN = 1 << 12  # symbols that are read once
 _FACTOR = r"(?:dr|ds|db|[uvwpqr]dot|[uvwpqr])"
 _TOKEN = re.compile(rf"\|(?P<absolute>{_FACTOR})\||(?P<signed>{_FACTOR})")
 
@@ -71,6 +73,7 @@ class Derivative:
         return sum(name in PORT_STARBOARD for name in flips) % 2 == 1
 
 
+@lru_cache(SEEN)
 def read_factors(subscript: str) -> tuple[tuple[str, bool], ...] | None:
     """The variables of a subscript such as ``v|r|`` or ``rdot``, in order, each with whether it stands between bars.
 
@@ -86,6 +89,7 @@ def read_factors(subscript: str) -> tuple[tuple[str, bool], ...] | None:
     return tuple(out) if subscript else None
 
 
+@lru_cache(SEEN)
 def derivative(symbol: str) -> Derivative:
     """Read a SNAME symbol, with or without its prime.
 
