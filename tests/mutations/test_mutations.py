@@ -29,13 +29,11 @@ OPEN = {
         for name in (
             "Zds = -0.005603", "Ndr = -0.002217", "Kv = -0.000019", "Kv = -0.000584", "Zwdot = -0.014529", "Mwdot = -0.000561",
             "Zqdot = -0.000633", "Mqdot = -0.000860", "Yvdot = -0.016186", "Nvdot = 0.000396", "Yrdot = 0.000398",
-            "Nrdot = -0.000897", "Nvdot = 0.000202", "Yrdot = 0.000060", "Nrdot = -0.000676", "Ydr = 0.005929",
+            "Nrdot = -0.000897", "Nvdot = 0.000202", "Yrdot = 0.000060", "Nrdot = -0.000676", "Ydr = 0.005929", "Mds = -0.002409",
         )
     },
     "remus": set(),
 }  # fmt: skip
-# It moves by more than U95, from one side of our slope to the other, and stays within it.
-ACROSS = {"Zds = -0.005603 +5 %"}
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +86,7 @@ def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, 
 def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base: Callable[[str], Verdicts]) -> None:
     outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every_constant(name)}
     assert {what for what, o in outcomes.items() if not o.by} == OPEN[name]
-    assert {what for what in OPEN[name] if outcomes[what].share >= 1.0} == (ACROSS if name == "suboff" else set())
+    assert not {what for what in OPEN[name] if outcomes[what].share >= 1.0}
     assert 4 * len(OPEN[name]) <= len(outcomes) + 2
 
 
