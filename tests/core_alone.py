@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 COPIED = ("coeflab", "cfd_data", "docs", "geometry", "reports", "tests", "pyproject.toml")
-TESTED = ("law", "fits", "formats", "motion", "vehicle")
+TESTED = ("law", "formats", "motion", "vehicle")
 
 
 def applications(root: Path) -> set[str]:
