@@ -71,7 +71,7 @@ def command(
         "--to",
         metavar="TARGET",
         autocompletion=complete.exporters,
-        help="Export to it; several with commas, or repeatable.",
+        help="Export to it; several with commas, or repeatable; of a campaign, the merged file.",
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Export although a target cannot hold everything."),
     campaign: str = typer.Option(

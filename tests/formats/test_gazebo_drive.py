@@ -13,8 +13,9 @@ import pytest
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.exporting import export
 from coeflab.formats.gazebo import write as gazebo
-from coeflab.formats.gazebo.assembly import LINK
+from coeflab.formats.gazebo.assembly import HERE, LINK
 from coeflab.formats.gazebo.drive import driven_force, named
+from coeflab.formats.gazebo.lift_drag import DEFAULTS, LiftDrag, at_hull
 from coeflab.formats.gazebo_plugin import write as gazebo_plugin
 from coeflab.formats.model_files import read_model_file
 from coeflab.vehicle.own_numbers import typed_file
@@ -178,3 +179,29 @@ def test_a_zigzag_of_the_written_model_is_that_of_simulate() -> None:
         heading.append(state[3])
     largest = np.max(np.abs(done.heading[: len(time)]))
     assert np.max(np.abs(np.array(heading) - done.heading[: len(time)])) < 0.01 * largest
+
+
+@pytest.mark.parametrize("reversible", [False, True])
+@pytest.mark.parametrize("radial", [False, True])
+def test_the_force_of_many_states_is_that_of_each(reversible: bool, radial: bool) -> None:
+    """At rest, ahead and astern, below and beyond the stall."""
+    numbers = DEFAULTS | {
+        "cla": 4.0,
+        "cda": 0.3,
+        "cma": 0.2,
+        "cla_stall": -0.5,
+        "alpha_stall": 0.4,
+        "a0": 0.1,
+        "cm_delta": 0.1,
+    }
+    axes = np.array([-1.0, 0.2, 0.1]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    foil = LiftDrag("fin", "dr", numbers, *axes, reversible, radial)
+    rng = np.random.default_rng(2)
+    nu, angles = rng.standard_normal((40, 6)), rng.uniform(-0.3, 0.3, 40)
+    nu[0] = 0.0
+    together = at_hull(foil, HERE, None, nu, angles)
+    alone = [at_hull(foil, HERE, None, row, float(a)) for row, a in zip(nu, angles, strict=True)]
+    np.testing.assert_allclose(together, alone, rtol=1e-12, atol=1e-12)
+    assert not together[0].any()
+    ahead = nu[1:, 0] + np.cross(nu[1:, 3:], foil.cp)[:, 0] > 0.0
+    assert np.array_equal(together[1:].any(axis=1), np.ones(39, dtype=bool) if reversible else ahead)
