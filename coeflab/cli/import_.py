@@ -226,7 +226,12 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        notes += [*tables.resistances(study), tables.primed_about(study), *tables.lost_by_move(study)]
+        notes += [
+            *tables.resistances(study),
+            tables.primed_about(study),
+            *tables.lost_by_move(study),
+            *tables.of_grids(study),
+        ]
         first = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(
             found, title=f"{first}, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in selected),

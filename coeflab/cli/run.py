@@ -98,6 +98,7 @@ def summarise(study: Study, folder: Path) -> None:
     from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import sources as source_tables
+    from coeflab.report.tables.results import of_grids
 
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
@@ -106,6 +107,8 @@ def summarise(study: Study, folder: Path) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
+    for line in of_grids(study):
+        show.sentence(line)
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)

@@ -253,7 +253,7 @@ class TableDeclaration(takes.Declaration):
     select : mapping of str to str
         Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
-        Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
+        Column with the cells of the grid that computed each row, or empty. Of rows at one condition that on the grid which most share enters fits.
     variant : str
         Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
         in a row of none. Rows of studies do not enter fits; how far they differ enters U95, but of turbulence models, whose spread stands beside it.

@@ -439,4 +439,4 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
     notes = (*out.notes, *words[:REMARKS], *more)
     out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
-    return out if cells is None else out.on_finest_grids()
+    return out if cells is None else out.on_one_grid()

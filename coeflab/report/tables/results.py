@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.axes import point_in_words
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -233,6 +234,13 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
             f"into this campaign, for a move takes its {listed([primed(n) for n in needed])}."
         )
     return tuple(out)
+
+
+def of_grids(study: Study) -> tuple[str, ...]:
+    """Which rows are for a grid study only, and whether a finer grid is needed; a sentence each."""
+    found = [c for c in study.checks if c.name == "grids" and c.severity in (Severity.NOTE, Severity.PASS)]
+    several = len({c.subject for c in found}) > 1
+    return tuple(f"{f'{c.subject}: ' * several}{c.statistic}." for c in found)
 
 
 def weight(c: Comparison) -> float:
