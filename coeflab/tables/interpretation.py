@@ -38,7 +38,7 @@ from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
 from coeflab.tables.settings_in_files import against_words, overruled
-from coeflab.tables.time_record import record_over_time
+from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -147,7 +147,8 @@ def interpreted(
     tentative = {c.name: _likely_map(o) for c, o in still}
     said_of = mapping | tentative
     columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
-    if not said and (bare := _no_table(raw, offers)):
+    record = tuple(record_over_time(raw))
+    if not said and not record and (bare := _no_table(raw, offers)):
         complaints = (bare,)
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
@@ -176,7 +177,7 @@ def interpreted(
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
     complaints += (
-        *record_over_time(raw), *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
+        *record, *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
     )  # fmt: skip
     settled = set(said if judged is None else judged)
     doubts = [
@@ -232,9 +233,10 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     ):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
+    over = clock(raw)
     return InputError(
-        f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings", file=raw.path,
-        advice='If it is one, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+        over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
+        file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
     )  # fmt: skip
 
 
