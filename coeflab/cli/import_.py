@@ -230,7 +230,7 @@ def _first_slopes(folder: Path) -> bool:
             *tables.resistances(study),
             tables.primed_about(study),
             *tables.lost_by_move(study),
-            *tables.of_grids(study),
+            *tables.answers(study),
         ]
         first = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(

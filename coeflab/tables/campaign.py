@@ -276,6 +276,8 @@ class TableDeclaration(takes.Declaration):
     assumed : tuple of str
         Keys that an import accepted although no source states them, such as table.arm_point: every coefficient that hangs on one says
         so. Delete a key here once the source states it.
+    contains_thrust : bool or None
+        Whether X holds the thrust of a propeller that runs, columns rps, J or thrust: unless false, X of such rows enters no fit.
     constant : mapping of str to float
         Columns of the source with one number throughout that are none of the table, such as rps: what was held while speeds varied.
     source_sha256 : str
@@ -297,6 +299,7 @@ class TableDeclaration(takes.Declaration):
     by_symmetry: takes.Words = ""
     forces_density: takes.Density | None = None
     assumed: takes.Texts = ()
+    contains_thrust: takes.Flag | None = None
     constant: Annotated[Mapping[str, Any], takes.TABLE] = field(default_factory=dict)
     source_sha256: takes.Anything = None
 

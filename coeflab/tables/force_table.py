@@ -33,6 +33,7 @@ STUDIES = {
     "turbulence": "turbulence model",
     "iterations": "iterations",
 }  # what each part is called
+DRIVEN = "propeller running: X holds its thrust"
 SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
 
@@ -166,6 +167,8 @@ class ForceTable:
         What its campaign.toml says of it, before it was turned and moved; None for a table made by a program.
     findings : tuple of Finding
         What is assumed of it or left out; they travel with every number that comes of it.
+    propeller : dict of str to (n,) array
+        ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
     """
 
     name: str
@@ -200,9 +203,10 @@ class ForceTable:
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None
     findings: tuple[Finding, ...] = ()
+    propeller: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("motion", "controls", "forces", "errors"):
+        for name in ("motion", "controls", "forces", "errors", "propeller"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
@@ -412,6 +416,13 @@ def grids(cells: Array) -> NDArray[np.intp]:
     out = np.empty(len(cells), dtype=np.intp)
     out[order] = np.concatenate([[0], np.cumsum(cells[order][1:] > ONE_GRID * cells[order][:-1])])[: len(cells)]
     return out
+
+
+def running_rows(propeller: Mapping[str, Array], rows: int) -> NDArray[np.bool_]:
+    """Rows, (n,), in which a propeller turns or thrusts, by rps or thrust, else by a number for J."""
+    known = [np.nan_to_num(propeller[name]) != 0.0 for name in ("rps", "thrust") if name in propeller]
+    known = known or [np.isfinite(propeller[name]) for name in ("J",) if name in propeller]
+    return np.asarray(np.logical_or.reduce([*known, np.zeros(rows, dtype=bool)]))
 
 
 def counted_once(tables: Sequence[ForceTable], *, axial: bool = True) -> list[ForceTable]:

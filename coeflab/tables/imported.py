@@ -206,7 +206,7 @@ def _held(table: Filled) -> dict[str, float]:
     speeds = next((c.values for c in table.columns if c.said.role == "speed"), np.empty(0))
     if np.unique(levels_of(speeds[np.isfinite(speeds)])).size < 2:
         return {}
-    used = {c.column.name for c in table.columns}
+    used = {c.column.name for c in table.columns if c.said.role != "propeller"}
     idle = [
         c
         for c in table.raw.columns
@@ -307,6 +307,8 @@ def _table(
         own = one.column.values * (-1.0 if given.negative else 1.0)
         if given.area:
             own = own * (given.area * (given.length or 1.0) / length ** (3 if given.length else 2))
+        if given.ship:
+            own = own / given.ship**0.5
         if given.pure:
             own = own * abs(one.factor)
         values = np.where(np.isnan(one.values), np.nan, own)[rows]

@@ -330,7 +330,7 @@ def _is_straight(columns: Sequence[Assigned]) -> bool:
     speeds = [c for c in columns if c.said.role == "speed" or (c.said.role == "velocity" and c.said.name == "u")]
     found = [np.unique(c.values[np.isfinite(c.values)]).size for c in speeds]
     return max(found, default=0) >= FEWEST_SPEEDS and any(
-        c.said.role == "force" and c.said.name == "X" for c in columns
+        c.said.role == "force" and c.said.name in ("X", "drag") for c in columns
     )
 
 

@@ -216,7 +216,7 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
             raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
             f'Leave the unit out to take the file\'s: "{replace(said, unit="")}".',
         )  # fmt: skip
-    return Assigned(column, replace(said, unit=unit), sign * size)
+    return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
 
 
 def _factor(unit: str, dimension: str) -> float | None:
@@ -268,7 +268,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     rows = usable_rows(known, len(raw))
     if not rows.size:
         raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
-    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force")}
+    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
     primes: dict[str, Array] = {}
     for one in known:
         if one.said.role in given:
@@ -309,6 +309,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         files=raw.files,
         radius=given["radius"].get("R"),
         density=given["density"].get("density"),
+        propeller=given["propeller"],
     )
 
 

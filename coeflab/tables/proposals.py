@@ -30,6 +30,7 @@ from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
+from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
 UNKNOWN = "no known name"
@@ -46,6 +47,19 @@ IDLE_UNITS = frozenset(
 TIMES = frozenset({"s", "sec", "ms", "min", "h"})
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
+TURNS = {
+    "": "",
+    "1/s": "rps",
+    "s^-1": "rps",
+    "hz": "rps",
+    "rev/s": "rps",
+    "u/s": "rps",
+    "1/min": "rpm",
+    "u/min": "rpm",
+    "rev/min": "rpm",
+    "min^-1": "rpm",
+}
+SHIP = ("shipspeed", "vship", "vs", "fullscalespeed", "schiffsgeschwindigkeit", "vitessenavire", "vitessedunavire")
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
@@ -113,6 +127,18 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     """
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
+    if folded(column.name) in SHIP and _fits(
+        unit := vocabulary().units.get(column.unit.casefold(), column.unit), "speed"
+    ):
+        scale = (stated or {}).get(SCALE)
+        if scale is None:
+            return Proposal(
+                "",
+                f"a speed of the ship: U [{unit} ship 31.6] with the scale of its model, U [{unit}] if forces are of the ship",
+            )
+        return Proposal(
+            f"U [{unit} ship {scale!r}]", f"of the ship, over the root of the scale {scale:g}: the speed of the model"
+        )
     name, why, certain = _name(column)
     if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
         prime = m[1] or m[2]
@@ -227,6 +253,10 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             return str(read_column_map(short)), "its name", True
         except InputError:
             pass
+    if own == "n" and column.unit and column.unit.casefold() in (*TURNS, "rps", "rpm"):
+        return "rps", "its name and unit", False
+    if own == "T" and _fits(column.unit, "force"):
+        return "thrust", "its name and unit", False
     bare = _OF_ALL.sub("", bare) if not _knows(bare) else bare
     error = None if bare in vocabulary().columns else _ERROR.search(bare)  # Achse, Bremse
     bare = _ERROR.sub("", bare) if error else bare
@@ -282,6 +312,10 @@ def _with_symbol(own: str) -> str:
 
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
+    if said.role == "propeller":
+        unit = TURNS.get(unit.casefold(), unit) if said.name == "rps" else unit
+        by_name = next((turns for turns in ("rpm", "rps") if turns in folded(column.name)), "")
+        unit = unit or {"rps": by_name, "J": "-"}.get(said.name, "")
     name = str(said).partition(" [")[0]
     why += f"; {TURN}" * (said.name == "r")
     counted = share(unit) is not None

@@ -236,9 +236,11 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
     return tuple(out)
 
 
-def of_grids(study: Study) -> tuple[str, ...]:
-    """Which rows are for a grid study only, and whether a finer grid is needed; a sentence each."""
-    found = [c for c in study.checks if c.name == "grids" and c.severity in (Severity.NOTE, Severity.PASS)]
+def answers(study: Study) -> tuple[str, ...]:
+    """Which rows are for a grid study only, whether a finer grid is needed, the rate of self-propulsion; a sentence each."""
+    found = [
+        c for c in study.checks if c.name in ("grids", "propeller") and c.severity in (Severity.NOTE, Severity.PASS)
+    ]
     several = len({c.subject for c in found}) > 1
     return tuple(f"{f'{c.subject}: ' * several}{c.statistic}." for c in found)
 
