@@ -182,9 +182,10 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     """
     import shlex
 
-    from coeflab.cli.draft import described, options_of, print_list
+    from coeflab.cli.draft import MOST, described, options_of, print_list
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
+    from coeflab.report.tables.raw_tables import by_format
     from coeflab.tables.form import open_lines, screen
     from coeflab.tables.parts import read_parts, stated_together, with_shared_words
     from coeflab.tables.several_tables import form_together, interpreted_together
@@ -219,11 +220,18 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
         proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in chosen]
         show.json_object(told | {"proposed": proposed, "missing": missing, "next": following})
         return
+    brief = path.is_dir() and not show.whole()
     for part, found in zip(parts, founds, strict=True):
-        described(part, found)
+        described(part, found, whole=not brief, most=1 if brief else MOST)
     print_list("Not taken", [text for one in chosen for text in one.left])
-    for line in screen(lines, (), min(show.width(), 100)):
+    for line in screen(
+        [one for one in lines if one.pending or not brief], (), min(show.width(), 100), 4 if brief else 99
+    ):
         show.lines(line)
+    if brief:
+        for part, found in zip(parts, founds, strict=True):
+            show.sentence(by_format(part.raw, found.proposals))
+        show.sentence("--wide: every column and key, and what is left out or mended.")
     show.text()
     show.command_line("Next", following)
     if still:

@@ -51,6 +51,9 @@ _ENTRY = re.compile(
 )
 _COEFFICIENT = re.compile(r"coefficient(?:[\s,]+A\s*=\s*(?P<area>.+?))?(?:[\s,]+L\s*=\s*(?P<length>.+?))?")
 _SHIP = re.compile(r"(?P<unit>\S+)\s+ship\s+(?P<scale>[1-9]\d{0,3}(?:\.\d+)?)")  # of a model, 1 to 9999
+_PER_SPEED = re.compile(
+    r"(?P<unit>k?N(?:[\s*·.]?m)?|lbf)(?:[\s*·.]*s(?:\^|\*\*)?[2²](?:\s*/\s*\(?m(?:\^|\*\*)?[2²]\)?|[\s*·.]*m(?:\^-2|\*\*-2|⁻²))|\s*/\s*\(m/s\)(?:\^2|\*\*2|²))"
+)
 _LONGEST = 120
 ACROSS = {"drag": "along", "lift": "across", "side": "across"}
 PER = {"force": "coefficient A=1.2 m^2", "moment": "coefficient A=1.2 m^2 L=4.26 m"}
@@ -80,6 +83,8 @@ class ColumnMap:
         m, of a coefficient of a moment.
     ship : float
         Scale of the model beside a speed of the ship: U is the column over its root (Froude); 0 for the speed of the model.
+    per_speed : bool
+        A force over the square of the speed, ``X [N s^2/m^2]``; the unit is that of the force, over m/s.
     """
 
     name: str
@@ -90,6 +95,7 @@ class ColumnMap:
     area: float = 0.0
     length: float = 0.0
     ship: float = 0.0
+    per_speed: bool = False
 
     @property
     def role(self) -> str:
@@ -118,7 +124,7 @@ class ColumnMap:
 
     def __str__(self) -> str:
         sign, prime = "-" if self.negative else "", "'" if self.primed else ""
-        unit = self.unit + f" ship {self.ship!r}" * bool(self.ship)
+        unit = self.unit + " s^2/m^2" * self.per_speed + f" ship {self.ship!r}" * bool(self.ship)
         if self.area:
             unit = f"coefficient A={self.area!r} m^2" + (f" L={self.length!r} m" if self.length else "")
         return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
@@ -204,6 +210,9 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
     if said.name == "U" and (m := _SHIP.fullmatch(said.unit)):
         factor(m["unit"], "speed")
         return replace(said, unit=m["unit"], ship=float(m["scale"]))
+    if said.name in FORCES and (m := _PER_SPEED.fullmatch(said.unit)):
+        factor(m["unit"], said.dimension)
+        return replace(said, unit=m["unit"], per_speed=True)
     if said.unit:
         factor(said.unit, said.dimension)
     return said

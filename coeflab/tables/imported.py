@@ -286,6 +286,9 @@ def _table(
     """The table in coeflab's names and the file's units, all digits; and the names of its label columns."""
     rows = usable_rows(columns, len(raw))
     length = quantity(settings["scaling.length"].value, "length")
+    speed = next(
+        (c.values for c in columns if c.said.role == "speed"), quantity(settings["conditions.speed"].value, "speed")
+    )
     heads: list[str] = []
     cells: list[list[str]] = []
     labels: list[str] = []
@@ -307,6 +310,8 @@ def _table(
         own = one.column.values * (-1.0 if given.negative else 1.0)
         if given.area:
             own = own * (given.area * (given.length or 1.0) / length ** (3 if given.length else 2))
+        if given.per_speed:
+            own = own * speed**2
         if given.ship:
             own = own / given.ship**0.5
         if given.pure:

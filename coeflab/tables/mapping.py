@@ -280,6 +280,8 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     speed = speed_of_rows(given["speed"].get("U"), own, primes, campaign, len(rows), bool(given["angle"]))
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
+        if one.said.per_speed:
+            given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * speed**2
         if one.said.pure:
             unit = campaign.scaling.unit(one.said.component, density, speed)
             if one.said.area:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,6 +38,7 @@ PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
+FROUDE = 1.5
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
@@ -373,6 +374,7 @@ def taken_as(one: Assigned) -> str:
     if (
         unit in ("", "-", "1")
         or one.said.pure
+        or one.said.per_speed
         or one.said.name in WORDS
         or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
     ):
@@ -433,7 +435,26 @@ def proposals(
         if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
-    return tuple(out)
+    return tuple(_without_a_doubled_flow(raw, out))
+
+
+def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
+    """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
+    roles = [read_column_map(one.text.partition(" [")[0]) if one.text else None for one in out]
+    still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
+    both = [
+        ("angle" if m.role == "angle" else "speed")
+        if m and not m.error and (m.role == "angle" or m.name in LINEAR)
+        else ""
+        for m in roles
+    ]
+    varied = {kind for kind, zero in zip(both, still, strict=True) if kind and not zero}
+    for one, kind, zero in zip(out, both, still, strict=True):
+        yield (
+            Proposal("ignore", f"{one.why}; zeros throughout")
+            if kind and zero and varied and kind not in varied
+            else one
+        )
 
 
 def _of_company(
@@ -459,6 +480,15 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
             return Proposal("ignore", note, note=note)
+    if (
+        folded(column.name) == "fn"
+        and column.unit in PURE
+        and known.size
+        and known.min() > 0.0
+        and known.max() < FROUDE
+    ):
+        note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
+        return Proposal("ignore", note, note=note)
     if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
         axial = folded(column.name) == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")

@@ -11,10 +11,14 @@ import pytest
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
+from coeflab.tables.column_map import read_column_map
+from coeflab.tables.imported import _table
 from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.mapping import assigned
 from coeflab.tables.parts import read_parts
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import Setting
 from coeflab.tables.several_tables import complaints_of, interpreted_together, questions_together
 from coeflab.tables.vocabulary import vocabulary, words_of
 
@@ -242,3 +246,39 @@ def test_a_stranger_that_may_be_a_setting_is_asked_however_many_there_are() -> N
     units, values = ("deg", "N", "", "", ""), (beta, -3.0 * beta, levels, coupled, free)
     found = proposals(table(*(column(*c) for c in zip(names, units, values, strict=True))))
     assert [n for n, p in zip(names, found, strict=True) if p.text == "ignore"] == ["zz"]
+
+
+def test_a_velocity_of_zeros_beside_angles_says_nothing(tmp_path: Path) -> None:
+    rows = "".join(f"{a},0,2,{-3 * a}\n" for a in (-4, 0, 4))
+    (tmp_path / "zeros.csv").write_text(f"beta [deg],w,U [m/s],Y [N]\n{rows}")
+    parts, _ = read_parts(tmp_path / "zeros.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    assert not found.complaints
+    assert [p.text for p in found.proposals] == ["beta [deg]", "ignore", "U [m/s]", "Y [N]"]
+    both = table(column("beta", "deg"), column("w", "m/s"), column("Y", "N"))
+    assert proposals(both)[1].text == "w [m/s]"
+
+
+def test_a_number_of_froude_beside_forces_is_no_normal_force() -> None:
+    given = table(column("Fn", "", np.full(5, 0.2)), column("beta", "deg"), column("Y", "N"))
+    assert proposals(given)[0].text == "ignore"
+    assert proposals(table(column("Fn", "", ANGLES), column("beta", "deg"), column("Y", "N")))[0].text == ""
+
+
+@pytest.mark.parametrize("unit", ["N s^2/m^2", "N s²/m²", "N*s^2/m^2", "Ns2/m2", "N/(m/s)^2", "N s^2 m^-2"])
+def test_a_force_over_the_square_of_the_speed(unit: str) -> None:
+    said = read_column_map(f"Y [{unit}]")
+    assert (said.per_speed, said.unit, str(said)) == (True, "N", "Y [N s^2/m^2]")
+    assert proposed(column("Fy", unit)).text == "Y [N s^2/m^2]"
+    assert read_column_map(f"N [{unit.replace('N', 'N m', 1)}]").unit == "N m"
+
+
+def test_a_table_by_the_square_of_the_speed_is_in_newton(tmp_path: Path) -> None:
+    """Y = K U^2: 3 N s^2/m^2 at 2 m/s are 12 N; in place and as imported."""
+    (tmp_path / "raw.txt").write_text("beta;U;Fy\n(deg);(m/s);(N s^2/m^2)\n-4;2;3\n0;1;0\n4;2;-3\n")
+    raw = IMPORTERS.load("table").raw(tmp_path / "raw.txt", {"delimiter": "semicolon"})
+    mapping = {"beta": "beta [deg]", "U": "U [m/s]", "Fy": "Y [N s^2/m^2]"}
+    known = assigned(raw, {name: read_column_map(text) for name, text in mapping.items()})
+    settings = {"conditions.speed": Setting("1 m/s", ""), "scaling.length": Setting("4 m", "")}
+    written = _table(raw, known, settings, {})[0].decode().split("\n")
+    assert written[1:3] == ["point,beta [deg],U [m/s],Y [N]", "line 3,-4.0,2.0,12.0"]
