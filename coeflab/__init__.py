@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from coeflab.formats.export import Export
     from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
     from coeflab.law.scaling import Conditions, Scaling
-    from coeflab.motion.trim.linear_model import LinearModel
+    from coeflab.motion.trim.linear_model import LinearModel, LinearSchedule
     from coeflab.report.rendered import rendered
     from coeflab.study.plan import read_plan
     from coeflab.study.study import Plan
@@ -116,7 +116,7 @@ _HOMES = {
     "formats.export": ("Export",),
     "fits.results.fit_result": ("FitResult",),
     "fits.results.fitted_model": ("FittedModel",),
-    "motion.trim.linear_model": ("LinearModel",),
+    "motion.trim.linear_model": ("LinearModel", "LinearSchedule"),
     "tables.force_table": ("ForceTable",),
     "tables.campaign": ("read_campaign",),
     "tables.importers": ("PlannedTable",),
@@ -144,6 +144,7 @@ __all__ = [
     "ForceTable",
     "InputError",
     "LinearModel",
+    "LinearSchedule",
     "Motion",
     "ParameterFile",
     "Plan",

@@ -49,6 +49,7 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
             "compare",
             "Comparison",
             "LinearModel",
+            "LinearSchedule",
             "ParameterFile",
         ),
     ),
