@@ -128,7 +128,7 @@ def _may_be_written(out: Path, accept: bool) -> bool:
 def _named_after(file: Path) -> Path:
     """A folder of the current one, called after what is read."""
     whole = file.resolve()
-    name = f"{whole.name}_campaign" if whole.is_dir() else whole.stem
+    name = f"{whole.name}_campaign" if whole.is_dir() or not whole.suffix else whole.stem
     return Path(re.sub(r"[^\w.-]+", "_", name).strip("._") or "campaign")
 
 

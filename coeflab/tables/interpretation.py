@@ -33,7 +33,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
+from coeflab.tables.proposals import AREA, FEW_STRANGE, UNKNOWN, Proposal, named_as, proposals, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
@@ -228,12 +228,24 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
     roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
+    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why == UNKNOWN]
+    if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
+        return InputError(
+            f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
+            file=raw.path, advice=f'Name what was varied: --map "{strange[0]}=beta [deg]"; grids at one setting are no sweep.',
+        )  # fmt: skip
     if roles & {"force", "error"} or any(
         "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
     ):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     over = clock(raw)
+    worded = [c.name for c in raw.columns if "_" in c.name and named_as(c.name.split("_")[0]) in FORCES]
+    if worded and not over:
+        return InputError(
+            f"forces with words behind them: {listed([shown(n) for n in worded[:MOST_IDLE]])}", "forces over settings, of one source", file=raw.path,
+            advice=f'Name those of one source: --map "{worded[0]}={named_as(worded[0].split("_")[0])} [coefficient A=1 m^2]"; others are ignored.',
+        )  # fmt: skip
     return InputError(
         over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
         file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',

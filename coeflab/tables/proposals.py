@@ -36,6 +36,7 @@ OPEN = "?"
 UNKNOWN = "no known name"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
+SAME = 0.1
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
@@ -421,8 +422,9 @@ def proposals(
                     out[first] = Proposal("ignore", again.format(column.name))
                     taken[given.plain] = column.name
                 else:
-                    whole = out[first].whole and not one.whole
-                    one = Proposal("ignore" * whole, again.format(taken[given.plain]))
+                    kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
+                    settled = (out[first].whole and not one.whole) or len(kinds) == 2
+                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
             else:
                 taken[given.plain] = column.name
         out.append(one)
@@ -517,11 +519,24 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         for c, one in zip(raw.columns, out, strict=True)
         if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
     ]
-    idle = {i for i in strange if not _like_a_setting(raw.columns[i].values, settings)}
+    plain = {c.name.strip() for c in raw.columns}
+    idle = {
+        i
+        for i in strange
+        if _is_of_a_force(raw.columns[i].name, plain) or not _like_a_setting(raw.columns[i].values, settings)
+    }
     return [
         replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)
     ]
+
+
+def _is_of_a_force(name: str, names: Set[str]) -> bool:
+    """Whether a name is that of a force of the table with a letter or words behind it: Cza beside Cz, Fx_visc beside Fx, Ma beside M."""
+    own = re.split(r"(?<=[a-z0-9])(?=[A-Z_ ])|[_ ]", name.strip())[0]
+    return any(
+        own in (base, f"{base}{own[-1:]}") and base != name.strip() for base in names if named_as(base) in FORCES
+    )
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
@@ -529,7 +544,14 @@ def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
     levels = np.unique(values[np.isfinite(values)]).size
     if 1 < levels <= values.size / 2:
         return True
-    return levels > 1 and any(_together(values, s) > GOES_ALONG for s in settings)
+    return levels > 1 and any(_together(values, s) > GOES_ALONG and not _same(values, s) for s in settings)
+
+
+def _same(one: Array, other: Array) -> bool:
+    """Whether two columns have the same numbers, a raw and a corrected angle: within `SAME` of the largest."""
+    both = np.isfinite(one) & np.isfinite(other)
+    largest = float(np.max(np.abs(other[both]), initial=0.0))
+    return bool(both.any()) and float(np.median(np.abs(one - other)[both])) < SAME * largest
 
 
 def _together(one: Array, other: Array) -> float:

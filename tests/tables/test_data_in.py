@@ -282,3 +282,82 @@ def test_a_table_by_the_square_of_the_speed_is_in_newton(tmp_path: Path) -> None
     settings = {"conditions.speed": Setting("1 m/s", ""), "scaling.length": Setting("4 m", "")}
     written = _table(raw, known, settings, {})[0].decode().split("\n")
     assert written[1:3] == ["point,beta [deg],U [m/s],Y [N]", "line 3,-4.0,2.0,12.0"]
+
+
+def test_a_name_that_reads_as_no_number_is_a_name(tmp_path: Path) -> None:
+    """Na, the yaw moment of a balance, is no "n.a."; a head may hold a few numbers where names stand over numbers."""
+    (tmp_path / "na.txt").write_text(
+        "Incidence\tX\tZ\tMa\tNa\n" + "".join(f"{a}\t-1\t{-a}\t{2 * a}\t0\n" for a in (-4, 0, 4))
+    )
+    raw = IMPORTERS.load("table").raw(tmp_path / "na.txt", {})
+    assert [c.name for c in raw.columns] == ["Incidence", "X", "Z", "Ma", "Na"]
+    rows = "".join(f"{a},{a / 10},0.01,{-a},0,0,0,0.25\n" for a in (-4, -2, 0, 2, 4))
+    (tmp_path / "polar.csv").write_text(f"alpha,CL,CD,Cm,0,0,XCp,Bot\n{rows}")
+    raw = IMPORTERS.load("table").raw(tmp_path / "polar.csv", {})
+    assert [c.name for c in raw.columns[:5]] == ["alpha", "CL", "CD", "Cm", "0"]
+    assert len(raw) == 5
+
+
+def test_a_row_of_labels_and_numbers_is_no_head(tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_text("run,model,alpha,CL\nA1,hull,-4,0.2\nA2,hull,0,0\nA3,hull,4,-0.2\n")
+    raw = IMPORTERS.load("table").raw(tmp_path / "runs.csv", {})
+    assert [c.name for c in raw.columns] == ["run", "model", "alpha", "CL"]
+    assert len(raw) == 3
+
+
+def test_of_a_force_and_its_coefficient_the_first_is_taken_and_other_axes_are_no_settings() -> None:
+    """Balances write coefficients and forces, in two sets of axes, beside the raw angle: one question for each quantity is enough."""
+    names = ("Incidence", "Inc_brut", "Cx", "Cxa", "Cz", "Cza", "X", "Xa", "Z", "Za", "Qo")
+    values = (
+        ANGLES,
+        1.01 * ANGLES,
+        -0.02 + 0.0 * ANGLES,
+        ANGLES**2,
+        ANGLES,
+        1.1 * ANGLES,
+        ANGLES**3,
+        ANGLES,
+        ANGLES,
+        ANGLES,
+        np.ones(5),
+    )
+    found = proposals(table(*(column(n, "", v) for n, v in zip(names, values, strict=True))))
+    texts = {n: p.text for n, p in zip(names, found, strict=True)}
+    assert {n for n, text in texts.items() if text == "ignore"} == {
+        "Inc_brut",
+        "Cxa",
+        "Cza",
+        "X",
+        "Xa",
+        "Z",
+        "Za",
+        "Qo",
+    }
+    assert texts["Cz"] == "Z [coefficient A=?]"
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("AoA,CL_SST,CD_SST,CL_XFOIL,CD_XFOIL", "CL_SST"),
+        ("cells,foil,far,Cl,Cd,res", "no angle"),
+    ],
+)
+def test_what_one_table_cannot_say_is_refused_with_the_names_to_give(tmp_path: Path, head: str, words: str) -> None:
+    width = head.count(",") + 1
+    (tmp_path / "t.csv").write_text(
+        head + "\n" + "".join(",".join(f"{i + k / 7:.3f}" for k in range(width)) + "\n" for i in range(4))
+    )
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    (why,) = found.complaints
+    assert words in why.found
+    assert "--map" in why.advice
+
+
+def test_a_speed_without_a_unit_and_forces_of_zeros_ask_no_conditions(tmp_path: Path) -> None:
+    rows = "".join(f"{a},20,{a / 10},0.02,0\n" for a in (-4, -2, 0, 2, 4))
+    (tmp_path / "t.csv").write_text(f"alpha,Vitesse,Cz,Cx,Y\n{rows}")
+    keys = open_keys(tmp_path / "t.csv")
+    assert {"conditions.speed", "conditions.density"}.isdisjoint(keys)
+    assert "columns.units" in keys
