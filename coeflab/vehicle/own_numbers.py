@@ -19,12 +19,13 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.core.units import also_written, positive_typed, same_unit, three_typed
 from coeflab.core.version import VERSION
-from coeflab.core.wording import repeated
+from coeflab.core.wording import listed, repeated
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling, doubtful_size
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.from_shape import parameter_thruster
+from coeflab.vehicle.matching import one_slope
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics, ParameterThruster
 
@@ -110,11 +111,16 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
     Raises
     ------
     InputError
-        As of `own_number`, or a symbol that stands twice.
+        As of `own_number`, or a symbol that stands twice, be it under two names.
     """
     out = tuple(map(own_number, typed))
     if twice := repeated(n.symbol for n in out):
         raise InputError(f"{', '.join(twice)} twice", "each symbol once", column="--set")
+    for slope, names in one_slope(n.symbol for n in out).items():
+        raise InputError(
+            f"{listed(names)}, which are one slope", f"one of them; {slope} is their sum", column="--set",
+            advice="Both act in the law, and a straight course feels their sum.",
+        )  # fmt: skip
     return out
 
 
