@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.bodies.thrusters import ThrusterKeys
-from coeflab.core.axes import Datum
+from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
@@ -278,7 +278,10 @@ def typed_file(
         afloat = ParameterHydrostatics(
             volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
         )
-    datum = Datum.named(about.strip())
+    try:
+        datum = Datum.named(datum_name(about.strip()))
+    except InputError as why:
+        raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):
