@@ -94,6 +94,8 @@ def test_a_near_miss_of_a_usual_point_is_asked_back(
     read("midship")
 
 
-@pytest.mark.parametrize("own", ["tow_point", "balance", "root_quarter_chord", "tip", "middle", "NOSE", "CG", "strut", "sensor"])
+@pytest.mark.parametrize(
+    "own", ["tow_point", "balance", "root_quarter_chord", "tip", "middle", "NOSE", "CG", "strut", "sensor"]
+)
 def test_points_of_ones_own_are_taken(own: str) -> None:
     assert datum_name(own) == own
