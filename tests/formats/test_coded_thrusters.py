@@ -7,11 +7,13 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 from coeflab.formats.exporting import export
+from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import write as mss
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.formats.xdyn import write as xdyn
@@ -187,3 +189,14 @@ def test_names_of_thrusters_that_hurt_in_xdyn(name: str) -> None:
     np.testing.assert_allclose(xdyn.wrench(files, given), due(file()), rtol=1e-9, atol=1e-8)
     text = files["driven_one.yml"].decode()
     assert len(text.splitlines()) == len(xdyn.render(file())["driven_one.yml"].decode().splitlines())
+
+
+@pytest.mark.parametrize("target", [mss, xdyn], ids=["mss", "xdyn"])
+def test_limits_come_back_and_thrusters_are_named_as_left_out(target: ModuleType, tmp_path: Path) -> None:
+    p = file()
+    for written, content in target.render(p).items():
+        (tmp_path / written).write_bytes(content)
+        back = read_model_file(tmp_path / written).parameters
+    assert {s.control: s.limit for s in back.surfaces} == {"dr": LIMIT} | ({"ds": 0.2} if target is mss else {})
+    assert back.coefficient("Ydr").value_si == pytest.approx(p.coefficient("Ydr").value_si, rel=1e-12)
+    assert [f for f in back.findings if f.code == "model.left_out" and any("thrusters" in n for n in f["names"])]

@@ -26,7 +26,15 @@ from tests.rigid_motion import rotation
 pytestmark = pytest.mark.usefixtures("few_states")
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
-DRIVES = {"gazebo", "gazebo_plugin", "c", "fmi", "mss", "python_vehicle_simulator", "xdyn"}  # with thrusters and limits of fins
+DRIVES = {
+    "gazebo",
+    "gazebo_plugin",
+    "c",
+    "fmi",
+    "mss",
+    "python_vehicle_simulator",
+    "xdyn",
+}  # with thrusters and limits of fins
 TIMELESS = {"mss", "xdyn"}  # and without their rates
 HOLD = {"c", "fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}
 each_target = pytest.mark.parametrize("target", TARGETS)

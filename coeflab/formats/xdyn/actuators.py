@@ -7,13 +7,14 @@ bracket.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from coeflab.core.text.yaml import number
 from coeflab.core.wording import identifier
 from coeflab.formats.coded_thrusters import limits
-from coeflab.law.symbols import COMPONENTS
+from coeflab.law.symbols import COMPONENTS, CONTROLS
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCurve, ParameterThruster
 
@@ -29,14 +30,23 @@ def limited(control: str) -> str:
 
 def held_lines(parameters: ParameterFile, controls: Sequence[str]) -> list[str]:
     """Angles at their limits, of the commands ``dr`` ..."""
-    out = []
-    for c, most in limits(parameters)[0].items():
-        if c in controls:
-            out += [
-                f"{c}_limit: {most!r}",
-                f"{limited(c)}: 0.5*(abs({c} + {c}_limit) - abs({c} - {c}_limit))",
-            ]
-    return out
+    largest = limits(parameters)[0]
+    return [
+        line
+        for c, most in largest.items()
+        if c in controls
+        for line in (f"{c}_limit: {most!r}", f"{limited(c)}: {_held(c)}")
+    ]
+
+
+def _held(control: str) -> str:
+    return f"0.5*(abs({control} + {control}_limit) - abs({control} - {control}_limit))"
+
+
+def read_limits(expressions: Mapping[str, str]) -> dict[str, float]:
+    """Limits by control, where expressions hold an angle as `held_lines` writes it."""
+    found = {c: number(expressions.get(f"{c}_limit")) for c in CONTROLS if expressions.get(limited(c)) == _held(c)}
+    return {c: x for c, x in found.items() if x is not None and x > 0.0}
 
 
 def command_names(parameters: ParameterFile) -> tuple[str, ...]:
