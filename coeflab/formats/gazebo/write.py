@@ -23,6 +23,7 @@ from coeflab.formats.gazebo.sdf import (
     sdf_steered_force,
     tags,
 )
+from coeflab.formats.gazebo.seen import with_mesh
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU
@@ -33,7 +34,7 @@ adds_coriolis = True
 holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 added_mass = sdf_added_mass
-steered_force = sdf_steered_force
+steered_force, dressed = sdf_steered_force, with_mesh
 
 VERSION = "1.10"
 

@@ -80,8 +80,8 @@ class {name}:
     {name}('stepInput', r_z, r_psi, V_current, beta_current)
         current of V_current (m/s) towards beta_current (deg); r_z and r_psi are not used
 
-    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point; None is unknown, and dynamics()
-    asks for it. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
+    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point. Without m dynamics() does not run; a rotation
+    whose moment is None is held. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
     z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
     weight and buoyancy equal.
 
@@ -106,15 +106,17 @@ class {name}:
 _TAIL = '''
     def dynamics(self, eta, nu, u_actual, u_control, sampleTime):
         """[nu, u_actual] = dynamics(eta, nu, u_actual, u_control, sampleTime): one step by Euler's method."""
-        missing = [n for n in ("m", "Ix", "Iy", "Iz") if getattr(self, n) is None]
-        if missing:
-            raise ValueError("the coefficient file does not state " + ", ".join(missing) + "; pass it to the constructor")
+        if self.m is None:
+            raise ValueError("the coefficient file does not state m; pass it to the constructor")
+        moments = [self.Ix, self.Iy, self.Iz]
+        free = [0, 1, 2] + [3 + k for k in range(3) if moments[k] is not None]
+        Ix, Iy, Iz = [x or 0.0 for x in moments]
         S = np.array([[0, -self.r_bg[2], self.r_bg[1]], [self.r_bg[2], 0, -self.r_bg[0]],
                       [-self.r_bg[1], self.r_bg[0], 0]], float)
         Ixy, Ixz, Iyz = self.products
         MRB = np.zeros((6, 6))
         MRB[:3, :3], MRB[:3, 3:], MRB[3:, :3] = self.m * np.eye(3), -self.m * S, self.m * S
-        MRB[3:, 3:] = [[self.Ix, Ixy, Ixz], [Ixy, self.Iy, Iyz], [Ixz, Iyz, self.Iz]]
+        MRB[3:, 3:] = [[Ix, Ixy, Ixz], [Ixy, Iy, Iyz], [Ixz, Iyz, Iz]]
 
         u_c = self.V_c * math.cos(self.beta_c - eta[5])
         v_c = self.V_c * math.sin(self.beta_c - eta[5])
@@ -131,7 +133,8 @@ _TAIL = '''
         buoyancy = weight if self.volume is None else self.rho * GRAVITY * self.volume
         tau[:3] += (weight - buoyancy) * down
         tau[3:] += np.cross(weight * self.r_bg - buoyancy * self.r_bb, down)
-        nu_dot = Dnu_c + np.linalg.solve(MRB + self.MA, tau - CRB_nu)
+        nu_dot = Dnu_c
+        nu_dot[free] += np.linalg.solve((MRB + self.MA)[np.ix_(free, free)], (tau - CRB_nu)[free])
         return nu + sampleTime * nu_dot, @ACTUAL@
 
     def stepInput(self, t):
@@ -374,8 +377,8 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
 
 def missing(parameters: ParameterFile) -> tuple[str, ...]:
     """Mass, moments of inertia and added mass, where the file has none."""
-    asks = "dynamics() asks for them, hydrodynamics() does not"
-    return (*missing_mass(parameters, asks, "dynamics() asks for Ix"), *missing_water(parameters))
+    asks = "dynamics() asks for m, and holds rotations without a moment of inertia"
+    return (*missing_mass(parameters, asks, "roll is held"), *missing_water(parameters))
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
