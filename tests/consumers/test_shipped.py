@@ -58,13 +58,14 @@ RUNS = {
     "remus100": _doublet("dr", 0.1, {"push": 6.0}, {"push": -9.0}),
     "suboff": Run(1.0, ((2.0, {"dr": 0.2, "push": 100.0}), (2.0, {"dr": -0.2, "push": 0.0}), (2.5, {"dr": 0.0, "push": -800.0}),
                         (3.5, {"push": 700.0}))),
-    "huuv": Run(1.0, ((3.0, {"left": 70.0, "right": 50.0}), (3.0, {"left": 50.0, "right": 70.0}),
-                      (11.0, {"left": -100.0, "right": -100.0}), (13.0, {"left": 80.0, "right": 80.0}))),
+    # Astern it is unstable: from a straight course, and not for long.
+    "huuv": Run(1.0, ((3.0, {"left": 70.0, "right": 50.0}), (3.0, {"left": 50.0, "right": 70.0}), (6.0, {"left": 60.0, "right": 60.0}),
+                      (3.5, {"left": -100.0, "right": -100.0}), (14.5, {"left": 80.0, "right": 80.0}))),
     "huuv_5dof": _doublet("db", 0.5, {"left": 70.0, "right": 60.0}, {"left": -100.0, "right": -100.0}),
     "thauv_case_01_dive_1": Run(0.5, ((5.0, {"left": 9.0, "right": 3.0}), (10.0, {"left": -10.0, "right": -10.0})), False),
     "flyingfish_water": Run(1.0, (
         (3.0, {"rotor1": 1500.0, "rotor1.tilt": 1.4, "rotor2": 1200.0, "rotor2.tilt": -1.4, "rotor3": 500.0, "rotor3.tilt": 0.3}),
-        (3.0, {"rotor1.tilt": -1.4, "rotor2.tilt": 1.4})), False),
+        (3.0, {"rotor1": 1200.0, "rotor2": 1500.0})), False),
 }  # fmt: skip
 
 
@@ -270,7 +271,7 @@ def by_xdyn(name: str, file: ParameterFile, folder: Path) -> np.ndarray:
         if not mark:
             continue
         values = []
-        for t in at:  # half way at the very step
+        for t in at:  # half way at the very step, which is alike to both of its sides where the force is near a line
             i, j = int((t - 1e-7) / STEP), int((t + 1e-7) / STEP)
             values.append(float(orders[max(i, 0), k] + orders[j, k]) / 2.0)
         text = before + mark + after.replace("values: [0.0]", f"values: {values}", 1)
@@ -310,9 +311,12 @@ def test_doublet_and_reversal(name: str, target: str, request: pytest.FixtureReq
     program = {"mss": OCTAVE, "c": shutil.which("gcc"), "c++": shutil.which("g++")}
     if program.get(target, "here") is None:
         pytest.skip(f"no program for {target}")
-    _, ours = due(name, file)
+    times, ours = due(name, file)
     theirs = TARGETS[target](name, file, tmp_path)[: len(ours)]
     assert len(theirs) == len(ours)
+    steps = np.cumsum([s for s, _ in RUNS[name].phases])
+    apart_from_steps = ~np.isclose(times[:, None], steps).any(axis=1)  # xdyn is half way there
+    ours, theirs = ours[apart_from_steps], theirs[apart_from_steps]
     peak = np.abs(ours).max(axis=0)
     group = np.repeat([peak[:3].max(), max(peak[3:].max(), 1e-3)], 3)
     apart = np.abs(theirs - ours).max(axis=0) / group
