@@ -463,7 +463,7 @@ def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -
 
     A control goes as far as the file's data do, else to `DEFLECTED`; not beyond its limit.
     """
-    most = {s.control: s.limit for s in parameters.surfaces}
+    most: dict[str, float] = {s.control: s.limit for s in parameters.surfaces}
     reach = {n: max([abs(x) for c in parameters.offered if c.variable == n for x in (c.low, c.high)], default=0.0) or DEFLECTED
              for n in names}  # fmt: skip
     reach = {n: min(x, most.get(n, x)) for n, x in reach.items()}

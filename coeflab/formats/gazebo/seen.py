@@ -55,4 +55,4 @@ def _stl(mesh: TriangleMesh, point: Array) -> bytes:
     rows = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("rest", "<u2")])
     rows["numbers"][:, 0] = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     rows["numbers"][:, 1:] = corners
-    return b"coeflab".ljust(80, b"\0") + np.uint32(len(rows)).astype("<u4").tobytes() + rows.tobytes()
+    return b"coeflab".ljust(80, b"\0") + len(rows).to_bytes(4, "little") + rows.tobytes()

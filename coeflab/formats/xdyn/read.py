@@ -417,7 +417,7 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         matrix=matrix if selected else None,
         mass=mass,
         surfaces=tuple(
-            ParameterSurface(control=c, limit=limit)  # type: ignore[arg-type]
+            ParameterSurface(control=c, limit=limit)
             for m in body.manoeuvring
             for c, limit in read_limits(m.expressions).items()
         ),
