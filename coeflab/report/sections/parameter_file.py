@@ -34,7 +34,7 @@ from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
-from coeflab.vehicle.criteria import TURNING, criteria
+from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.inertia import against_computed
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
@@ -105,9 +105,12 @@ def _said(part: str, values: Array) -> str:
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
     "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
-    "r'/dr = (Nv' Ydr' - Yv' Ndr') / [Yv' (Nr' - xG' m') - Nv' (Yr' - m')] is the turning ability of the rudder; U_c the speed below which stern planes "
-    "reverse the depth, U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]. U95 comes from that of the derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
+    "U95 comes from that of the derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
 )
+TURNING_TEXT = (
+    "r'/dr = (Nv' Ydr' - Yv' Ndr') / [Yv' (Nr' - xG' m') - Nv' (Yr' - m')] is the turning ability of the rudder."
+)
+REVERSAL_TEXT = "U_c is the critical speed of the stern planes: slower, planes to dive make it rise. U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]."
 
 
 def in_words(study: Study) -> list[str]:
@@ -229,7 +232,13 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
     mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
-    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures), (mass,)),)
+    given = {row[1] for row in rows}
+    also = [text for name, text in ((TURNING, TURNING_TEXT), (REVERSAL, REVERSAL_TEXT)) if name in given]
+    return (
+        Section(
+            "stability", "Stability", (TEXT[0], *also, *TEXT[1:], *refused), tuple(tables), tuple(figures), (mass,)
+        ),
+    )
 
 
 def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
@@ -272,9 +281,7 @@ def _other_criteria(parameters: ParameterFile) -> list[tuple[str, ...]]:
         else:
             slower = parameters.conditions.speed < d.value
             verdict = "planes reversed" if slower else "planes as ordered"
-            remarks.insert(
-                0, f"at {number(parameters.conditions.speed, 3)} m/s; slower than U_c stern planes to dive make it rise"
-            )
+            remarks.insert(0, f"at {number(parameters.conditions.speed, 3)} m/s")
         out.append((parameters.name, d.name, number(d.value), number(d.half_width, 2), verdict, "; ".join(remarks)))
     return out
 
