@@ -34,7 +34,7 @@ def reversal_speed(coefficients: Array, righting: float) -> Array:
     """U_c from (.., 4) `PLANES` and BG W / (1/2 rho L^3), m^2/s^2; not a number where the planes act one way at every speed."""
     zw, mw, zd, md = np.moveaxis(np.asarray(coefficients, dtype=float), -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.sqrt(zd * righting / (mw * zd - zw * md))
+        return np.asarray(np.sqrt(zd * righting / (mw * zd - zw * md)))
 
 
 def criteria(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -> tuple[Derived, ...]:

@@ -20,10 +20,10 @@ def traceability(study: Study) -> Table:
         used = np.any(list(t.usable.values()), axis=0) if t.usable else np.zeros(len(t), dtype=bool)
         why = unused_rows(t) + _of_fits(study, t)
         own = (t.name, f"{int(used.sum())} of {len(t)}", "; ".join(why) or "none", "; ".join(_converted(t)) or "none")
-        for k, file in enumerate(sorted(t.files, key=lambda f: f.name.endswith(".toml")) or (None,)):
-            name, digest = (file.name, file.sha256) if file is not None else (ABSENT, ABSENT)
+        for k, file in enumerate(sorted(t.files, key=lambda f: f.name.endswith(".toml"))):
             first = own if k == 0 else ("", "", "", "")
-            rows.append((first[0], name, digest, *first[1:]))
+            rows.append((first[0], file.name, file.sha256, *first[1:]))
+        rows += [] if t.files else [(own[0], ABSENT, ABSENT, *own[1:])]
     named = {row[2] for row in rows}
     rows += [(ABSENT, f.name, f.sha256, "", "", "") for f in study.inputs if f.sha256 not in named]
     headers = ("table", "file", "sha256", "rows used", "left out, and why", "converted")
