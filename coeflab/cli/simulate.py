@@ -116,8 +116,8 @@ def command(
     else:
         _print(result, written)
         if any(c.u95 for c in parameters.coefficients):
-            asked = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
-            words = [str(file), "--manoeuvre", manoeuvre, *asked, *ctx.args]
+            kept = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
+            words = [str(file), "--manoeuvre", manoeuvre, *kept, *ctx.args]
             show.command_line("How sure, and why", f"coeflab uncertainty {shlex.join(words)}")
         show.text()
     if not json:

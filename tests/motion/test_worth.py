@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.motion.uncertainty.tests import group_share, test_of, tests_of
+from coeflab.motion.uncertainty.tests import group_share
 from coeflab.report.tables.uncertainty import tests_table
 from coeflab.vehicle.criteria import turning_ability
 from tests.motion.test_uncertainty import LINEAR, parameters, small_turn, with_mass
 
-test_of.__test__ = tests_of.__test__ = tests_table.__test__ = False
+tests_table.__test__ = False
 
 
 def test_a_group_takes_off_what_its_conditional_mean_explains() -> None:
@@ -38,18 +38,6 @@ def test_squares_count_and_chance_does_not() -> None:
     assert group_share(np.column_stack([x[:, 0], 2.0 * x[:, 0]]), x[:, 0]) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
-    ("symbol", "name"),
-    [
-        ("X0'", "straight runs"), ("Yv|v|'", "drift angles"), ("Mw'", "angles of attack"), ("Zvw'", "drift and attack together"),
-        ("Xvr'", "yaw rate: arm or planar motion"), ("M|w|q'", "pitch rate: arm or planar motion"), ("Kp'", "roll rate: rolling rig"),
-        ("Nrdot'", "accelerations: planar motion"), ("Xvdr'", "rudder angles"), ("Mds'", "stern-plane angles"), ("Zdb'", "bow-plane angles"),
-    ],
-)  # fmt: skip
-def test_every_coefficient_has_its_test(symbol: str, name: str) -> None:
-    assert test_of(symbol) == name
-
-
 def test_in_a_linear_turn_the_shares_are_those_of_the_gradient() -> None:
     u95 = {"Ydr'": 6e-4, "Ndr'": 5e-4, "Nr'": 4e-4, "Yr'": 9e-4, "Nv'": 6e-4}
     carried = small_turn(u95, {}, members=400)
@@ -65,8 +53,8 @@ def test_in_a_linear_turn_the_shares_are_those_of_the_gradient() -> None:
     }
     whole = sum(parts.values())
     due = {
-        "rudder angles": (parts["Ydr"] + parts["Ndr"]) / whole, "yaw rate: arm or planar motion": (parts["Yr"] + parts["Nr"]) / whole,
-        "drift angles": parts["Nv"] / whole,
+        "rudder": (parts["Ydr"] + parts["Ndr"]) / whole, "rotating arm, yaw": (parts["Yr"] + parts["Nr"]) / whole,
+        "drift": parts["Nv"] / whole,
     }  # fmt: skip
     assert dict(found.tests) == pytest.approx(due, abs=0.05)
     assert [name for name, _ in found.tests] == sorted(due, key=lambda name: -due[name])

@@ -3,44 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import StrEnum
 
 import numpy as np
 
 from coeflab.core.types import Array
-from coeflab.law.symbols import ANGULAR, CONTROLS, derivative
+from coeflab.law.symbols import derivative
 
-RATES = {"p": "roll rate: rolling rig", "q": "pitch rate: arm or planar motion", "r": "yaw rate: arm or planar motion"}
-CONTROL = {"dr": "rudder angles", "ds": "stern-plane angles", "db": "bow-plane angles"}
 CHANCE = 3.0  # standard deviations of a share where there is no dependence
 ROWS_A_TERM = 5  # members that a number of the regression needs
 
 
-def test_of(symbol: str) -> str:
-    """The test that a coefficient comes from: what of its variables takes the most special rig.
+class Kind(StrEnum):
+    """A test, by what its runs vary."""
 
-    Examples
-    --------
-    >>> test_of("Yv|v|'"), test_of("Xvr'"), test_of("Ndr'")
-    ('drift angles', 'yaw rate: arm or planar motion', 'rudder angles')
-    """
-    factors = [f.strip("|") for f in derivative(symbol.removesuffix("'")).factors]
+    DRIFT = "drift"
+    ATTACK = "angle of attack"
+    YAW = "rotating arm, yaw"
+    PITCH = "rotating arm, pitch"
+    ROLL = "roll"
+    RUDDER = "rudder"
+    STERN = "stern planes"
+    BOW = "bow planes"
+    RESISTANCE = "resistance"
+    ADDED_MASS = "accelerations"
+    OTHER = "several motions at once"
+
+
+OF_VARIABLE = {
+    "v": Kind.DRIFT, "w": Kind.ATTACK, "r": Kind.YAW, "q": Kind.PITCH, "dr": Kind.RUDDER, "ds": Kind.STERN, "db": Kind.BOW,
+}  # fmt: skip
+
+
+def kind_of(symbol: str) -> tuple[Kind, str]:
+    """The test that gives a coefficient, and the variable of its settings; none of a test of several."""
+    factors = derivative(symbol).factors
     if any(f.endswith("dot") for f in factors):
-        return "accelerations: planar motion"
-    if found := next((c for c in CONTROLS if c in factors), None):
-        return CONTROL[found]
-    if rates := [m for m in ANGULAR if m in factors]:
-        return RATES[rates[-1]]
-    across = {"v", "w"} & set(factors)
-    return {frozenset("v"): "drift angles", frozenset("w"): "angles of attack"}.get(
-        frozenset(across), "drift and attack together" if across else "straight runs"
-    )
+        return Kind.ADDED_MASS, ""
+    if not factors or set(factors) <= {"u"}:
+        return Kind.RESISTANCE, ""
+    moving = {f for f in factors if f != "u"}
+    if len(moving) > 1:
+        return Kind.OTHER, ""
+    variable = moving.pop()
+    if variable == "p":
+        return Kind.ROLL, ""
+    return OF_VARIABLE.get(variable, Kind.OTHER), variable if variable in OF_VARIABLE else ""
 
 
 def tests_of(symbols: Sequence[str]) -> dict[str, tuple[str, ...]]:
     """Symbols by the test that measures them, in their order."""
     out: dict[str, list[str]] = {}
     for s in symbols:
-        out.setdefault(test_of(s), []).append(s)
+        out.setdefault(str(kind_of(s.removesuffix("'"))[0]), []).append(s)
     return {name: tuple(those) for name, those in out.items()}
 
 
