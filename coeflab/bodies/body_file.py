@@ -336,7 +336,10 @@ class BodyFile(takes.Declaration):
             raise InputError("nothing", what, column=key, advice=f"Add {key}.")
         if self.prime is not None and not primed and (self.prime.density is not None or not self.reader):
             key = "prime.density" if self.reader else "prime"
-            raise InputError("a key without mass_prime", "one [[configuration]] at least with mass_prime", column=key)
+            raise InputError(
+                "a key without mass_prime", "one [[configuration]] at least with mass_prime", column=key,
+                advice="Delete density in [prime]." if self.reader else "Delete [prime].",
+            )  # fmt: skip
         for i, one in enumerate(self.configuration):
             try:
                 one.require_mass()
