@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -199,13 +199,9 @@ def _stay(lost: Sequence[Finding], before: Sequence[Finding], ours: CoefficientS
         stays = tuple(
             primed(c.symbol) for c in ours.coefficients if plain_name(c.symbol) in named and c.value is not None
         )
-        facts = {fact.name: fact.value for fact in f.facts}
+        facts: dict[str, Any] = {fact.name: fact.value for fact in f.facts} | ({"stays": stays} if stays else {})
         code = "move.stays" if stays else LEFT_OUT
-        out.append(
-            Finding.of(
-                code, f.subject, Severity.FAIL, statistic=f.statistic, **facts | ({"stays": stays} if stays else {})
-            )
-        )
+        out.append(Finding.of(code, f.subject, Severity.FAIL, statistic=f.statistic, **facts))
     return out
 
 
