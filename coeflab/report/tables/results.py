@@ -230,8 +230,8 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
         stated = all(t.arm_point is not None for t in own if {"q", "r"} & set(t.varies))
         out.append(
             f"{listed([primed(s) for s in slopes])}: velocities of {f.campaign} are at {point_in_words(at, own[0].datum)}, {abs(shift):.3g} m "
-            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}put the drift runs "
-            f"into this campaign, for a move takes its {listed([primed(n) for n in needed])}."
+            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}give the drift runs "
+            f"beside it, for a move takes its {listed([primed(n) for n in needed])}."
         )
     return tuple(out)
 
@@ -551,6 +551,21 @@ def sources_of_numbers(study: Study) -> frozenset[str]:
 def _of(components: Sequence[str], table: ForceTable) -> str:
     whole = "" in components or (len(components) > 1 and set(components) >= set(table.forces))
     return "row" if whole else " ".join(components)
+
+
+def unused_rows(table: ForceTable) -> list[str]:
+    """Every row, or component of one, that no fit uses, by the reason."""
+    by: dict[str, dict[int, list[str]]] = {}
+    for e in table.exclusions:
+        by.setdefault(e.reason, {}).setdefault(e.row, []).append(e.component)
+    out = []
+    for reason, rows in by.items():
+        names = [
+            table.labels[row] + (f" {of}" if (of := _of(list(dict.fromkeys(c)), table)) != "row" else "")
+            for row, c in rows.items()
+        ]
+        out.append(f"{', '.join(names)}: {reason}")
+    return out
 
 
 NAMED = 12  # rows that a line names; of more the first
