@@ -15,7 +15,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import FORCES, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -188,6 +188,7 @@ def interpreted(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
+    complaints += tuple(_in_vain(raw, mapping, still))
     return Interpretation(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
@@ -297,6 +298,24 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
 
 
+def _in_vain(
+    raw: RawTable, mapping: Mapping[str, ColumnMap], still: Sequence[tuple[RawColumn, Proposal]]
+) -> Iterator[InputError]:
+    """What no answer to a question mends: lift without drag where no column is left that may be it, a speed of zero throughout."""
+    said_of = dict(mapping) | {c.name: read_column_map(o.text.partition(" [")[0]) for c, o in still if o.text}
+    wind = {m.name: name for name, m in said_of.items() if m.name in WIND and not m.error}
+    if wind and "drag" not in wind and all(o.text for _, o in still):
+        force, one = next(iter(wind.items()))
+        yield InputError(
+            f"{force} without drag", "a column drag", file=raw.path, column=one,
+            advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.",
+        )  # fmt: skip
+    for c in raw.columns:
+        given = said_of.get(c.name)
+        if given is not None and given.name == "U" and len(raw) and not np.any(np.nan_to_num(c.values)):
+            yield InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=c.name)
+
+
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
     """A warning where no setting is anything but zero, with the columns that vary and that no fit would use."""
     moving = [c for c in columns if c.said.role in ("angle", "velocity", "control", "radius") and c.said.name != "u"]
@@ -323,17 +342,11 @@ def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError
     if not angles or not linear:
         return
     named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
-    at_rest = not any(np.any(np.nan_to_num(c.values) != 0.0) for c in angles)
-    one = linear[0].column.name
-    ways = [f"--map {shlex.quote(f'{one}=U [m/s]')} where {speeds} is the speed"] * (
-        len(linear) == 1 and linear[0].said.name == "u"
-    )
-    ways += [f"--map {shlex.quote(f'{c.column.name}=ignore')} as it is zero" for c in angles] * (
-        at_rest and len(angles) == 1
-    )
+    alone = len(linear) == 1 and linear[0].said.name == "u"
+    way = f"Give --map {shlex.quote(f'{linear[0].column.name}=U [m/s]')} where {speeds} is the speed." * alone
     yield InputError(
         f"angles ({named}) and velocities ({speeds})", "one or the other", file=raw.path, column=named,
-        advice=f"Give {' or '.join(ways)}." if ways else "Leave the columns of one kind out: --map COLUMN=ignore.",
+        advice=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
     )  # fmt: skip
 
 

@@ -361,3 +361,17 @@ def test_a_speed_without_a_unit_and_forces_of_zeros_ask_no_conditions(tmp_path: 
     keys = open_keys(tmp_path / "t.csv")
     assert {"conditions.speed", "conditions.density"}.isdisjoint(keys)
     assert "columns.units" in keys
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("alpha,Cl\n-4,-0.4\n0,0\n4,0.4\n", "lift without drag"),
+        ("alpha,Vitesse,Fx (N),Fz (N)\n-4,0,1,-0.4\n0,0,1,0\n4,0,1,0.4\n", "a speed of zero throughout"),
+    ],
+)
+def test_what_no_answer_mends_is_refused_before_any_question(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "t.csv").write_text(text)
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    assert words in [why.found for why in found.complaints]
