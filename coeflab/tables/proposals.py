@@ -437,6 +437,10 @@ def proposals(
         if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
+        if folded(column.name) in SHIP and taken.get("U", column.name) != column.name:
+            out[i] = Proposal("ignore", f"U is {taken['U']} already")
+        if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and _fits(column.unit, "moment"):
+            out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
     return tuple(_without_a_doubled_flow(raw, out))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from coeflab.fits.rows.straight_runs import straight_runs
+from coeflab.study.checks import data_gate
 from coeflab.study.checks.propeller import left_out, self_propulsion
 from coeflab.study.checks.straight_runs import friction
 from coeflab.tables.column_map import read_column_map
@@ -101,3 +102,18 @@ def test_a_resistance_table_gives_its_form_factor(read_table: Read, tmp_path: Pa
     (found,) = friction(runs, table)
     assert found.statistic == pytest.approx(1.15 * 3.2 / 16.0, rel=1e-5)
     assert found["per"] == pytest.approx(0.03 * 3.2 / 16.0, rel=1e-3)
+
+
+def test_a_speed_of_the_model_is_taken_before_that_of_the_ship_and_torque_is_of_no_use(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text(
+        "Vs (kn),Vm (m/s),n (rps),Q (Nm),T (N),Fx (N)\n" + "".join(f"{v},{v / 10},{v},1,2,{-v}\n" for v in (8, 10, 12))
+    )
+    raw = IMPORTERS.load("table").raw(tmp_path / "t.csv", {})
+    assert [p.text for p in proposals(raw)] == ["ignore", "U [m/s]", "rps [rps]", "ignore", "thrust [N]", "X [N]"]
+
+
+def test_a_test_of_self_propulsion_varies_the_rate(read_table: Read) -> None:
+    table = read_table("beta [deg],U [m/s],rps [rps],X [N]\n0,1,6,-2\n0,1,8,-1\n0,1,10,0.5\n")
+    assert all("nothing varies" not in c.statistic for c in data_gate.findings([table], 4.0))
+    still = read_table("beta [deg],U [m/s],rps [rps],X [N]\n0,1,6,-2\n0,1,6,-2\n0,1,6,-2.1\n")
+    assert any("nothing varies" in c.statistic for c in data_gate.findings([still], 4.0))

@@ -489,7 +489,9 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
 
 def _at_rest(tables: Sequence[ForceTable]) -> list[Check]:
     """A campaign without a motion or control in any row, from which no slope follows."""
-    if any(t.varies for t in tables) or any(straight_runs(t, t.scaling.length) for t in tables):
+    if any(t.varies or np.ptp(t.propeller.get("rps", np.zeros(1))) > 0.0 for t in tables) or any(
+        straight_runs(t, t.scaling.length) for t in tables
+    ):
         return []
     speeds = np.concatenate([t.speed for t in tables])
     resistance = float(np.ptp(speeds)) > AHEAD * float(np.max(np.abs(speeds), initial=0.0))
