@@ -175,7 +175,7 @@ def parsers() -> dict[str, Parser]:
         "mapping": Parser(_corpus("mapping.toml"), saved_mapping),
         "boxes": Parser(_corpus("boxes.toml"), read_boxes),
         "motion": Parser(_corpus("motion.csv"), _motion),
-        "record": Parser(_corpus("record.txt"), lambda p: read_series(p, _vehicle(), RECORD)),
+        "record": Parser(_corpus("record.txt"), lambda p: read_series(p, _vehicle(), RECORD), share=0.3),
         "foam": Parser(_shipped("tests/tables/samples/openfoam/arm_srf"), _foam),
         "mesh": Parser(_corpus("body.stl", "binary.stl", "body.obj", "body.ply", "binary.ply", "body.glb", "body.dae"), load),
         "job": Parser(_corpus("job.json"), lambda p: read_job(p.parent)),
