@@ -20,6 +20,8 @@ from coeflab.motion.simulation import simulate as carried_out
 from coeflab.motion.trajectory import Trajectory
 from coeflab.vehicle.parameter_file import ParameterFile
 
+__all__ = ["Motion", "Simulation", "carried_out", "simulate"]
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes

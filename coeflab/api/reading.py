@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coeflab.api.importing import filled_in
 from coeflab.api.questions import in_keywords, open_questions, settings_of
 from coeflab.api.table import Table
 from coeflab.core.errors import InputError, shown, together
@@ -16,12 +17,9 @@ from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.form import of_campaign
-from coeflab.tables.imported import Filled
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
-from coeflab.tables.mapping import assigned
-from coeflab.tables.parts import Part, own, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.parts import Part, read_parts, require_parts, stated_together, with_shared_words
 from coeflab.tables.settings import assumed
 from coeflab.tables.several_tables import complaints_of, form_together, is_pending, settled_together
 
@@ -289,15 +287,8 @@ def _filled_in(
     if is_pending(parts, founds) or (chosen and not accept):
         lines = form_together(parts, founds, settings, [one.line for one in chosen] if not accept else [], None, whole)
         raise open_questions(lines, source, [p.name for p in parts])
-    filled = []
-    for part, found in zip(parts, founds, strict=True):
-        mine = of_campaign(own(settled, part, parts))
-        got = assigned(part.raw, found.mapping)
-        filled.append(
-            Filled(part.name, part.raw, part.importer, part.options, got, found.mapping, mine, frozenset(found.about))
-        )
     try:
-        return tuple(map(table_of, tables_of(filled)))
+        return tuple(map(table_of, tables_of(filled_in(parts, founds, settled))))
     except InputError as why:
         raise in_keywords(why, source) from None
 

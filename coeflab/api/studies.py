@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from coeflab.report.acceptance import Acceptance
     from coeflab.report.document import Document
+    from coeflab.study.towed import Towed
 
+__all__ = ["Plan", "Study", "report_files", "require_formats", "run", "studied"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
@@ -40,6 +42,13 @@ class Study(plain.Study):
     def result(self) -> Result:
         """The coefficients of all fits; of one that several give, ``of(campaign)`` chooses."""
         return Result(tuple(self.fits), tuple(self.tables))
+
+    @property
+    def tows(self) -> tuple[Towed, ...]:
+        """Every planned tow, carried out or not: its coefficients beside published columns and tests."""
+        from coeflab.study.towed import towed
+
+        return towed(self)
 
     def vehicle(self, name: str = "") -> Vehicle:
         """A parameter file of the study as a vehicle.

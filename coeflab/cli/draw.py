@@ -42,15 +42,14 @@ def command(
 
     NAME.svg and NAME.png with dimensions, datum, reference point, centres, hinges and thrusters; particulars, hulls, foils, ring wings and bluff parts, and what of the body no estimate sees.
     """
-    from coeflab.bodies.outlining import outline_table
-    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.api.body import typed_body
     from coeflab.core.errors import OutputError
     from coeflab.core.files import write_all
     from coeflab.core.text.bounded import holds
     from coeflab.report.figures.three_views import three_views
-    from coeflab.report.tables.added_mass import particulars
+    from coeflab.report.tables.added_mass import outline_table, particulars
 
-    found = mesh_body(body, unit, axes, repair, fill, sheets)
+    found = typed_body(body, unit, axes, repair, fill, sheets)
     folder = Path() if out is None else out
     stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in found.name)
     files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}

@@ -67,33 +67,21 @@ def command(
     A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, appendages of a round hull, and
     bodies along their seams. Exit code 1 where a projected area is off by more than 20 %.
     """
-    from coeflab.bodies.added_masses import against_mesh
-    from coeflab.bodies.simplify.simplified import MESH
-    from coeflab.bodies.simplify.simplify import parse_box, read_boxes, simplify
-    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.api.body import typed_body
+    from coeflab.api.simplifying import MESH, parse_box, read_boxes, simplify
+    from coeflab.api.simplifying import files as files_of
     from coeflab.core.errors import InputError, OutputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.text.bounded import holds
-    from coeflab.core.wording import Verbatim
-    from coeflab.report.figures.body import body_figure
-    from coeflab.report.figures.body_scene import body_scene
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
     with show.narrated():
-        result = simplify(mesh_body(mesh, unit, axes, repair, fill, sheets), named, parts, split == "convex")
-        found = against_mesh(result, panels=panels)
-    name = found.body.name
-    folder = out if out is not None else Path(name)
-    figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")
-    files = {
-        "body.toml": found.part_file(),
-        MESH: found.mesh_file(),
-        **found.mesh_parts(),
-        "overlay.svg": figure.svg.encode(),
-        "overlay.glb": body_scene(name, found.shape, found.mesh),
-    }
+        given = typed_body(mesh, unit, axes, repair, fill, sheets)
+        found = simplify(given, named, parts, convex=split == "convex", panels=panels)
+    folder = out if out is not None else Path(found.body.name)
+    files = files_of(found)
     for file, content in files.items():
         path = folder / file
         if not force and path.exists() and not holds(path, content):

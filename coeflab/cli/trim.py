@@ -154,8 +154,8 @@ def _si(name: str, value: float, option: str) -> float:
 
 def as_json(found: Trim) -> dict[str, Any]:
     """The trim as one JSON object, SI and rad."""
-    from coeflab.cli.as_json import accelerations
     from coeflab.core.wording import finite
+    from coeflab.report.as_json.motions import accelerations
 
     point, f = found.point, found.point.found
     return {

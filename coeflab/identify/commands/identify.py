@@ -104,12 +104,12 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
     from coeflab.api.parameters import read_parameters
     from coeflab.api.vehicle import Vehicle
-    from coeflab.cli.as_json import findings
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
     from coeflab.core.wording import file_stem
     from coeflab.identify.identified_figures import bench_figure
     from coeflab.identify.thruster import WINDOW, bench_test, with_curves
+    from coeflab.report.as_json.findings import findings
     from coeflab.report.figures.svg import sheet
 
     within = quantity(window, "time", key="--window") if window else WINDOW

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.outlining import fins_along
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -16,7 +18,7 @@ from coeflab.vehicle.inertia import water_inertia
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.outline import Outline
     from coeflab.bodies.triangulation import Triangulation
     from coeflab.law.added_mass import AddedMass
     from coeflab.study.study import Study
@@ -69,6 +71,75 @@ def sound(mesh: TriangleMesh) -> str:
         f"the mesh of {len(mesh.faces)} faces is closed, wound outward, without faces of no area or faces twice; "
         f"{size} m along x forward, y starboard, z down: look whether unit and axes are right"
     )
+
+
+def seen(body: Body) -> list[str]:
+    """What was made sure of a mesh, and of fins along the hull, in words."""
+    shape = body.shape
+    out = [sound(shape)] if isinstance(shape, TriangleMesh) and shape.remade is None else []
+    standing = fins_along(body.outline) if body.outline is not None else None
+    return out if standing is None else [*out, standing.words]
+
+
+def outline_table(outline: Outline) -> Table:
+    """Hulls, foils, ring wings and bluff parts with their sizes and places.
+
+    Parameters
+    ----------
+    outline : Outline
+    """
+    rows = []
+    for hull in outline.hulls:
+        size = f"length {hull.length:.4g}, {float(hull.breadth.max()):.3g} x {float(hull.depth.max()):.3g}"
+        rows.append(
+            (
+                hull.name,
+                "hull",
+                number(float(-np.trapezoid(hull.girth, hull.x)), 3),
+                size,
+                number(round(float(hull.x[0]), 9), 4),
+                "",
+            )
+        )
+    for foil in outline.foils:
+        size = f"span {foil.span:.3g}, chords {foil.root_chord:.3g} to {foil.tip_chord:.3g}, t/c {foil.thickness:.2g}"
+        rows.append((foil.name, "foil", number(foil.area, 3), size, number(float(foil.root[0]), 4), foil.control))
+    for ring in outline.rings:
+        size = f"diameter {ring.diameter:.3g}, chord {ring.chord:.3g}, t/c {ring.thickness:.2g}"
+        rows.append(
+            (
+                ring.name,
+                "ring",
+                number(np.pi * ring.diameter * ring.chord, 3),
+                size,
+                number(float(ring.centre[0]), 4),
+                "",
+            )
+        )
+    for screw in outline.propellers:
+        size = f"diameter {screw.diameter:.3g}, P/D {screw.pitch_ratio:.3g}, {screw.blades} blades"
+        area = number(np.pi / 4.0 * screw.diameter**2 * screw.area_ratio, 3)
+        rows.append((screw.name, "propeller", area, size, number(float(screw.centre[0]), 4), ""))
+    for part in outline.bluff:
+        size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
+        rows.append(
+            (
+                part.name,
+                f"bluff {part.kind}",
+                number(float(part.areas.max()), 3),
+                size,
+                number(float(part.centre[0]), 4),
+                "",
+            )
+        )
+    notes = [
+        "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
+        "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
+        *(("propeller: expanded area of its blades, centre of its disc",) if outline.propellers else ()),
+        *(f"left out: {line}" for line in outline.left_out),
+    ]
+    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
+    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
 
 
 def derivatives(found: Triangulation) -> Table:

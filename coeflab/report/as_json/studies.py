@@ -1,22 +1,13 @@
-"""The JSON contract of the command line.
-
-A body's particulars for machines.
-"""
+"""Studies, fits, exports and publications for machines."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.finding import Finding
-from coeflab.core.table import Check
-from coeflab.core.texts import remark
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
@@ -24,14 +15,14 @@ from coeflab.fits.results.oscillation import Oscillation
 from coeflab.formats.export import Export, Loss
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, primed
-from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
+from coeflab.report.as_json.findings import finding, finding_as_data
+from coeflab.report.as_json.motions import accelerations
 from coeflab.report.tables import next_runs as next_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.tables.force_table import ForceTable
-from coeflab.vehicle.inertia import WaterInertia
 
 
 def coefficient(c: Coefficient, scaling: str, assumed: Sequence[Finding] = ()) -> dict[str, Any]:
@@ -53,14 +44,6 @@ def coefficient(c: Coefficient, scaling: str, assumed: Sequence[Finding] = ()) -
         "assumed": [f["key"] for f in assumed],
         "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
     }
-
-
-def finding_as_data(f: Finding) -> dict[str, Any]:
-    """A finding as data, and its words."""
-    return {
-        "code": f.code, "subject": f.subject, "severity": str(f.severity), "statistic": f.statistic, "threshold": f.threshold,
-        "advice": f.advice, "facts": {name: list(v) if isinstance(v, tuple) else v for name, v in f.facts}, "words": remark(f),
-    }  # fmt: skip
 
 
 def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
@@ -168,19 +151,6 @@ def oscillation(campaign: str, o: Oscillation) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def accelerations(water: WaterInertia) -> dict[str, Any]:
-    """Which accelerations were asked for and taken, and where they come from."""
-    return {"asked": water.asked, "used": water.used, "source": water.source, "warnings": list(water.warnings)}
-
-
-def findings(found: Sequence[Check]) -> list[dict[str, str]]:
-    """Findings of `coeflab params check`."""
-    return [
-        {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
-        for c in found
-    ]
-
-
 def export(made: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
     loss = made.loss
@@ -214,14 +184,6 @@ def accelerations_compared(loss: Loss) -> dict[str, Any]:
         "largest": [finite(x) for x in found.largest.tolist()],
         "why_not": loss.not_compared or None,
     }
-
-
-def finding(c: Check) -> dict[str, str]:
-    """One finding of a check."""
-    return {
-        "check": c.name, "subject": c.subject, "severity": c.severity.value, "found": c.statistic, "rule": c.rule,
-        "comment": c.comment,
-    }  # fmt: skip
 
 
 def numbers(found: Held) -> dict[str, dict[str, int]]:
@@ -324,36 +286,6 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
     }
 
 
-def figures(found: tuple[Figure, ...]) -> list[dict[str, Any]]:
-    """Figures of a manoeuvre; absent values are null and carry a status."""
-    return [
-        {
-            "name": f.name, "value": f.value, "unit": f.unit, "status": f.status, "why": f.why or None,
-            "interval_95": None if f.low is None else [f.low, f.high], "definition": f.definition,
-        }
-        for f in found
-    ]  # fmt: skip
-
-
-def simulation(made: Simulation) -> dict[str, Any]:
-    """A simulated manoeuvre without its time series."""
-    t = made.trajectory
-    return {
-        "vehicle": made.vehicle.name,
-        "manoeuvre": made.manoeuvre.name,
-        "free": list(made.vehicle.free),
-        "accelerations": accelerations(made.vehicle.water),
-        "ended": t.ended.value,
-        "why": t.why or None,
-        "duration": float(t.time[-1]),
-        "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
-        "determined_until": None if math.isinf(made.determined) else made.determined,
-        "undetermined": made.undetermined or None,
-        "figures": figures(made.figures),
-        "statements": list(made.statements),
-    }
-
-
 def acceptance(found: Acceptance) -> dict[str, Any]:
     """A publication reproduced, table by table."""
     return {
@@ -383,27 +315,3 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "statements": list(found.statements),
         "citations": list(found.citations),
     }  # fmt: skip
-
-
-def body_json(body: Body, density: float) -> dict[str, Any]:
-    """Volumes, centres, areas and inertia of the displaced water by configuration, SI, FRD; None where not known."""
-    out: dict[str, Any] = {"body": body.name, "datum": str(body.datum), "density": density}
-    if isinstance(body.shape, TriangleMesh):
-        out |= {"faces": len(body.shape.faces), "extents": body.shape.extents.tolist()}
-    out["configurations"] = [
-        {
-            "name": c.name,
-            "title": c.title,
-            "volume": c.volume,
-            "wetted_surface": c.wetted_surface,
-            "centre_of_buoyancy": _listed(c.centre_of_buoyancy),
-            "projected_areas": _listed(c.projected_areas),
-            "displaced_inertia": _listed(c.displaced_inertia(density)),
-        }
-        for c in body.configurations
-    ]
-    return out
-
-
-def _listed(values: NDArray[np.float64] | None) -> list[Any] | None:
-    return None if values is None else list(values.tolist())
