@@ -18,6 +18,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.study.fitting import fitted
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import suited_fit
 
 USUAL = Importer.fit
@@ -112,6 +113,8 @@ def _suited(every: Sequence[Any]) -> str:
     from coeflab.core.files import located
 
     first = every[0]
+    if isinstance(first, PlanarMotionTable):
+        return next(name for name in FITS.usable() if FITS.load(name).reads_series)
     return suited_fit(located(first, "cfd_data")) if isinstance(first, str | Path) else USUAL
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from coeflab.api.importing import filled_in
 from coeflab.api.questions import in_keywords, open_questions, settings_of
-from coeflab.api.table import Table
+from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.wording import identifier
@@ -20,6 +20,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
 from coeflab.tables.parts import Part, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.settings import assumed
 from coeflab.tables.several_tables import complaints_of, form_together, is_pending, settled_together
 
@@ -240,7 +241,10 @@ def tables_from(
 
 def table_of(read: ForceTable) -> Table:
     """A force table with the front door's methods."""
-    return read if isinstance(read, Table) else Table(**{f.name: getattr(read, f.name) for f in fields(ForceTable)})
+    if isinstance(read, Table):
+        return read
+    kind = OscillatingTable if isinstance(read, PlanarMotionTable) else Table
+    return kind(**{f.name: getattr(read, f.name) for f in fields(read)})
 
 
 def _called(source: Any) -> str:

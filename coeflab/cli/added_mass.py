@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.body import Body
@@ -17,12 +17,7 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
-    ),
+    body: str = options.BODY,
     method: str = typer.Option(
         "all",
         "--method",
@@ -30,20 +25,11 @@ def command(
         autocompletion=complete.methods,
         help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ...",
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     wall: str = typer.Option(
         "",
         "--wall",

@@ -6,33 +6,18 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab draw myring_auv"
 
 
 def command(
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
-    ),
-    unit: str = typer.Option(
-        "", "--unit", metavar="UNIT", autocompletion=complete.units, help="Of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        "--axes",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Of a mesh file: FRD, FLU, CFD or forward,port,up.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    body: str = options.BODY,
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder to write; the current one without it."
     ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.exporting import Export, ParameterFile
@@ -20,9 +20,7 @@ EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to x
 
 
 def command(
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
+    file: Path = options.PARAMS,
     to: list[str] = typer.Option(
         [],
         "--to",
@@ -39,9 +37,7 @@ def command(
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although a target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    accelerations: str = options.ACCELERATIONS,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Write what simulators load, and say what is lost.

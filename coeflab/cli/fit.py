@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def command(
     include_uncertain: bool = typer.Option(
         False, "--include-uncertain", help="Use cells that the source marks as doubtful."
     ),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Fit the coefficients of one table, or of several jointly.
@@ -93,7 +93,7 @@ def command(
     import coeflab as cf
     from coeflab.api.campaigns import fit_campaigns, suited_fit
 
-    names, options = given([*table, *ctx.args], constraint)
+    names, of_fit = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
     if figure is not None and figure.suffix not in (".svg", ".pdf", ".png"):
@@ -112,7 +112,7 @@ def command(
     scaling = cf.Scaling(quantity(length, "length", key="--length"), length_name) if length else None
     with show.progress(json) as say:
         study = fit_campaigns(
-            paths, fit, options, speed=at, scaling=scaling, include_uncertain=include_uncertain, progress=say
+            paths, fit, of_fit, speed=at, scaling=scaling, include_uncertain=include_uncertain, progress=say
         )
     wanted = [s.removesuffix("'") for s in symbol]
     _refuse_strange(study, wanted)

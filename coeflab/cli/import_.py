@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.errors import OutputError
 
 if TYPE_CHECKING:
@@ -45,9 +45,7 @@ def command(
         [], "--set", metavar="KEY=VALUE", help="Any key of campaign.toml: axes.frame=CFD; repeatable."
     ),
     mapping: Path = typer.Option(None, metavar="FILE.toml", help="A mapping.toml that an earlier import wrote."),
-    option: list[str] = typer.Option(
-        [], "--option", metavar="NAME=VALUE", help="An option of the importer: sheet=Drift; repeatable."
-    ),
+    option: list[str] = options.OF_IMPORTER,
     as_: str = typer.Option(
         "",
         "--as",
@@ -55,19 +53,12 @@ def command(
         autocompletion=complete.importers,
         help="Read it with this importer (coeflab formats importers).",
     ),
-    name: list[str] = typer.Option(
-        [],
-        "--name",
-        metavar="PATTERN",
-        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
-    ),
-    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    name: list[str] = options.PATTERN,
+    runs: Path = options.RUNS,
     state: Path = typer.Option(
         None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
     ),
-    words: Path = typer.Option(
-        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
-    ),
+    words: Path = options.WORDS,
     accept: bool = typer.Option(
         False, "--accept", "--yes", help="Accept the proposals of the form, axes and signs too."
     ),

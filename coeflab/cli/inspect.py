@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,41 +27,23 @@ def command(
         autocompletion=complete.inspected,
         help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file.",
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     density: float = typer.Option(
         show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
     ),
-    name: list[str] = typer.Option(
-        [],
-        "--name",
-        metavar="PATTERN",
-        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
-    ),
-    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    name: list[str] = options.PATTERN,
+    runs: Path = options.RUNS,
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
-    option: list[str] = typer.Option(
-        [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
-    ),
-    words: Path = typer.Option(
-        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
-    ),
+    option: list[str] = options.OF_IMPORTER,
+    words: Path = options.WORDS,
     rows: int = typer.Option(
         60, "--rows", metavar="COUNT", min=0, help="Most rows of a table that are shown; 0 shows all."
     ),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Show a table in SI and FRD, a mesh, or a body.
@@ -151,13 +133,13 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     from coeflab.core.wording import identifier
 
     path = located(table, "cfd_data")
-    options = options_of(option)
-    draft = Draft(path, Stated(importer=importer, options=dict(options)))
+    given_it = options_of(option)
+    draft = Draft(path, Stated(importer=importer, options=dict(given_it)))
     try:
         with show.narrated(), show.progress(json) as say:
             draft.read(say)
     except InputError as why:
-        if run := single_run(path, importer, options):
+        if run := single_run(path, importer, given_it):
             _run(path, *run, json, why)
             return
         raise
@@ -228,33 +210,11 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.core.files import located
     from coeflab.core.finding import Severity
     from coeflab.report.as_json.findings import finding
+    from coeflab.report.as_json.studies import table as as_json
 
     read, found = campaign_tables(located(table, "cfd_data"))
     if json:
-        show.json_object(
-            {
-                "tables": [
-                    {
-                        "name": t.name,
-                        "body": t.body,
-                        "rows": len(t),
-                        "varies": list(t.varies),
-                        "components": list(t.forces),
-                        "reference_point": [float(x) for x in t.reference_point],
-                        "datum": t.datum.id,
-                        "scaling": str(t.scaling),
-                        "density": t.conditions.density,
-                        "density_of_rows": None if t.density is None else [float(x) for x in t.density],
-                        "excluded": [
-                            {"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions
-                        ],
-                        "notes": list(t.notes),
-                    }
-                    for t in read
-                ],
-                "checks": [finding(c) for c in found],
-            }
-        )
+        show.json_object({"tables": [as_json(t) for t in read], "checks": [finding(c) for c in found]})
     else:
         _print(read, rows)
         show.findings(found)

@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 
 SLOW = 2.0
 MOST_WARNINGS, MOST_FILES = 8, 4  # before they are named in short
-ACCELERATIONS = (
-    "Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed "
-    "throughout."
-)
 COLOURS = {
     "pass": "green", "holds": "green", "within": "green", "written": "green", "fail": "bold red", "apart": "bold red",
     "warn": "yellow", "beyond": "yellow", "no verdict": "dim", "no table": "dim", "no data": "dim",

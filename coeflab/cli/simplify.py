@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 EXAMPLE = "coeflab simplify huuv_mesh"
 
@@ -19,22 +19,10 @@ def command(
         autocompletion=complete.bodies,
         help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file.",
     ),
-    unit: str = typer.Option(
-        "",
-        "--unit",
-        metavar="UNIT",
-        autocompletion=complete.units,
-        help="Of a mesh file: m, mm, in ... Required with one.",
-    ),
-    axes: str = typer.Option(
-        "",
-        "--axes",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
     sheets: bool = typer.Option(
         False, "--sheets", help="As of other commands; a mesh with open surfaces has no parts, and is refused."
     ),

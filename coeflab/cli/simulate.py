@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
 from coeflab.core.registry import of_application
@@ -31,14 +31,10 @@ def command(
         autocompletion=complete.parameters,
         help="A parameter file, or a shipped vehicle; the body.toml of a vehicle with an arm, or a shipped one: urv_puma.",
     ),
-    manoeuvre: str = typer.Option(
-        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
-    ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
-    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
-    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    manoeuvre: str = options.MANOEUVRE,
+    free: str = options.FREE,
+    hold: str = options.HOLD,
+    current: str = options.CURRENT,
     simulator: str = typer.Option(
         "rigid_body", metavar="NAME", autocompletion=complete.simulators, help="See coeflab formats simulators."
     ),
@@ -49,10 +45,8 @@ def command(
     record: float = typer.Option(
         0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     to: str = typer.Option(
         "csv", metavar="FORMAT", autocompletion=complete.tables, help="Format of the motion: csv or parquet."
     ),

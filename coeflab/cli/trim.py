@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.trimming import LinearModel, Trim
@@ -18,9 +18,7 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 
 def command(
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
+    file: Path = options.PARAMS,
     speed: str = typer.Option("", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn".'),
     sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
     heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),
@@ -36,9 +34,7 @@ def command(
     near: list[str] = typer.Option(
         [], "--near", metavar="NAME=VALUE", help="Among several solutions the one nearest to this; angles in deg."
     ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
+    free: str = options.FREE,
     plane: str = typer.Option(
         "",
         metavar="PLANE",
@@ -46,10 +42,8 @@ def command(
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
     seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
     linear: bool = typer.Option(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.uncertainty import Carried
@@ -19,12 +19,8 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
-    manoeuvre: str = typer.Option(
-        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
-    ),
+    file: Path = options.PARAMS,
+    manoeuvre: str = options.MANOEUVRE,
     members: int = typer.Option(
         1000, metavar="COUNT", help="Draws of the coefficients, each of which makes the manoeuvre."
     ),
@@ -39,21 +35,17 @@ def command(
         metavar="FOLDER",
         help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches.",
     ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
-    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
-    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    free: str = options.FREE,
+    hold: str = options.HOLD,
+    current: str = options.CURRENT,
     kernel: str = typer.Option(
         "auto",
         metavar="NAME",
         autocompletion=complete.kernels,
         help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     out: Path | None = typer.Option(
         None, metavar="FOLDER", help="Folder for members and figure; nothing is written without it."
     ),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.report.acceptance import Acceptance
@@ -25,7 +25,7 @@ def command(
         autocompletion=complete.validations,
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Compare shipped data with their publication.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.shaping import Study
@@ -36,20 +36,11 @@ def command(
     inertia: str = typer.Option(
         "", metavar="IX,IY,IZ", help="About the centre of gravity, kg m^2.", show_default=False
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     speed: str = typer.Option("", metavar="SPEED", help='Of reference, "1.5 m/s"; default 2 m/s.', show_default=False),
     density: str = typer.Option(
         "", metavar="DENSITY", help="Of the water; default fresh, 998.2 kg/m^3.", show_default=False

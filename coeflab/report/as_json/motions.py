@@ -36,32 +36,20 @@ def simulation(made: Simulation) -> dict[str, Any]:
     """A simulated manoeuvre without its time series."""
     t = made.trajectory
     return {
-        "vehicle": made.vehicle.name,
-        "manoeuvre": made.manoeuvre.name,
-        "free": list(made.vehicle.free),
-        "accelerations": accelerations(made.vehicle.water),
-        "ended": t.ended.value,
-        "why": t.why or None,
-        "duration": float(t.time[-1]),
+        "vehicle": made.vehicle.name, "manoeuvre": made.manoeuvre.name, "free": list(made.vehicle.free),
+        "accelerations": accelerations(made.vehicle.water), "ended": t.ended.value, "why": t.why or None, "duration": float(t.time[-1]),
         "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
-        "determined_until": None if math.isinf(made.determined) else made.determined,
-        "undetermined": made.undetermined or None,
-        "figures": figures(made.figures),
-        "statements": list(made.statements),
-    }
+        "determined_until": None if math.isinf(made.determined) else made.determined, "undetermined": made.undetermined or None,
+        "figures": figures(made.figures), "statements": list(made.statements),
+    }  # fmt: skip
 
 
 def carried(made: Carried) -> dict[str, Any]:
     """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
     q = made.question
     return {
-        "vehicle": made.vehicle,
-        "manoeuvre": q.manoeuvre,
-        "members": q.members,
-        "seed": q.seed,
-        "accelerations": accelerations(made.water),
-        "motions": made.runs,
-        "undetermined": made.undetermined or None,
+        "vehicle": made.vehicle, "manoeuvre": q.manoeuvre, "members": q.members, "seed": q.seed,
+        "accelerations": accelerations(made.water), "motions": made.runs, "undetermined": made.undetermined or None,
         "figures": [
             {
                 "name": s.figure.name, "unit": s.figure.unit, "value": s.figure.value, "status": s.figure.status,
@@ -87,9 +75,7 @@ def carried(made: Carried) -> dict[str, Any]:
             for i in made.importances
         },
         "varied": {s: float(d) for s, d in zip(made.varied.symbols, made.varied.deviation, strict=True)},
-        "held": list(made.varied.held),
-        "ranking": list(ranking(made)),
-        "statements": list(made.statements),
+        "held": list(made.varied.held), "ranking": list(ranking(made)), "statements": list(made.statements),
     }  # fmt: skip
 
 

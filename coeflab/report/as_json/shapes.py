@@ -45,15 +45,10 @@ def _listed(values: NDArray[np.float64] | None) -> list[Any] | None:
 def added_mass(found: AddedMass, density: float, recommended: str) -> dict[str, object]:
     """Everything that a method says of its matrix, which is in kg, kg m, kg m^2 about the point, FRD."""
     return {
-        "matrix": found.matrix.tolist(),
-        "error": None if found.error is None else found.error.tolist(),
-        "point": found.reference_point.tolist(),
-        "datum": found.datum.id,
-        "density": density,
-        "rough": found.rough,
-        "recommended": found.method == recommended,
-        "statements": list(found.statements),
-    }
+        "matrix": found.matrix.tolist(), "error": None if found.error is None else found.error.tolist(),
+        "point": found.reference_point.tolist(), "datum": found.datum.id, "density": density, "rough": found.rough,
+        "recommended": found.method == recommended, "statements": list(found.statements),
+    }  # fmt: skip
 
 
 def from_shape(study: Study) -> dict[str, Any]:
@@ -64,27 +59,21 @@ def from_shape(study: Study) -> dict[str, Any]:
     c = shape.weighed.configuration
     hull, rest = parameters.added_mass, shape.weighed.at_rest
     return {
-        "name": name,
-        "displacement": shape.conditions.density * (c.volume or 0.0),
-        "volume": c.volume,
+        "name": name, "displacement": shape.conditions.density * (c.volume or 0.0), "volume": c.volume,
         "mass": None if c.mass is None else c.mass.mass,
         "centre_of_buoyancy": None if c.centre_of_buoyancy is None else c.centre_of_buoyancy.tolist(),
         "centre_of_gravity": None
         if c.mass is None
         else (c.mass.centre_of_gravity + shape.weighed.body.reference_point).tolist(),
         "inertia_matrix": None if c.mass is None or c.mass.inertia_matrix is None else c.mass.inertia_matrix.tolist(),
-        "wetted_surface": c.wetted_surface,
-        "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
+        "wetted_surface": c.wetted_surface, "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
         "reference_point": shape.weighed.body.reference_point.tolist(),
         "added_mass": None if hull is None else {
             "method": hull.method, "matrix": hull.matrix.tolist(),
             "walls": [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in hull.walls],
         },
-        "at_rest": None if rest is None else {"pitch": rest[0], "roll": rest[1]},
-        "mesh": list(mesh_statements(shape.weighed.body)),
-        "assumed": list(shape.weighed.assumed),
-        "said": list(shape.said),
-        "missing": list(shape.missing),
+        "at_rest": None if rest is None else {"pitch": rest[0], "roll": rest[1]}, "mesh": list(mesh_statements(shape.weighed.body)),
+        "assumed": list(shape.weighed.assumed), "said": list(shape.said), "missing": list(shape.missing),
         "estimates": [
             {
                 "symbol": k.symbol, "value": k.value, "u95": k.u95, "value_si": k.value_si, "unit_si": k.unit_si,

@@ -29,21 +29,11 @@ def coefficient(c: Coefficient, scaling: str, assumed: Sequence[Finding] = ()) -
     """One coefficient; absent values are null and carry a status."""
     p = c.parts
     return {
-        "symbol": primed(c.symbol),
-        "value": c.value,
-        "u95": c.u95,
-        "unit": c.unit,
-        "table": c.table,
-        "campaign": c.campaign,
-        "body": c.body,
-        "scaling": scaling,
-        "estimator": c.estimator or None,
-        "window": None if c.window is None else list(c.window),
-        "n_points": c.n_points,
-        "status": c.status.value,
-        "assumed": [f["key"] for f in assumed],
+        "symbol": primed(c.symbol), "value": c.value, "u95": c.u95, "unit": c.unit, "table": c.table, "campaign": c.campaign,
+        "body": c.body, "scaling": scaling, "estimator": c.estimator or None, "window": None if c.window is None else list(c.window),
+        "n_points": c.n_points, "status": c.status.value, "assumed": [f["key"] for f in assumed],
         "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
-    }
+    }  # fmt: skip
 
 
 def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
@@ -70,15 +60,8 @@ def model(m: FittedModel) -> dict[str, Any]:
     """One fitted force law or table; a coefficient that the data leave open is null."""
     rows = zip(m.symbols, m.terms, m.fit.coefficients, m.half_width, strict=True)
     return {
-        "response": m.response,
-        "unit": m.unit,
-        "form": m.form,
-        "table": m.table,
-        "campaign": m.campaign,
-        "body": m.body,
-        "n_points": m.n_points,
-        "rms": m.fit.rms,
-        "left_out_rms": finite(m.fit.press_rms),
+        "response": m.response, "unit": m.unit, "form": m.form, "table": m.table, "campaign": m.campaign, "body": m.body,
+        "n_points": m.n_points, "rms": m.fit.rms, "left_out_rms": finite(m.fit.press_rms),
         "coefficients": [
             {"symbol": s, "term": str(t), "value": finite(float(v)), "half_width_95": finite(float(h))}
             for s, t, v, h in rows
@@ -89,17 +72,14 @@ def model(m: FittedModel) -> dict[str, Any]:
             "high": [float(x) for x in m.domain.high],
             "outside": m.domain.rule.value,
         },
-        "holds": ["random", *m.shared],
-        "post_selection": m.post_selection,
-        "statements": list(m.statements),
-    }
+        "holds": ["random", *m.shared], "post_selection": m.post_selection, "statements": list(m.statements),
+    }  # fmt: skip
 
 
 def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
     """The campaigns of one component of a joint fit, and the test of one law."""
     return {
-        "response": p.response,
-        "campaign": campaign,
+        "response": p.response, "campaign": campaign,
         "campaigns": [
             {
                 "campaign": s.campaign,
@@ -121,7 +101,7 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
             "probability": finite(p.test.probability),
             "rejected": p.rejected,
         },
-    }
+    }  # fmt: skip
 
 
 def oscillation(campaign: str, o: Oscillation) -> dict[str, Any]:
@@ -155,22 +135,16 @@ def export(made: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
     loss = made.loss
     return {
-        "parameter_file": made.parameters,
-        "target": made.target,
-        "accelerations": None if loss is None else accelerations(loss.water),
-        "lossless": made.lossless,
-        "not_held": [] if loss is None else list(loss.not_held),
+        "parameter_file": made.parameters, "target": made.target, "accelerations": None if loss is None else accelerations(loss.water),
+        "lossless": made.lossless, "not_held": [] if loss is None else list(loss.not_held),
         "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
-        "changes": [] if loss is None else list(loss.changes),
-        "grid": None if loss is None else loss.grid,
-        "controls": [] if loss is None else list(loss.controls),
-        "worst_difference": None if loss is None else loss.worst.tolist(),
-        "rms_difference": None if loss is None else loss.rms.tolist(),
-        "largest_force": None if loss is None else loss.largest.tolist(),
+        "changes": [] if loss is None else list(loss.changes), "grid": None if loss is None else loss.grid,
+        "controls": [] if loss is None else list(loss.controls), "worst_difference": None if loss is None else loss.worst.tolist(),
+        "rms_difference": None if loss is None else loss.rms.tolist(), "largest_force": None if loss is None else loss.largest.tolist(),
         "astern_broadside_rest": None if loss is None or loss.rare is None else loss.rare.worst.tolist(),
         "accelerations_compared": None if loss is None else accelerations_compared(loss),
         "law_at_points": [] if loss is None else [f.model_dump(mode="json") for f in loss.at_points],
-    }
+    }  # fmt: skip
 
 
 def accelerations_compared(loss: Loss) -> dict[str, Any]:
@@ -194,10 +168,7 @@ def numbers(found: Held) -> dict[str, dict[str, int]]:
 def tow(found: Towed) -> dict[str, Any]:
     """Every wanted coefficient of a towed body; absent values are null and ``missing`` and ``why`` say why."""
     return {
-        "name": found.tow.name,
-        "body": found.body,
-        "campaign": found.tow.campaign or None,
-        "reynolds": found.reynolds,
+        "name": found.tow.name, "body": found.body, "campaign": found.tow.campaign or None, "reynolds": found.reynolds,
         "rows": [
             {
                 "symbol": primed(r.symbol),
@@ -219,28 +190,29 @@ def tow(found: Towed) -> dict[str, Any]:
             }
             for r in found.rows
         ],
-    }
+    }  # fmt: skip
 
 
 def declared(t: ForceTable) -> dict[str, Any]:
     """What its campaign.toml says of a table."""
     d = t.declared
     return {
-        "table": t.name,
-        "frame": d.frame if d else None,
-        "signs": dict(d.signs) if d else {},
-        "signs_assumed": list(t.assumed),
-        "reference_point": list(d.reference_point) if d else None,
-        "datum": t.datum.id,
-        "length": t.scaling.length,
-        "length_name": t.scaling.length_name,
-        "density": t.conditions.density,
-        "speed": t.conditions.speed,
-        "symmetry": list(t.symmetry),
-        "source": t.source.citation,
-        "source_sha256": (d.source_sha256 if d else "") or None,
+        "table": t.name, "frame": d.frame if d else None, "signs": dict(d.signs) if d else {}, "signs_assumed": list(t.assumed),
+        "reference_point": list(d.reference_point) if d else None, "datum": t.datum.id, "length": t.scaling.length,
+        "length_name": t.scaling.length_name, "density": t.conditions.density, "speed": t.conditions.speed,
+        "symmetry": list(t.symmetry), "source": t.source.citation, "source_sha256": (d.source_sha256 if d else "") or None,
         "notes": (d.notes if d else "") or None,
-    }
+    }  # fmt: skip
+
+
+def table(t: ForceTable) -> dict[str, Any]:
+    """What a table holds, SI and FRD."""
+    return {
+        "name": t.name, "body": t.body, "rows": len(t), "varies": list(t.varies), "components": list(t.forces),
+        "reference_point": t.reference_point.tolist(), "datum": t.datum.id, "scaling": str(t.scaling), "density": t.conditions.density,
+        "density_of_rows": None if t.density is None else t.density.tolist(),
+        "excluded": [{"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions], "notes": list(t.notes),
+    }  # fmt: skip
 
 
 def study(s: Study, files: list[str]) -> dict[str, Any]:
@@ -248,10 +220,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
     common = str(s.fits[0].coefficients.scaling)
     return {
-        "study": s.plan.name,
-        "passed": not s.failed,
-        "u95_of_slopes_covers": tables.covers(s),
-        "numbers": numbers(held_of_study(s)),
+        "study": s.plan.name, "passed": not s.failed, "u95_of_slopes_covers": tables.covers(s), "numbers": numbers(held_of_study(s)),
         "coefficients": [
             coefficient(c, scalings.get(c.campaign or "", common), tables.assumed_of(s, c)) for c in s.coefficients
         ],
@@ -274,16 +243,13 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             }
             for c in s.comparisons
         ],
-        "tows": [tow(t) for t in towed(s)],
-        "campaigns": [declared(t) for t in s.tables if t.declared is not None],
+        "tows": [tow(t) for t in towed(s)], "campaigns": [declared(t) for t in s.tables if t.declared is not None],
         "law_at_points": {
             name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
         },
-        "checks": [finding(c) for c in s.checks],
-        "exports": [export(result) for result in s.exports],
-        "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
-        "files": files,
-    }
+        "checks": [finding(c) for c in s.checks], "exports": [export(result) for result in s.exports],
+        "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused], "files": files,
+    }  # fmt: skip
 
 
 def acceptance(found: Acceptance) -> dict[str, Any]:

@@ -5,7 +5,7 @@ Mass and inertia that indices, roots and manoeuvres are computed with.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,50 +88,26 @@ def outline_table(outline: Outline) -> Table:
     ----------
     outline : Outline
     """
+
+    def row(part: Any, kind: str, area: float, size: str, x: float, turned_by: str = "") -> tuple[str, ...]:
+        return part.name, kind, number(float(area), 3), size, number(float(x), 4), turned_by
+
     rows = []
-    for hull in outline.hulls:
-        size = f"length {hull.length:.4g}, {float(hull.breadth.max()):.3g} x {float(hull.depth.max()):.3g}"
-        rows.append(
-            (
-                hull.name,
-                "hull",
-                number(float(-np.trapezoid(hull.girth, hull.x)), 3),
-                size,
-                number(round(float(hull.x[0]), 9), 4),
-                "",
-            )
-        )
-    for foil in outline.foils:
-        size = f"span {foil.span:.3g}, chords {foil.root_chord:.3g} to {foil.tip_chord:.3g}, t/c {foil.thickness:.2g}"
-        rows.append((foil.name, "foil", number(foil.area, 3), size, number(float(foil.root[0]), 4), foil.control))
-    for ring in outline.rings:
-        size = f"diameter {ring.diameter:.3g}, chord {ring.chord:.3g}, t/c {ring.thickness:.2g}"
-        rows.append(
-            (
-                ring.name,
-                "ring",
-                number(np.pi * ring.diameter * ring.chord, 3),
-                size,
-                number(float(ring.centre[0]), 4),
-                "",
-            )
-        )
-    for screw in outline.propellers:
-        size = f"diameter {screw.diameter:.3g}, P/D {screw.pitch_ratio:.3g}, {screw.blades} blades"
-        area = number(np.pi / 4.0 * screw.diameter**2 * screw.area_ratio, 3)
-        rows.append((screw.name, "propeller", area, size, number(float(screw.centre[0]), 4), ""))
-    for part in outline.bluff:
-        size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
-        rows.append(
-            (
-                part.name,
-                f"bluff {part.kind}",
-                number(float(part.areas.max()), 3),
-                size,
-                number(float(part.centre[0]), 4),
-                "",
-            )
-        )
+    for h in outline.hulls:
+        size = f"length {h.length:.4g}, {float(h.breadth.max()):.3g} x {float(h.depth.max()):.3g}"
+        rows.append(row(h, "hull", -np.trapezoid(h.girth, h.x), size, round(float(h.x[0]), 9)))
+    for f in outline.foils:
+        size = f"span {f.span:.3g}, chords {f.root_chord:.3g} to {f.tip_chord:.3g}, t/c {f.thickness:.2g}"
+        rows.append(row(f, "foil", f.area, size, f.root[0], f.control))
+    for r in outline.rings:
+        size = f"diameter {r.diameter:.3g}, chord {r.chord:.3g}, t/c {r.thickness:.2g}"
+        rows.append(row(r, "ring", np.pi * r.diameter * r.chord, size, r.centre[0]))
+    for s in outline.propellers:
+        size = f"diameter {s.diameter:.3g}, P/D {s.pitch_ratio:.3g}, {s.blades} blades"
+        rows.append(row(s, "propeller", np.pi / 4.0 * s.diameter**2 * s.area_ratio, size, s.centre[0]))
+    for b in outline.bluff:
+        size = "half sizes " + " x ".join(f"{v:.3g}" for v in b.half_extents)
+        rows.append(row(b, f"bluff {b.kind}", b.areas.max(), size, b.centre[0]))
     notes = [
         "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
         "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
