@@ -34,8 +34,8 @@ from coeflab.tables.vocabulary import words_of
 from coeflab.tables.words.points import POINT_OF
 
 __all__ = [
-    "FILE", "Campaign", "Draft", "Interpretation", "Line", "Part", "Stated", "assumed", "filled_in", "of_runs", "open_lines", "options_of",
-    "quoted", "runs_shown", "screen", "stated_of", "without_a_setting", "words_of",
+    "FILE", "Campaign", "Draft", "Interpretation", "Line", "Part", "Stated", "assumed", "column_maps", "filled_in", "of_runs", "open_lines", "options_of",
+    "quoted", "refuse_contradictions", "runs_shown", "screen", "stated_of", "without_a_setting", "words_of",
 ]  # fmt: skip
 INERTIA = "table.contains_inertia"
 
@@ -118,17 +118,6 @@ class Draft:
         """What follows from what is stated so far; `founds` is of it."""
         self.founds = interpreted_together(self.parts, self.stated.columns, self.settings)
 
-    def refuse_contradictions(self) -> None:
-        """Raise what of `founds` cannot be.
-
-        Raises
-        ------
-        InputError
-            All of it.
-        """
-        if complaints := complaints_of(self.founds):
-            raise together(complaints)
-
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
         return form_together(self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole)
@@ -144,8 +133,7 @@ class Draft:
             What cannot be, all of it.
         """
         founds, settings = settled_together(self.parts, self.stated.columns, self.settings, accept, self.whole)
-        if complaints := complaints_of(founds):
-            raise together(complaints)
+        refuse_contradictions(founds)
         waits = is_pending(self.parts, founds) or (bool(self.chosen) and not accept)
         if done := not waits and not self.stated.left:
             self.founds, self.settings = founds, settings
@@ -193,8 +181,7 @@ class Draft:
             require_one_datum(self.settings, {k: one.value for k, one in given.settings.items()})
         columns, settings = self.stated.columns | given.columns, self.stated.settings | given.settings
         founds = interpreted_together(self.parts, columns, self.settings | given.settings)
-        if complaints := complaints_of(founds):
-            raise together(complaints)
+        refuse_contradictions(founds)
         self.stated.columns, self.stated.settings, self.founds = columns, settings, founds
         self.settings |= given.settings
 
@@ -241,6 +228,18 @@ class Draft:
             return ""
         size = None if length is None else quantity(length.value, "length")
         return beyond_ends(str(datum.value), quantity(point.value[0], "length"), size)
+
+
+def refuse_contradictions(founds: Sequence[Interpretation]) -> None:
+    """Refuse what cannot be.
+
+    Raises
+    ------
+    InputError
+        All of it.
+    """
+    if complaints := complaints_of(founds):
+        raise together(complaints)
 
 
 def filled_in(
@@ -323,23 +322,54 @@ def _number(text: str) -> Any:
     return text
 
 
-def _mapped(map_: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
-    """What ``--map`` states, by the names of the file."""
+def _mapped(texts: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
+    """What ``--map NAME=WHAT`` states, by the names of the file, which may hold a sign of equality."""
+    names, stated = columns_by_name(parts), {}
+    for text in texts:
+        name = max((n for n in names if text.startswith(f"{n}=")), key=len, default=text.partition("=")[0])
+        stated[name.strip() if name not in names else name] = text[len(name) + 1 :]
+    return column_maps(stated, parts, "--map", "--map {name}={text}", parts[0].raw.path)
+
+
+def column_maps(
+    stated: Mapping[str, str],
+    parts: Sequence[Part],
+    option: str,
+    one: str,
+    file: str | Path,
+    own: str | Path | None = None,
+) -> dict[str, ColumnMap]:
+    """What columns are, by their own names, with that of their table before it where one is given.
+
+    Parameters
+    ----------
+    stated : mapping of str to str
+        ``Y [N]``, ``-beta [deg]``, ``label`` by a name of a column, with or without its unit.
+    parts : sequence of Part
+    option, one : str
+        What complaints call all of them, and one of a ``{name}`` and ``{text}``.
+    file, own : str or Path
+        What complaints about names are about, and those about one text.
+
+    Raises
+    ------
+    InputError
+        No such column, or a text that says nothing of one.
+    """
     names = {name: key for name, (key, _) in columns_by_name(parts).items()}
     out: dict[str, ColumnMap] = {}
     complaints: list[InputError] = []
-    for text in map_:
-        fits = [n for n in names if text.startswith(f"{n}=")]
-        name = max(fits, key=len) if fits else text.partition("=")[0].strip()
-        if name not in names:
+    for name, text in stated.items():
+        key = names.get(name) or names.get(name.partition(" [")[0])
+        if key is None:
             have = ", ".join(dict.fromkeys(c.name for part in parts for c in part.raw.columns))
-            file = parts[0].raw.path
-            complaints.append(InputError(f"no column {shown(name)}", f"one of {have}", file=file, column="--map"))
+            complaints.append(InputError(f"no column {shown(name)}", f"one of {have}", file=file, column=option))
             continue
         try:
-            out[names[name]] = read_column_map(text[len(name) + 1 :])
+            out[key] = read_column_map(text)
         except InputError as why:
-            complaints.append(InputError(why.found, why.expected, column=f"--map {text}", advice=why.advice))
+            place = one.format(name=name, text=text)
+            complaints.append(InputError(why.found, why.expected, file=own, column=place, advice=why.advice))
     if complaints:
         raise together(complaints)
     return out

@@ -7,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coeflab.api.importing import filled_in
+from coeflab.api.importing import column_maps, filled_in
 from coeflab.api.questions import in_keywords, open_questions, settings_of
 from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
@@ -15,7 +15,6 @@ from coeflab.core.files import located
 from coeflab.core.wording import identifier
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
-from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
@@ -27,7 +26,6 @@ from coeflab.tables.several_tables import complaints_of, form_together, is_pendi
 if TYPE_CHECKING:
     import pandas as pd
 
-    from coeflab.tables.raw_table import RawTable
 
 Source = "str | Path | pd.DataFrame | Mapping[str, Any] | ForceTable"
 ARRAYS = "columns"  # the importer of arrays, as the form names it
@@ -281,7 +279,7 @@ def _filled_in(
     source = str(parts[0].raw.path) if len(parts) == 1 else str(parts[0].raw.path.parent)
     _require_known(said)
     known = settings_of(said)
-    maps = _mapped(columns, [p.raw for p in parts], source)
+    maps = column_maps(columns, parts, "columns", 'columns["{name}"]', source, source)
     require_parts(known, parts)
     settings = {**assumed(Path(name)), **stated_together(parts), **known}
     whole = source if len(parts) > 1 else ""
@@ -302,26 +300,3 @@ def _require_known(said: Iterable[str]) -> None:
 
     if strange := [k for k in said if k not in KEYS]:
         raise InputError(f"the keyword {strange[0]}", f"one of {', '.join(KEYS)}", column=strange[0])
-
-
-def _mapped(columns: Mapping[str, str], raws: Sequence[RawTable], source: str) -> dict[str, ColumnMap]:
-    """What a person said of columns."""
-    have = list(dict.fromkeys(c.name for raw in raws for c in raw.columns))
-    out: dict[str, ColumnMap] = {}
-    complaints = []
-    for name, text in columns.items():
-        plain = name.partition(" [")[0]
-        if plain not in have and name not in have:
-            complaints.append(
-                InputError(f"no column {shown(name)}", f"one of {', '.join(have)}", file=source, column="columns")
-            )
-            continue
-        try:
-            out[name if name in have else plain] = read_column_map(text)
-        except InputError as why:
-            complaints.append(
-                InputError(why.found, why.expected, file=source, column=f'columns["{name}"]', advice=why.advice)
-            )
-    if complaints:
-        raise together(complaints)
-    return out

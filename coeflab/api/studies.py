@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from coeflab.report.document import Document
     from coeflab.study.towed import Towed
 
-__all__ = ["Plan", "Study", "report_files", "require_formats", "run", "studied"]
+__all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
@@ -141,20 +141,6 @@ def report_files(
     if short:
         files = {name.replace("report", "summary", 1): content for name, content in files.items()}
     return document, files, result.failed
-
-
-def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> plain.Study | Acceptance:
-    """What a person names computed: a plan, a folder with one, a campaign, a shipped validation or publication.
-
-    Parameters
-    ----------
-    study : str
-    progress : callable, optional
-        Takes what is being done, in words.
-    """
-    from coeflab.api.documents import studied as computed
-
-    return computed(study, progress)
 
 
 def require_formats(names: Sequence[str]) -> None:

@@ -7,7 +7,16 @@ from collections.abc import Collection, Sequence
 
 import typer
 
-from coeflab.api.importing import Draft, Interpretation, Line, Part, open_lines, runs_shown, screen
+from coeflab.api.importing import (
+    Draft,
+    Interpretation,
+    Line,
+    Part,
+    open_lines,
+    refuse_contradictions,
+    runs_shown,
+    screen,
+)
 from coeflab.cli import show
 from coeflab.core.errors import InputError
 from coeflab.report.tables import raw_tables
@@ -28,7 +37,7 @@ def read(draft: Draft) -> None:
 def asked(draft: Draft) -> None:
     """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
     draft.understand()
-    draft.refuse_contradictions()
+    refuse_contradictions(draft.founds)
     _described(draft)
     changed: set[str] = set()
     again = True

@@ -28,9 +28,7 @@ def command(
     NAME.svg and NAME.png with dimensions, datum, reference point, centres, hinges and thrusters; particulars, hulls, foils, ring wings and bluff parts, and what of the body no estimate sees.
     """
     from coeflab.api.body import typed_body
-    from coeflab.core.errors import OutputError
-    from coeflab.core.files import write_all
-    from coeflab.core.text.bounded import holds
+    from coeflab.core.files import refuse_others, write_all
     from coeflab.report.figures.three_views import three_views
     from coeflab.report.tables.added_mass import outline_table, particulars
 
@@ -38,10 +36,8 @@ def command(
     folder = Path() if out is None else out
     stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in found.name)
     files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}
-    for file, content in files.items():
-        path = folder / file
-        if not force and path.exists() and not holds(path, content):
-            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+    if not force:
+        refuse_others(folder, files)
     outline = found.outline
     show.table(particulars(found))
     if outline is not None:

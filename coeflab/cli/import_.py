@@ -125,14 +125,8 @@ def _typed_so_far(
     from coeflab.api.importing import quoted
 
     typed = [quoted(path)]
-    for flag, phrases in (
-        ("--as", as_),
-        ("--words", words),
-        ("--runs", runs),
-        ("--state", state),
-        ("--mapping", mapping),
-    ):
-        typed += [f"{flag} {quoted(str(phrases))}"] if phrases else []
+    alone = {"--as": as_, "--words": words, "--runs": runs, "--state": state, "--mapping": mapping}
+    typed += [f"{flag} {quoted(str(phrases))}" for flag, phrases in alone.items() if phrases]
     typed += [f"--name {quoted(text)}" for text in name]
     for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
         typed += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]

@@ -85,13 +85,8 @@ def command(
         )
     every = [*option, *of_runs(name, runs)]
     if as_ or every or is_raw(table):
-        given = [
-            ("--as", as_),
-            *(("--name", n) for n in name),
-            ("--runs", str(runs or "")),
-            *(("--option", o) for o in option),
-            ("--words", str(words or "")),
-        ]
+        given = [("--as", as_), *(("--name", n) for n in name), ("--runs", str(runs or ""))]
+        given += [*(("--option", o) for o in option), ("--words", str(words or ""))]
         _raw(table, as_, every, json, [(flag, phrases) for flag, phrases in given if phrases])
         return
     _tables(table, json, strict, rows)

@@ -58,9 +58,8 @@ def command(
     from coeflab.api.body import typed_body
     from coeflab.api.simplifying import MESH, parse_box, read_boxes, simplify
     from coeflab.api.simplifying import files as files_of
-    from coeflab.core.errors import InputError, OutputError, shown
-    from coeflab.core.files import write_all
-    from coeflab.core.text.bounded import holds
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.files import refuse_others, write_all
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")
@@ -70,10 +69,8 @@ def command(
         found = simplify(given, named, parts, convex=split == "convex", panels=panels)
     folder = out if out is not None else Path(found.body.name)
     files = files_of(found)
-    for file, content in files.items():
-        path = folder / file
-        if not force and path.exists() and not holds(path, content):
-            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+    if not force:
+        refuse_others(folder, files)
     changed = write_all(folder, files)
     if json:
         show.json_object(found.as_json())

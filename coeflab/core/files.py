@@ -172,6 +172,19 @@ def names_in(folder: Path) -> list[str]:
     return sorted(p.name for p in folder.iterdir() if not _LITTER.fullmatch(p.name))
 
 
+def refuse_others(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Refuse to write where a file of that name differs.
+
+    Raises
+    ------
+    OutputError
+        Names it.
+    """
+    for name, content in contents.items():
+        if (folder / name).exists() and not holds(folder / name, content):
+            raise OutputError(f"{folder / name} exists and differs. Name another --out, or replace it with --force.")
+
+
 def write_all(
     folder: Path, contents: Mapping[str, bytes], *, new: bool = False, otherwise: str = OTHER_FOLDER
 ) -> dict[str, bool]:

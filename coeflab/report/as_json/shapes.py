@@ -25,16 +25,12 @@ def body(found: Body, density: float) -> dict[str, Any]:
         out |= {"faces": len(found.shape.faces), "extents": found.shape.extents.tolist()}
     out["configurations"] = [
         {
-            "name": c.name,
-            "title": c.title,
-            "volume": c.volume,
-            "wetted_surface": c.wetted_surface,
-            "centre_of_buoyancy": _listed(c.centre_of_buoyancy),
-            "projected_areas": _listed(c.projected_areas),
+            "name": c.name, "title": c.title, "volume": c.volume, "wetted_surface": c.wetted_surface,
+            "centre_of_buoyancy": _listed(c.centre_of_buoyancy), "projected_areas": _listed(c.projected_areas),
             "displaced_inertia": _listed(c.displaced_inertia(density)),
         }
         for c in found.configurations
-    ]
+    ]  # fmt: skip
     return out
 
 
@@ -62,9 +58,7 @@ def from_shape(study: Study) -> dict[str, Any]:
         "name": name, "displacement": shape.conditions.density * (c.volume or 0.0), "volume": c.volume,
         "mass": None if c.mass is None else c.mass.mass,
         "centre_of_buoyancy": None if c.centre_of_buoyancy is None else c.centre_of_buoyancy.tolist(),
-        "centre_of_gravity": None
-        if c.mass is None
-        else (c.mass.centre_of_gravity + shape.weighed.body.reference_point).tolist(),
+        "centre_of_gravity": None if c.mass is None else (c.mass.centre_of_gravity + shape.weighed.body.reference_point).tolist(),
         "inertia_matrix": None if c.mass is None or c.mass.inertia_matrix is None else c.mass.inertia_matrix.tolist(),
         "wetted_surface": c.wetted_surface, "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
         "reference_point": shape.weighed.body.reference_point.tolist(),

@@ -82,24 +82,16 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
         "response": p.response, "campaign": campaign,
         "campaigns": [
             {
-                "campaign": s.campaign,
-                "n_points": s.n_points,
-                "intercept": s.intercept,
-                "intercept_half_width_95": s.half_width,
-                "noise": s.noise,
-                "rms": s.rms,
-                "rms_alone": s.rms_alone,
+                "campaign": s.campaign, "n_points": s.n_points, "intercept": s.intercept, "intercept_half_width_95": s.half_width,
+                "noise": s.noise, "rms": s.rms, "rms_alone": s.rms_alone,
                 "left_out_rms_of_range": finite(s.left_out.rms) if s.left_out.told else None,
             }
             for s in p.shares
         ],
         "every_third_left_out_rms_of_range": finite(p.every_third.rms) if p.every_third.told else None,
         "one_law": {
-            "f": finite(p.test.statistic),
-            "restrictions": p.test.restrictions,
-            "freedom": finite(p.test.freedom),
-            "probability": finite(p.test.probability),
-            "rejected": p.rejected,
+            "f": finite(p.test.statistic), "restrictions": p.test.restrictions, "freedom": finite(p.test.freedom),
+            "probability": finite(p.test.probability), "rejected": p.rejected,
         },
     }  # fmt: skip
 
@@ -153,11 +145,9 @@ def accelerations_compared(loss: Loss) -> dict[str, Any]:
     if found is None:
         return {"why_not": loss.not_compared}
     return {
-        "worst_difference": [finite(x) for x in found.worst.tolist()],
-        "rms_difference": [finite(x) for x in found.rms.tolist()],
-        "largest": [finite(x) for x in found.largest.tolist()],
-        "why_not": loss.not_compared or None,
-    }
+        "worst_difference": [finite(x) for x in found.worst.tolist()], "rms_difference": [finite(x) for x in found.rms.tolist()],
+        "largest": [finite(x) for x in found.largest.tolist()], "why_not": loss.not_compared or None,
+    }  # fmt: skip
 
 
 def numbers(found: Held) -> dict[str, dict[str, int]]:
@@ -171,21 +161,13 @@ def tow(found: Towed) -> dict[str, Any]:
         "name": found.tow.name, "body": found.body, "campaign": found.tow.campaign or None, "reynolds": found.reynolds,
         "rows": [
             {
-                "symbol": primed(r.symbol),
-                "value": r.value,
-                "u95": r.u95,
-                "u_grid": r.u_grid,
-                "is_result": r.is_result,
-                "one_line": r.line,
-                "model_spread": r.model,
-                "missing": r.missing or None,
-                "why": r.why or None,
+                "symbol": primed(r.symbol), "value": r.value, "u95": r.u95, "u_grid": r.u_grid, "is_result": r.is_result,
+                "one_line": r.line, "model_spread": r.model, "missing": r.missing or None, "why": r.why or None,
                 "published": dict(zip(found.columns, r.published, strict=True)),
                 "test": None if r.validation is None else r.validation.experiment,
                 "measured": None if r.validation is None else r.validation.measured,
                 "error": None if r.validation is None else r.validation.error,
-                "u_validation": None if r.validation is None else r.validation.u_validation,
-                "within_u_validation": r.verdict,
+                "u_validation": None if r.validation is None else r.validation.u_validation, "within_u_validation": r.verdict,
                 "why_no_verdict": r.why_none or None,
             }
             for r in found.rows
@@ -230,16 +212,9 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "oscillations": [oscillation(f.campaign, o) for f in s.fits for o in f.oscillations],
         "comparisons": [
             {
-                "symbol": primed(c.coefficient.symbol),
-                "campaign": c.coefficient.campaign,
-                "value": c.coefficient.value,
-                "u95": c.coefficient.u95,
-                "reference": c.reference,
-                "relation": c.relation.value,
-                "length_read_as": c.reading,
-                "published": c.published,
-                "difference": c.difference,
-                "passed": c.passed,
+                "symbol": primed(c.coefficient.symbol), "campaign": c.coefficient.campaign, "value": c.coefficient.value,
+                "u95": c.coefficient.u95, "reference": c.reference, "relation": c.relation.value, "length_read_as": c.reading,
+                "published": c.published, "difference": c.difference, "passed": c.passed,
             }
             for c in s.comparisons
         ],

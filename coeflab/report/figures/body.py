@@ -154,14 +154,9 @@ class Sheet:
 
 
 def draw_outline(
-    axes: Axes,
-    surface: Surface,
-    frame: Array,
-    move: Array | tuple[float, float] = (0.0, 0.0),
-    palette: Mapping[str, str] = COLOURS,
-    digits: int = 2,
-    sense: Sequence[float] = (1.0, 1.0),
-) -> None:
+    axes: Axes, surface: Surface, frame: Array, move: Array | tuple[float, float] = (0.0, 0.0), palette: Mapping[str, str] = COLOURS,
+    digits: int = 2, sense: Sequence[float] = (1.0, 1.0),
+) -> None:  # fmt: skip
     """A surface as a filled outline.
 
     Parameters

@@ -161,7 +161,7 @@ def draw_trace(axes: Axes, trace: Trace, key: str, palette: Mapping[str, str] = 
     palette : mapping of str to str
         A colour for each name of `COLOURS`.
     """
-    look = {name: recoloured(v, palette) if isinstance(v, str) else v for name, v in trace.look.items()}
+    look: dict[str, Any] = {name: recoloured(v, palette) if isinstance(v, str) else v for name, v in trace.look.items()}
     drawn: list[Any] = axes.plot(trace.x, trace.y, zorder=2.5 if trace.form == "curve" else 3.0, **look)
     return list(tagged(drawn, key))
 

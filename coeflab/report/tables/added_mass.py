@@ -89,7 +89,7 @@ def outline_table(outline: Outline) -> Table:
     outline : Outline
     """
 
-    def row(part: Any, kind: str, area: float, size: str, x: float, turned_by: str = "") -> tuple[str, ...]:
+    def row(part: Any, kind: str, area: Any, size: str, x: float, turned_by: str = "") -> tuple[str, ...]:
         return part.name, kind, number(float(area), 3), size, number(float(x), 4), turned_by
 
     rows = []
