@@ -83,7 +83,7 @@ def command(
     Exit code 1 when a check fails; with --strict when one warns, too.
     """
     from coeflab.core.files import located
-    from coeflab.core.units import quantity
+    from coeflab.core.units import positive_typed
 
     if help_options:
         from coeflab.cli.formats import explain
@@ -104,12 +104,8 @@ def command(
         raise InputError(f"--next with --fit {shown(fit)}", f"--fit {DEFAULT}", column="--next")
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
-    at = (
-        quantity(f"{speed} m/s" if speed.replace(".", "", 1).isdecimal() else speed, "speed", key="--speed")
-        if speed
-        else None
-    )
-    scaling = cf.Scaling(quantity(length, "length", key="--length"), length_name) if length else None
+    at = positive_typed(speed, "speed", "--speed") if speed else None
+    scaling = cf.Scaling(positive_typed(length, "length", "--length"), length_name) if length else None
     with show.progress(json) as say:
         study = fit_campaigns(
             paths, fit, of_fit, speed=at, scaling=scaling, include_uncertain=include_uncertain, progress=say

@@ -45,6 +45,8 @@ def typed(name: str | Path) -> Path:
         No file or folder can have that name: 5,000 characters, a NUL, the home of nobody; it is shut, or a link that
         leads to itself.
     """
+    if not isinstance(name, str | Path):
+        raise InputError(f"a {type(name).__name__}", "the path of a file or folder")
     if "\0" in str(name):
         raise InputError(f"{shown(name)}, which is no usable path (a NUL in it)", "the path of a file or folder")
     try:
