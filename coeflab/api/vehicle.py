@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -16,10 +16,11 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import above_zero, three
+from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
-from coeflab.api.trimming import LinearModel, Trim, linear_model, trim
+from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
+from coeflab.core.errors import InputError
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
@@ -139,23 +140,33 @@ class Vehicle:
         write_atomically(file, self.file.to_json())
         return file
 
+    @overload
+    def linear(self, speed: float | str | None = None, **options: Any) -> LinearModel: ...
+    @overload
+    def linear(self, speed: list[Any] | tuple[Any, ...], **options: Any) -> LinearSchedule: ...
     def linear(
         self,
-        speed: float | str | None = None,
+        speed: float | str | list[Any] | tuple[Any, ...] | None = None,
         *,
+        also: Sequence[str] = (),
+        lags: Mapping[str, float] | None = None,
         commands: Mapping[str, float] | None = None,
         plane: str = "",
         free: Sequence[str] = (),
         tables: bool = False,
         accelerations: str = "measured",
         **motion: float | str,
-    ) -> LinearModel:
-        """Small motions about a steady one: x_dot = A x + B d; SI, rad, FRD.
+    ) -> LinearModel | LinearSchedule:
+        """Small motions about a steady one: x_dot = A x + B d, y = C x + D d; SI, rad, FRD.
 
         Parameters
         ----------
-        speed : float or str, optional
+        speed : float or str, or a list of them, optional
             u, m/s.
+        also : sequence of str
+            Of depth and heading: further states.
+        lags : mapping of str to float, optional
+            Time constant of a thruster or a control, s: a state NAME_lagged follows the command.
         commands : mapping of str to float, optional
             Held: thrusters in their units, controls and tilts in rad.
         plane : {"", "horizontal", "vertical"}
@@ -169,13 +180,13 @@ class Vehicle:
 
         Returns
         -------
-        LinearModel
-            ``A``, ``B``, ``states``, ``commands``, ``modes``.
+        LinearModel, or LinearSchedule of several speeds
+            ``A``, ``B``, ``states``, ``commands``, ``modes``; ``save`` as .mat, .npz, .json.
 
         Raises
         ------
         InputError
-            No steady motion, or a motion that the file does not know.
+            No steady motion, a motion that the file does not know, a state that nothing moves.
 
         Examples
         --------
@@ -184,11 +195,20 @@ class Vehicle:
         >>> model.A.shape == (len(model.states),) * 2
         True
         """
+        if isinstance(speed, list | tuple):
+            speeds = [si(v, "speed", "speed") for v in speed]
+            if not speeds:
+                raise InputError("no speed", "one or more", column="speed")
+            more: dict[str, Any] = {
+                "also": also, "lags": lags, "commands": commands, "plane": plane, "free": free, "tables": tables,
+                "accelerations": accelerations, **motion,
+            }  # fmt: skip
+            return LinearSchedule(tuple(speeds), tuple(self.linear(v, **more) for v in speeds))
         asked: dict[str, Any] = dict(motion) if speed is None else {"speed": speed, **motion}
         steady = trim(
             self, commands=commands, plane=plane, free=free, tables=tables, accelerations=accelerations, **asked
         )
-        return linear_model(steady)
+        return linear_model(steady, also, lags)
 
     def trim(self, **asked: Any) -> Trim:
         """A steady motion; see `coeflab.trim`."""

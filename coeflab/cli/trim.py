@@ -10,7 +10,7 @@ import typer
 from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
-    from coeflab.api.trimming import LinearModel, Trim
+    from coeflab.api.trimming import Trim
 
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
@@ -19,7 +19,9 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 def command(
     file: Path = options.PARAMS,
-    speed: str = typer.Option("", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn".'),
+    speed: str = typer.Option(
+        "", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn"; with --linear several: 1,1.5,2.'
+    ),
     sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
     heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),
     yaw_rate: str = typer.Option("", metavar="VALUE", help="Rate of heading, bare in deg/s."),
@@ -49,49 +51,82 @@ def command(
     linear: bool = typer.Option(
         False, "--linear", help="The linear model about it: A, B, and the eigenvalues with their motions."
     ),
+    also: str = typer.Option(
+        "", metavar="NAME", help="Further states of the linear model: depth, heading or depth,heading."
+    ),
+    lag: list[str] = typer.Option(
+        [],
+        "--lag",
+        metavar="NAME=VALUE",
+        help="Time constant in s with which a thruster or a control follows its command; repeatable.",
+    ),
     out: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Folder for the linear model: A.csv, B.csv, and linear.m for MATLAB and Octave."
+        None,
+        metavar="FOLDER",
+        help="Folder for the linear model: CSV, linear.m and linear.mat for MATLAB, linear.npz, linear.json.",
     ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Find the commands of a steady motion, or the reverse.
 
-    With --linear or --out also the state-space model of small motions about it, x_dot = A x + B d. Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
+    With --linear or --out also the state-space model of small motions about it, x_dot = A x + B d, at several speeds a gain schedule. Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
     import coeflab as cf
-    from coeflab.api.trimming import linear_model, trim
+    from coeflab.api.trimming import linear_as_json, linear_model, trim
+    from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.report.tables.linear_model import files, matrix_tables, mode_table
+    from coeflab.core.options import named_numbers
+    from coeflab.report.tables.linear_model import files, matrix_tables, mode_table, schedule_files, schedule_table
 
-    given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
+    speeds = [_measured("speed", text, "--speed") for text in speed.split(",")] if speed else []
+    wanted, several = linear or out is not None, len(speeds) > 1
+    if not wanted and (several or also or lag):
+        raise InputError("several speeds" if several else "--also" if also else "--lag", "--linear", column="--linear")
+    given = {"sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
     motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
+    lags = named_numbers(lag, "--lag")
     vehicle = cf.read_vehicle(file)
     if not json:
         show.not_used(vehicle.file, tables)
-    found = trim(
-        vehicle, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
-        free=free.replace(",", " ").split(), starts=starts, seed=seed, tables=tables, accelerations=accelerations, **motion,
-    )  # fmt: skip
-    solved = found.point.outcome.solved
-    model = linear_model(found) if solved and (linear or out is not None) else None
-    folder = out or Path()
-    names = {} if model is None or out is None else write_all(folder, files(model))
+    each = [
+        trim(
+            vehicle, commands=_named(commands, "--commands"), near=_named(near, "--near"), plane=plane,
+            free=free.replace(",", " ").split(), starts=starts, seed=seed, tables=tables, accelerations=accelerations,
+            **motion, **one,
+        )
+        for one in ([{"speed": v} for v in speeds] or [{}])
+    ]  # fmt: skip
+    states = also.replace(",", " ").split()
+    models = [linear_model(t, states, lags) if wanted and t.point.outcome.solved else None for t in each]
+    made = [m for m in models if m is not None]
+    folder, names = out or Path(), {}
+    if out is not None and made:
+        at = [v for v, m in zip(speeds, models, strict=True) if m is not None] if several else []
+        names = write_all(folder, schedule_files(at, made) if several else files(made[0]))
     if json:
-        more = {} if model is None else {"linear": linear_as_json(model), "files": [str(folder / n) for n in names]}
-        show.json_object({**as_json(found), **more})
+        objects = [
+            {**as_json(t), **({} if m is None else {"linear": linear_as_json(m)})}
+            for t, m in zip(each, models, strict=True)
+        ]
+        whole = {"speeds": objects} if several else objects[0]
+        show.json_object({**whole, **({"files": [str(folder / n) for n in names]} if made else {})})
     else:
-        show.table(found.point.table())
-        if solved:
-            show.table(found.figure_table())
-            show.table(found.other_table())
-        if model is not None:
-            for one in (*matrix_tables(model), mode_table(model)):
-                show.table(one)
+        if several:
+            show.table(schedule_table(speeds, each, models))
+        for found, model in zip(each, models, strict=True):
+            if not several or not found.point.outcome.solved:
+                show.table(found.point.table())
+            if not several and found.point.outcome.solved:
+                show.table(found.figure_table())
+                show.table(found.other_table())
+            if model is not None and (linear or not several):
+                for one in (*matrix_tables(model), mode_table(model)):
+                    show.table(one)
         for name in names:
             show.path(folder / name)
-    if not solved or found.refused:
+    if any(not t.point.outcome.solved or t.refused for t in each):
         raise typer.Exit(1)
 
 
@@ -178,27 +213,4 @@ def as_json(found: Trim) -> dict[str, Any]:
         "eigenvalues": [[v.real, v.imag] for v in point.modes],
         "small_motions": point.growth,
         "statements": list(point.words()),
-    }  # fmt: skip
-
-
-def linear_as_json(model: LinearModel) -> dict[str, Any]:
-    """The linear model as one JSON object, SI and rad; rows are rates of the states, in their order."""
-    return {
-        "states": [
-            {"name": s.name, "unit": s.unit, "rate_unit": unit, "value": s.value}
-            for s, unit in zip(model.states, model.rate_units, strict=True)
-        ],
-        "commands": [{"name": c.name, "unit": c.unit, "value": c.value} for c in model.commands],
-        "a": model.a.matrix.tolist(),
-        "b": model.b.matrix.tolist(),
-        "a_error": model.a.error.tolist(),
-        "b_error": model.b.error.tolist(),
-        "modes": [
-            {
-                "eigenvalue": [m.eigenvalue.real, m.eigenvalue.imag], "unit": "1/s", "participation": dict(m.shares),
-                "time_to_double": m.doubles, "time_to_halve": m.halves, "period": m.period,
-            }
-            for m in model.modes
-        ],
-        "statements": list(model.statements),
     }  # fmt: skip

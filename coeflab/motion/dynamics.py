@@ -321,6 +321,11 @@ class Slopes:
     error: Array
     kinks: Array
 
+    def grown(self, rows: int, columns: int) -> Slopes:
+        """With further rows and columns of zeros."""
+        wider = ((0, rows), (0, columns))
+        return Slopes(np.pad(self.matrix, wider), np.pad(self.error, wider), np.pad(self.kinks, wider))
+
 
 def slopes(function: Callable[[Array], Array], point: Array, scale: Array, low: Array, high: Array) -> Slopes:
     """Differentiate a function at a point.

@@ -109,7 +109,9 @@ def test_a_linear_model_as_tables_files_and_json(coeflab: Run, tmp_path: Path) -
     assert "v_dot m/s^2 0 -0.7819 -0.5888" in flat(done.stdout)
     assert "r_dot rad/s^2 0 -1.596" in flat(done.stdout)
     assert "0.9953 - 0.6964 - r 54 %, v 46 %" in flat(done.stdout)
-    assert sorted(p.name for p in (tmp_path / "l").iterdir()) == ["A.csv", "B.csv", "linear.m"]
+    assert sorted(p.name for p in (tmp_path / "l").iterdir()) == [
+        "A.csv", "B.csv", "linear.json", "linear.m", "linear.mat", "linear.npz",
+    ]  # fmt: skip
     found = json.loads(coeflab(*LINEAR, "--linear", "--json").stdout)
     model = found["linear"]
     assert [s["name"] for s in model["states"]] == ["u", "v", "r"]
@@ -131,3 +133,47 @@ def test_six_motions_fit_80_columns(coeflab: Run) -> None:
     assert done.returncode == 0
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "pitch 50 %" in flat(done.stdout)
+
+
+def test_several_speeds_are_a_schedule_and_one_without_a_solution_is_named(
+    coeflab: Run, twin: Path, tmp_path: Path
+) -> None:
+    words = (
+        "trim",
+        twin,
+        "--speed",
+        "1,150 cm/s,4",
+        "--yaw-rate",
+        "0",
+        *FREE,
+        "--also",
+        "heading",
+        "--lag",
+        "left=0.2",
+    )
+    done = coeflab(*words, "--out", tmp_path / "l")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert [len(line.split()) > 4 and line.split()[0] for line in done.stdout.splitlines()[2:5]] == [
+        "1.000",
+        "1.500",
+        "4.000",
+    ]
+    rows = (tmp_path / "l" / "over_speed.csv").read_text().splitlines()
+    assert [row.partition(",")[0] for row in rows[1:]] == ["1.0", "1.5"]
+    assert {"A_heading_r", "A_left_lagged_left_lagged", "B_left_lagged_left"} <= set(rows[0].split(","))
+    told = json.loads(coeflab(*words, "--linear", "--json").stdout)["speeds"]
+    assert [("linear" in one, one["outcome"]) for one in told] == [
+        (True, "unique"),
+        (True, "unique"),
+        (False, "infeasible"),
+    ]
+    assert told[0]["linear"]["a"][-1][-1] == -5.0
+
+
+@pytest.mark.parametrize(
+    "words", [("--speed", "1,2"), ("--speed", "1", "--also", "heading"), ("--speed", "1", "--lag", "left=1")]
+)
+def test_what_only_the_linear_model_takes_asks_for_it(coeflab: Run, twin: Path, words: tuple[str, ...]) -> None:
+    done = coeflab("trim", twin, *words, *FREE)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--linear" in done.stderr

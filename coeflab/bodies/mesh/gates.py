@@ -90,9 +90,6 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     vertices, faces = welded(vertices, faces)
     if _thickness(vertices) < SHEET:
         raise fail("a plate of zero thickness: all corners lie in one plane", "a surface that encloses a volume", PLATE)
-    flat = int(degenerate(vertices, faces).sum())
-    if flat:
-        raise fail(f"{flat} degenerate faces of {len(faces)}, whose corners lie on a line", "faces with an area")
     stage(f"looking for holes and turned faces among {len(faces):,}")
     twice = int(repeated(faces).sum())
     if twice:
@@ -105,6 +102,9 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
         if border.open and unfilled:
             raise fail(f"{found}; not filled: {unfilled}", expected, f"Close them where it was made; or, {BOTH_SIDES}")
         raise fail(found, expected, NEARLY if _nearly_closed(vertices, faces) else FILL if border.open else BY_HAND)
+    flat = int(degenerate(vertices, faces).sum())
+    if flat:
+        raise fail(f"{flat} degenerate faces of {len(faces)}, whose corners lie on a line", "faces with an area")
     if border.turned:
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"

@@ -1,19 +1,29 @@
-"""The linear model of small motions about a steady one: x_dot = A x + B d, with the error of its derivatives and its modes."""
+"""The linear model of small motions about a steady one: x_dot = A x + B d, with the error of its derivatives and its modes.
+
+Depth, heading and the lag of actuators are states of it where they are asked for; over several speeds it is a schedule.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import write_atomically
 from coeflab.core.types import Array, brief
 from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
-from coeflab.motion.trim.trim import Trim
+from coeflab.motion.trim.trim import PLACES, Trim
 
-RATES = {"m/s": "m/s^2", "rad/s": "rad/s^2", "rad": "rad/s"}
+if TYPE_CHECKING:
+    import pandas as pd
+
+RATES = {"m/s": "m/s^2", "rad/s": "rad/s^2", "rad": "rad/s", "m": "m/s"}
+LAGGED = "_lagged"
 LEAST_ERROR = 1e-10  # that is stated
 
 
@@ -69,12 +79,16 @@ class LinearModel:
     ----------
     vehicle : str
     states, commands : tuple of Variable
-        Velocities that are free to change, then roll where p is and pitch where q is; SI, rad, FRD.
+        Velocities that are free to change, then roll where p is and pitch where q is, then depth, heading and lagged commands that
+        were asked for; SI, rad, FRD. All states are outputs.
     a, b : Slopes
         (n, n) and (n, m).
     modes : tuple of Mode
         The least stable first.
     statements : tuple of str
+        Of the derivatives.
+    remarks : tuple of str
+        Of the steady motion: what no data cover, what was assumed.
     """
 
     vehicle: str
@@ -84,6 +98,7 @@ class LinearModel:
     b: Slopes
     modes: tuple[Mode, ...]
     statements: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def A(self) -> Array:  # noqa: N802 - as every textbook has it
@@ -96,22 +111,125 @@ class LinearModel:
         return self.b.matrix
 
     @property
+    def C(self) -> Array:  # noqa: N802
+        """(n, n) of ones: every state is an output."""
+        return np.eye(len(self.states))
+
+    @property
+    def D(self) -> Array:  # noqa: N802
+        """(n, m) of zeros."""
+        return np.zeros(self.B.shape)
+
+    @property
     def rate_units(self) -> tuple[str, ...]:
         """Unit of the rate of every state."""
-        return tuple(RATES[s.unit] for s in self.states)
+        return tuple(RATES.get(s.unit, f"{s.unit}/s") for s in self.states)
+
+    def save(self, path: str | Path) -> Path:
+        """A, B, C, D, names, units and the steady motion as a .mat, .npz or .json file.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Raises
+        ------
+        InputError
+            Another ending.
+
+        Examples
+        --------
+        >>> import tempfile, coeflab as cf
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     cf.read_vehicle("remus100").linear(speed=1.5, plane="horizontal").save(f"{folder}/auv.npz").name
+        'auv.npz'
+        """
+        return _saved((self,), Path(path))
 
 
-def linear_model(found: Trim) -> LinearModel:
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearSchedule:
+    """Linear models of one vehicle over several speeds, for a gain schedule.
+
+    Attributes
+    ----------
+    speeds : tuple of float
+        u, m/s.
+    models : tuple of LinearModel
+        Of the same states and commands.
+    """
+
+    speeds: tuple[float, ...]
+    models: tuple[LinearModel, ...]
+
+    @property
+    def A(self) -> Array:  # noqa: N802
+        """(k, n, n), one a speed."""
+        return np.array([m.A for m in self.models])
+
+    @property
+    def B(self) -> Array:  # noqa: N802
+        """(k, n, m)."""
+        return np.array([m.B for m in self.models])
+
+    def frame(self) -> pd.DataFrame:
+        """A row a speed: states and commands of the steady motion, every entry of A and B, real part of the least stable eigenvalue.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.read_vehicle("remus100").linear(speed=[1.0, 2.0], free="uvr").frame()["A_v_v"].round(3).tolist()
+        [-0.521, -1.043]
+        """
+        import pandas as pd
+
+        rows = []
+        for m in self.models:
+            row = {f"{v.name} [{v.unit}]": v.value for v in (*m.states, *m.commands)}
+            for name, matrix, columns in (("A", m.A, m.states), ("B", m.B, m.commands)):
+                for state, values in zip(m.states, matrix.tolist(), strict=True):
+                    row |= {f"{name}_{state.name}_{c.name}": x + 0.0 for c, x in zip(columns, values, strict=True)}
+            rows.append(row | {"least stable [1/s]": m.modes[0].eigenvalue.real})
+        return pd.DataFrame(rows, index=pd.Index(self.speeds, name="speed [m/s]"))
+
+    def save(self, path: str | Path) -> Path:
+        """All of them as a .mat (speeds along the last axis), .npz or .json (along the first) file, or the table as .csv.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Raises
+        ------
+        InputError
+            Another ending.
+        """
+        return _saved(self.models, Path(path), self.speeds)
+
+
+def _saved(models: Sequence[LinearModel], path: Path, speeds: Sequence[float] | None = None) -> Path:
+    from coeflab.motion.trim.linear_files import content
+
+    write_atomically(path, content(models, path.suffix, speeds))
+    return path
+
+
+def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float] | None = None) -> LinearModel:
     """Linearise about the steady motion that trim found.
 
     Parameters
     ----------
     found : Trim
+    also : sequence of str
+        Of depth and heading: states beside those that forces depend on.
+    lags : mapping of str to float, optional
+        Time constant of a command, s: what acts follows it by T x_dot = d - x.
 
     Raises
     ------
     InputError
-        No steady motion was found, or rates that are not finite.
+        No steady motion was found, rates that are not finite, a state that nothing moves, or a lag of no command.
     """
     if not found.point.outcome.solved:
         raise InputError(
@@ -121,6 +239,8 @@ def linear_model(found: Trim) -> LinearModel:
     a, b = steady.state_slopes(x), steady.command_slopes(x)
     states = tuple(Variable(n, u, float(v) + 0.0) for (n, u), v in zip(steady.states, steady.departed(x), strict=True))
     commands = tuple(Variable(u.name, u.unit, found.point.values[u.name]) for u in steady.command_unknowns)
+    a, b, states = _placed(found, also, a, b, states)
+    a, b, states = _lagging(lags or {}, a, b, states, commands)
     shares = participation(a.matrix)
     values = modes(a.matrix)
     fastest = max(1.0, float(np.max(np.abs(values), initial=0.0)))
@@ -130,8 +250,50 @@ def linear_model(found: Trim) -> LinearModel:
         for v, part in zip(values, shares, strict=True)
     )
     return LinearModel(
-        found.motion.vehicle.name, states, commands, a, b, found_modes, (*_accuracy(a, b), *_kinks(a, b, states, commands))
+        found.motion.vehicle.name, states, commands, a, b, found_modes, (*_accuracy(a, b), *_kinks(a, b, states, commands)),
+        found.point.statements,
     )  # fmt: skip
+
+
+def _placed(
+    found: Trim, also: Sequence[str], a: Slopes, b: Slopes, states: tuple[Variable, ...]
+) -> tuple[Slopes, Slopes, tuple[Variable, ...]]:
+    """With depth and heading, on which no force depends, as further states."""
+    if not also:
+        return a, b, states
+    place = found.motion.place_slopes(found.point.found.point)
+    for name in dict.fromkeys(also):
+        if name not in PLACES:
+            raise InputError(shown(name), f"some of {', '.join(PLACES)}", column="also")
+        k, n, m = list(PLACES).index(name), len(states), place.matrix.shape[1]
+        if not place.matrix[k].any():
+            raise InputError(
+                f"{name}, which {', '.join(s.name for s in states)} do not move", f"motions that change {name}", column="also",
+                advice=f"--free with {'r' if name == 'heading' else 'w or q'}.",
+            )  # fmt: skip
+        a, b = a.grown(1, 1), b.grown(1, 0)
+        a.matrix[n, :m], a.error[n, :m] = place.matrix[k], place.error[k]
+        states = (*states, Variable(name, PLACES[name], 0.0))
+    return a, b, states
+
+
+def _lagging(
+    lags: Mapping[str, float], a: Slopes, b: Slopes, states: tuple[Variable, ...], commands: tuple[Variable, ...]
+) -> tuple[Slopes, Slopes, tuple[Variable, ...]]:
+    """With what follows a command late as a further state: the force is of the state, and the state goes to the command."""
+    names = [c.name for c in commands]
+    for name, lag in lags.items():
+        if name not in names:
+            raise InputError(f"a lag of {shown(name)}", f"one of {', '.join(names)}", column="lag")
+        if not (math.isfinite(lag) and lag > 0.0):
+            raise InputError(f"{lag:g} s", "a time constant above zero", column="lag")
+        k, n = names.index(name), len(states)
+        a, b = a.grown(1, 1), b.grown(1, 0)
+        for late, at_once in ((a.matrix, b.matrix), (a.error, b.error), (a.kinks, b.kinks)):
+            late[:n, n], at_once[:n, k] = at_once[:n, k], 0.0
+        a.matrix[n, n], b.matrix[n, k] = -1.0 / lag, 1.0 / lag
+        states = (*states, Variable(name + LAGGED, commands[k].unit, commands[k].value))
+    return a, b, states
 
 
 def _accuracy(a: Slopes, b: Slopes) -> tuple[str, ...]:

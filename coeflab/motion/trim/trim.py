@@ -5,7 +5,7 @@ Steady motion of a vehicle: constant velocities, roll, pitch and rate of heading
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +28,7 @@ from coeflab.motion.vehicle import THRUST, Vehicle
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
 LEANS = {"p": "roll", "q": "pitch"}
+PLACES = {"depth": "m", "heading": "rad"}
 FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch": "q"}
 # Bounds of the search: three times the speed, a turn on a sixth of a length, and short of 90 deg, where heading has no sense.
 FASTEST, TURNS, STEEP = 3.0, 6.0, np.radians(85.0)
@@ -115,6 +116,15 @@ class SteadyMotion:
         turned = np.array([p + np.tan(leant[1]) * (q * sin + r * cos), q * cos - r * sin])
         return np.concatenate([faster[columns], turned[leaning]])
 
+    def place_rates(self, x: Array, small: Array) -> Array:
+        """(2,) rates of `PLACES` with these values of `states` (Fossen 2011, equations 2.25 and 2.29)."""
+        moved, lean = self.state(x)
+        columns, leaning = list(self.vehicle.free_columns), self._leaning
+        moved[columns], lean[leaning] = small[: len(columns)], small[len(columns) :]
+        (u, v, w), (_, q, r) = moved[:3], moved[3:]
+        (sin, cos), (sine, cosine) = (np.sin(lean[0]), np.cos(lean[0])), (np.sin(lean[1]), np.cos(lean[1]))
+        return np.array([cosine * (v * sin + w * cos) - u * sine, (q * sin + r * cos) / cosine])
+
     def state_slopes(self, x: Array) -> Slopes:
         """Derivatives (n, n) of `rates` by the states, the commands as they are.
 
@@ -123,11 +133,18 @@ class SteadyMotion:
         InputError
             They are not finite.
         """
+        return self._slopes(self.rates, x)
+
+    def place_slopes(self, x: Array) -> Slopes:
+        """Derivatives (2, n) of `place_rates` by the states."""
+        return self._slopes(self.place_rates, x)
+
+    def _slopes(self, rates: Callable[[Array, Array], Array], x: Array) -> Slopes:
         craft = self.vehicle
         speed = max(float(np.linalg.norm(self.state(x)[0][:3])), 0.1 * craft.speed)
         scale = [speed if i < 3 else speed / craft.length for i in craft.free_columns] + [1.0] * len(self._leaning)
         endless = np.full(len(scale), np.inf)
-        return _finite(slopes(lambda small: self.rates(x, small), self.departed(x), np.array(scale), -endless, endless))
+        return _finite(slopes(lambda small: rates(x, small), self.departed(x), np.array(scale), -endless, endless))
 
     def command_slopes(self, x: Array) -> Slopes:
         """Derivatives (n, m) of `rates` by the commands, within their bounds.

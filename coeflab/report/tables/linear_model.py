@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.table import Table, folded, number
+from coeflab.core.table import ABSENT, Table, folded, number
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.wording import one_line
+from coeflab.core.wording import listed, one_line
 from coeflab.law.symbols import CONTROLS
+from coeflab.motion.trim.linear_files import ENDINGS, content
 from coeflab.vehicle.expected_signs import TURNS
 
 if TYPE_CHECKING:
     from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
+    from coeflab.motion.trim.trim import Trim
 
 PART = 0.1  # a state with a smaller share is not named in a mode
 FUNCTION = "linear"
@@ -71,6 +73,34 @@ def _parts(mode: Mode) -> str:
     return ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in named)
 
 
+def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Sequence[LinearModel | None]) -> Table:
+    """A row a speed: the commands of the steady motion and the eigenvalue of the least stable mode; a speed without one is named."""
+    commands = trims[0].motion.command_unknowns
+    rows = []
+    for speed, found, model in zip(speeds, trims, models, strict=True):
+        cells = [u.shown(found.point.values[u.name]).partition(" ")[0] if model else ABSENT for u in commands]
+        mode = (_eigenvalue(model.modes[0]), _parts(model.modes[0])) if model else (ABSENT, found.point.outcome.value)
+        rows.append((number(speed), *cells, *mode))
+    told: dict[str, list[str]] = {}
+    for speed, found in zip(speeds, trims, strict=True):
+        for words in found.point.statements:
+            told.setdefault(words, []).append(number(speed))
+    notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in told.items())
+    headers = (
+        "u [m/s]",
+        *(f"{u.name} [{u.shown(0.0).partition(' ')[2]}]" for u in commands),
+        "least stable, 1/s",
+        "motion",
+    )
+    return Table(
+        f"Linear models of {trims[0].motion.vehicle.name} over the speed",
+        headers,
+        tuple(rows),
+        notes,
+        frozenset({len(headers) - 1}),
+    )
+
+
 def senses(model: LinearModel) -> tuple[str, ...]:
     """What a positive control angle begins to do, by B."""
     names, out = [s.name for s in model.states], []
@@ -85,12 +115,19 @@ def senses(model: LinearModel) -> tuple[str, ...]:
 
 
 def files(model: LinearModel) -> dict[str, bytes]:
-    """A.csv, B.csv and linear.m by name."""
+    """A.csv, B.csv, linear.m, linear.mat, linear.npz and linear.json by name."""
     return {
+        **{f"{FUNCTION}{ending}": content([model], ending) for ending in ENDINGS[:-1]},
         "A.csv": _csv(model, model.a.matrix, model.states),
         "B.csv": _csv(model, model.b.matrix, model.commands),
         f"{FUNCTION}.m": _m_file(model).encode(),
     }
+
+
+def schedule_files(speeds: Sequence[float], models: Sequence[LinearModel]) -> dict[str, bytes]:
+    """Of several speeds linear.mat, linear.npz, linear.json, and the table over the speed."""
+    named = {f"{FUNCTION}{ending}": content(models, ending, speeds) for ending in ENDINGS[:-1]}
+    return {"over_speed.csv": content(models, ".csv", speeds), **named}
 
 
 def _csv(model: LinearModel, matrix: np.ndarray, columns: Sequence[Variable]) -> bytes:
@@ -115,7 +152,11 @@ def _m_file(model: LinearModel) -> str:
             "%",
             "%   names = struct of cell rows: states, state_units, commands, command_units",
             "%   at    = struct of columns: states and commands in the steady motion, where x and d are zero",
-            *(line for words in model.statements for line in folded(one_line(f"{words}."), 78, "%   ", "%     ")),
+            *(
+                line
+                for words in (*model.statements, *model.remarks)
+                for line in folded(one_line(f"{words.rstrip('.')}."), 78, "%   ", "%     ")
+            ),
             "",
             f"A = {_rows(model.a.matrix, 'A = [')};",
             f"B = {_rows(model.b.matrix, 'B = [')};",
