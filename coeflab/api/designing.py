@@ -20,9 +20,10 @@ from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
+from coeflab.motion.uncertainty.tests import Kind
 from coeflab.motion.uncertainty.uncertainty import Question
 from coeflab.study import next_tests as plain_tests
-from coeflab.study.next_tests import MEMBERS, Kind, ProposedTest, Ranges, Reached, Wanted
+from coeflab.study.next_tests import MEMBERS, ProposedTest, Ranges, Reached, Wanted
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import INDICES

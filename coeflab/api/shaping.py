@@ -87,5 +87,7 @@ def shaped(
         return Shaped(study)
     progress(f"fitting {campaign}")
     merged = merge(next(iter(study.parameter_files.values())), campaign, progress=progress)
-    exports, refused = exports_of(plan.exports, [merged.merged.parameters], progress)
+    shape = next(iter(study.hulls.values())).body.shape
+    seen = {} if shape is None else {merged.merged.parameters.name: shape}
+    exports, refused = exports_of(plan.exports, [merged.merged.parameters], progress, seen)
     return Shaped(replace(study, exports=exports, refused=refused), merged)

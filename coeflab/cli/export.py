@@ -61,6 +61,8 @@ def command(
         show.not_used(parameters)
     result, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = vehicle.checks()
+    if not json and not show.whole() and any(one.loss is not None for one in result):
+        show.text("Differences force by force: the .loss.txt beside the files, or --wide.")
     if not json:
         show.file_findings(parameters.name, found)
     gone = {target for target, _ in refused}
@@ -146,6 +148,8 @@ def _print_loss(made: Export, parameters: ParameterFile) -> None:
     show.text(whole + ("" if made.lossless else f" {tables.in_short(loss)}."))
     for words in without_law(parameters):
         show.sentence(f"The file has {words}.")
+    if not show.whole():
+        return
     show.text()
     show.table(tables.forces(loss))
     show.table(tables.at_points(loss.at_points, f"Force law of {made.target}", controls=False))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -107,6 +108,10 @@ def command(
         show.text(result.undetermined)
     else:
         _print(result, written)
+        if any(c.u95 for c in parameters.coefficients):
+            kept = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
+            words = [str(file), "--manoeuvre", manoeuvre, *kept, *ctx.args]
+            show.command_line("How sure, and why", f"coeflab uncertainty {shlex.join(words)}")
         show.text()
     if not json:
         show.file_findings(parameters.name, found)

@@ -54,8 +54,8 @@ def command(
 ) -> None:
     """Give intervals for the quantities of a manoeuvre, such as advance.
 
-    Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which coefficient is worth another
-    test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
+    Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which test takes most off
+    the variance. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
     depend on cores, scheduler, or on having been stopped and started again. Exit code 1 where the file
     determines no quantity of the manoeuvre.
     """
@@ -102,6 +102,7 @@ def _print(made: Carried, written: list[Path]) -> None:
     for found in made.importances:
         show.table(uncertainty_tables.share_table(found))
     show.table(uncertainty_tables.known_table(made))
+    show.table(uncertainty_tables.tests_table(made))
     for line in (*uncertainty_tables.ranking(made), *made.statements):
         show.text(f"  {line}")
     for path in written:

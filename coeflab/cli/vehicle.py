@@ -112,14 +112,8 @@ def command(
         more = {} if merged is None else {"merged": merge.as_object(merged, others)}
         show.json_object({**from_shape(study), **more, "files": [str(p) for p in paths]})
     else:
-        _print(
-            study,
-            folder,
-            sorted(files),
-            changed,
-            f"{MERGED}/" * (merged is not None),
-            _on_draft(folder, draft, selected),
-        )
+        home = f"{MERGED}/" * (merged is not None)
+        _print(study, folder, sorted(files), changed, home, _on_draft(folder, draft, selected))
         if merged is not None:
             merge.summarise(merged, others)
             _exported(study, folder / MERGED)

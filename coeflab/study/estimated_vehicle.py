@@ -101,7 +101,12 @@ def from_shape(
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     files = {name: compared(p, shape.estimates, moves) for name, p in files.items()}
     vehicle = next(iter(files.values()))
-    exports, refused = exports_of(plan.exports, files.values(), progress)
+    exports, refused = exports_of(
+        plan.exports,
+        files.values(),
+        progress,
+        {n: h.body.shape for n, h in study.hulls.items() if h.body.shape is not None},
+    )
     carried, why = _carried(vehicle, moves, progress)
     missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
     shape = replace(shape, said=tuple(words), missing=missing, carried=carried)

@@ -17,6 +17,7 @@ from coeflab.fits.statistics.designs import FINAL, Response, designed, predicted
 from coeflab.fits.statistics.origin_slope import OriginSlope, curve, estimate
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, CONTROLS, derivative, primed
+from coeflab.motion.uncertainty.tests import Kind, kind_of
 from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
@@ -27,26 +28,6 @@ SEEN = 0.01  # of the variance: tests that hold less are left out
 LEVELS = 12
 MEMBERS = 200
 FEWEST, MOST = 3, 24
-
-
-class Kind(StrEnum):
-    """A test, by what its runs vary."""
-
-    DRIFT = "drift"
-    ATTACK = "angle of attack"
-    YAW = "rotating arm, yaw"
-    PITCH = "rotating arm, pitch"
-    RUDDER = "rudder"
-    STERN = "stern planes"
-    BOW = "bow planes"
-    RESISTANCE = "resistance"
-    ADDED_MASS = "accelerations"
-    OTHER = "several motions at once"
-
-
-OF_VARIABLE = {
-    "v": Kind.DRIFT, "w": Kind.ATTACK, "r": Kind.YAW, "q": Kind.PITCH, "dr": Kind.RUDDER, "ds": Kind.STERN, "db": Kind.BOW,
-}  # fmt: skip
 
 
 class Reached(StrEnum):
@@ -277,20 +258,6 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
     most = max(1.0, sum(share for share, _ in shares.values()))
     shares = {symbol: (share / most, u95) for symbol, (share, u95) in shares.items()}
     return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, shares)
-
-
-def kind_of(symbol: str) -> tuple[Kind, str]:
-    """The test that gives a coefficient, and the variable of its settings; none of a test of several."""
-    factors = derivative(symbol).factors
-    if any(f.endswith("dot") for f in factors):
-        return Kind.ADDED_MASS, ""
-    if not factors or set(factors) <= {"u"}:
-        return Kind.RESISTANCE, ""
-    moving = {f for f in factors if f != "u"}
-    if len(moving) > 1:
-        return Kind.OTHER, ""
-    variable = moving.pop()
-    return OF_VARIABLE.get(variable, Kind.OTHER), variable if variable in OF_VARIABLE else ""
 
 
 def next_tests(

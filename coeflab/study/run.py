@@ -176,7 +176,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
                 from coeflab.vehicle.merge import merged
 
                 files[g.name] = merged(read_parameter_file(g.base), files[g.name], g.name).parameters
-    exports, refused, manoeuvres = _used(plan, files, progress)
+    exports, refused, manoeuvres = _used(plan, files, hulls, progress)
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -232,7 +232,7 @@ def _hulls(
 
 
 def _used(
-    plan: Plan, files: Mapping[str, ParameterFile], progress: Progress
+    plan: Plan, files: Mapping[str, ParameterFile], hulls: Mapping[str, Triangulation], progress: Progress
 ) -> tuple[tuple[Export, ...], tuple[Refused, ...], tuple[Simulation, ...]]:
     """What a plan does with its parameter files; what it does not ask for is not imported."""
     exports: tuple[Export, ...] = ()
@@ -241,7 +241,12 @@ def _used(
     if plan.exports:
         from coeflab.formats.exporting import exports_of
 
-        exports, refused = exports_of(plan.exports, files.values(), progress)
+        exports, refused = exports_of(
+            plan.exports,
+            files.values(),
+            progress,
+            {n: h.body.shape for n, h in hulls.items() if h.body.shape is not None},
+        )
     if plan.manoeuvres:
         from coeflab.motion.simulation import manoeuvres_of
 

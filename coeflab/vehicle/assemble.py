@@ -427,6 +427,7 @@ def assemble(
                 [
                     *(f for fit in chosen for f in fit.findings),
                     *(() if found is None else found.findings),
+                    *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),
                 ]
             )

@@ -8,7 +8,8 @@ import pytest
 import coeflab as cf
 from coeflab.core.errors import InputError
 from coeflab.law.coefficient import Coefficient, Parts, Status
-from coeflab.study.next_tests import Kind, Ranges, Reached, Wanted, kind_of, next_tests, of_index
+from coeflab.motion.uncertainty.tests import Kind, kind_of
+from coeflab.study.next_tests import Ranges, Reached, Wanted, next_tests, of_index
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import stability_index
 
@@ -22,7 +23,7 @@ def coefficient(symbol: str, value: float, u95: float | None) -> Coefficient:
     [
         ("Yv", Kind.DRIFT, "v"), ("Yv|v|", Kind.DRIFT, "v"), ("Mw", Kind.ATTACK, "w"), ("Nr", Kind.YAW, "r"), ("Mq", Kind.PITCH, "q"),
         ("Ydr", Kind.RUDDER, "dr"), ("Zds", Kind.STERN, "ds"), ("X0", Kind.RESISTANCE, ""), ("Xu|u|", Kind.RESISTANCE, ""),
-        ("Yvdot", Kind.ADDED_MASS, ""), ("Yvr", Kind.OTHER, ""), ("Yuv", Kind.DRIFT, "v"), ("Kp", Kind.OTHER, ""),
+        ("Yvdot", Kind.ADDED_MASS, ""), ("Yvr", Kind.OTHER, ""), ("Yuv", Kind.DRIFT, "v"), ("Kp", Kind.ROLL, ""),
     ],
 )  # fmt: skip
 def test_which_test_gives_a_coefficient(symbol: str, kind: Kind, variable: str) -> None:

@@ -64,6 +64,7 @@ def carried(made: Carried) -> dict[str, Any]:
                 "rows": i.rows,
                 "why": i.why or None,
                 "if_known": dict(i.known),
+                "tests": dict(i.tests),
                 "groups": [
                     {
                         "symbols": list(s.symbols), "source": s.source, "first": s.first, "first_bounds": list(s.first_bounds),

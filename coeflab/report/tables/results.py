@@ -543,6 +543,21 @@ def _of(components: Sequence[str], table: ForceTable) -> str:
     return "row" if whole else " ".join(components)
 
 
+def unused_rows(table: ForceTable) -> list[str]:
+    """Every row, or component of one, that no fit uses, by the reason."""
+    by: dict[str, dict[int, list[str]]] = {}
+    for e in table.exclusions:
+        by.setdefault(e.reason, {}).setdefault(e.row, []).append(e.component)
+    out = []
+    for reason, rows in by.items():
+        names = [
+            table.labels[row] + (f" {of}" if (of := _of(list(dict.fromkeys(c)), table)) != "row" else "")
+            for row, c in rows.items()
+        ]
+        out.append(f"{', '.join(names)}: {reason}")
+    return out
+
+
 NAMED = 12  # rows that a line names; of more the first
 
 
