@@ -117,7 +117,9 @@ def command(
         with show.progress(json) as say:
             say(f"fitting {campaign}")
             merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / MERGED, say)
-            exports, not_made = exports_of(plan.exports, [merged.made.parameters], say)
+            shape = next(iter(study.hulls.values())).body.shape
+            seen = {} if shape is None else {merged.made.parameters.name: shape}
+            exports, not_made = exports_of(plan.exports, [merged.made.parameters], say, seen)
             exported = {f"{MERGED}/{place}": content for place, content in placed(exports).items()}
     show.step("drawing the report", json)
     draft, selected = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
