@@ -195,7 +195,10 @@ def test_a_file_with_u95_names_the_command_that_says_how_sure(coeflab: Run, tmp_
         "40 kg",
     )
     values = ("X0'=-0.003", "Yv'=-0.03 +- 0.003", "Nv'=-0.007", "Yr'=0.005", "Nr'=-0.006", "Ydr'=0.01", "Ndr'=-0.005")
-    assert coeflab(*new, "--inertia", "12", "--out", file.parent, *(w for v in values for w in ("--set", v))).returncode == 0
+    assert (
+        coeflab(*new, "--inertia", "12", "--out", file.parent, *(w for v in values for w in ("--set", v))).returncode
+        == 0
+    )
     asked = (file, "--manoeuvre", "straight_run", "--free", "u,v,r", "--speed", "2 kn")
     done = coeflab("simulate", *asked)
     typed = flat(done.stdout.replace("\\\n", " ")).partition("How sure, and why: ")[2]
