@@ -356,4 +356,6 @@ def test_mujoco_takes_it_or_it_is_refused(name: str, request: pytest.FixtureRequ
     data.qvel[0] = file.conditions.speed
     mujoco.mj_step(model, data, round(2.0 / model.opt.timestep))
     assert np.all(np.isfinite(data.qpos))
-    assert 0.0 < data.qpos[0] < 2.0 * file.conditions.speed
+    assert (
+        0.0 < data.qpos[0] < 2.0 * file.conditions.speed + 1e-9
+    )  # all drag of huuv_5dof is in tables, which MuJoCo has not
