@@ -15,7 +15,7 @@ from coeflab.core.options import described
 from coeflab.fits import FITS
 from coeflab.fits.joint.rows import one_length
 from coeflab.law.scaling import Scaling
-from coeflab.study.fitting import fitted
+from coeflab.study.fitting import fitted, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
 from coeflab.tables.reading import suited_fit
@@ -100,11 +100,9 @@ def fit(
     with one_thread():
         if FITS.load(by).joins_campaigns:
             return Result((fitted(by, read, scaling or one_length(read), given)[0],), tuple(read))
-        fits = []
-        for campaign in dict.fromkeys(t.campaign for t in read):
-            own = [t for t in read if t.campaign == campaign]
-            fits.append(fitted(by, own, scaling or own[0].scaling, given)[0])
-    return Result(tuple(fits), tuple(read))
+        by_campaign = [[t for t in read if t.campaign == c] for c in dict.fromkeys(t.campaign for t in read)]
+        asked = [(by, own, scaling or own[0].scaling, given) for own in by_campaign]
+        return Result(rejoined([fitted(*one)[0] for one in asked], asked), tuple(read))
 
 
 def _suited(every: Sequence[Any]) -> str:

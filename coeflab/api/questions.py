@@ -189,7 +189,8 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     0.349066
     """
     try:
-        return with_unit(value, dimension) if isinstance(value, str) else _number(value)
+        number = value if isinstance(value, str) else _number(value)
+        return with_unit(number, dimension) if isinstance(value, str) or dimension == "density" else float(number)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=keyword, advice=why.advice) from None
 

@@ -25,6 +25,7 @@ from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
+from coeflab.fits.joint.moving import fits_about
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions
@@ -364,18 +365,10 @@ def _of_datum(hull: Body, result: Result) -> Body:
 
 
 def _fitted_file(result: Result, base: ParameterFile, hull: Body) -> ParameterFile:
-    """The parameter file of fits alone, primed and about the point of the vehicle."""
+    """The parameter file of fits alone, primed and about the point of the vehicle, to which each helps the others."""
     point = np.array(base.reference_point.point)
-    fits = []
-    for f in result.fits:
-        moved = f.coefficients.to_length(base.scaling)
-        if moved.datum != base.reference_point.origin:
-            moved = (
-                replace(moved, datum=base.reference_point.origin)
-                if moved.datum.id == base.reference_point.origin.id
-                else moved
-            )
-        fits.append(replace(f, coefficients=replace(moved.about(point), body=hull.name), body=hull.name))
+    fits = [replace(f, coefficients=replace(f.coefficients, body=hull.name), body=hull.name) for f in result.fits]
+    fits = list(fits_about(fits, point, base.scaling))
     tables = [replace(t, body=hull.name).about(point) for t in result.tables]
     inputs = tuple(dict.fromkeys(f for t in result.tables for f in t.files))
     group = PlannedParameterFile(stem(hull.name), hull.name, tuple(f.campaign for f in fits), ())

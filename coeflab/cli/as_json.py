@@ -64,7 +64,7 @@ def finding_as_data(f: Finding) -> dict[str, Any]:
 
 
 def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
-    """The runs that would narrow each slope most; asin(v/U) in radians, rates as r' = r L/U; U95 is that of the fit alone."""
+    """The runs that would narrow each slope most; asin(v/U) in radians, rates as r' = r L/U; U95 is the whole one."""
     out = []
     for fit in s.fits:
         for sweep in (one for one in fit.sweeps if not symbols or one.symbol in symbols):
@@ -75,11 +75,13 @@ def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, An
                     "unit": "rad" if degrees else "1",
                     "u95_after": after,
                 }
-                for x, after in next_tables.next_runs(s, sweep, count)
+                for x, after in next_tables.next_runs(s, fit, sweep, count)
             ]
             if runs:
+                rest = next_tables.outside(fit, sweep)
+                u95 = None if sweep.u95 is None else float(np.hypot(sweep.u95, rest))
                 words = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}
-                out.append(words | {"u95_now": sweep.u95, "runs": runs})
+                out.append(words | {"u95_now": u95, "outside": rest, "runs": runs})
     return out
 
 

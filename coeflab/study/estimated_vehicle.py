@@ -26,6 +26,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
+from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.formats.export import PlannedExport
 from coeflab.formats.exporting import exports_of
 from coeflab.law.added_mass import NearWall
@@ -459,11 +460,14 @@ def asked(
 
 
 def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:
-    """A parameter file, or what the default fits make of a campaign about the base's reference point; and its own length.
+    """A parameter file, or what the default fits make of campaigns about the base's reference point; and its own length.
+
+    What no campaign among them can move there is left about its own point: fitted numbers of the base may move it.
 
     Parameters
     ----------
     name : str
+        Of a file or a campaign; several campaigns with commas between.
     base : ParameterFile
     run : callable
         `coeflab.study.run.run`.
@@ -477,10 +481,29 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
     if path.suffix.lower() == ".json":
         found = read_parameter_file(path)
         return found, found.scaling
-    campaign = table_at(located(name, "cfd_data"), DEFAULT_FITS)
+    campaigns = tuple(table_at(p, DEFAULT_FITS) for p in campaigns_named(name))
     plan = Plan(
-        stem(path.name), path.name, (campaign,), np.array(base.reference_point.point), base.reference_point.origin,
+        stem(path.name), path.name, campaigns, np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,
     )  # fmt: skip
     study = run(plan)
+    if any(f.code == LEFT_OUT for fit in study.fits for f in fit.findings):
+        own = run(replace(plan, reference_point=None, datum=None)) if len(campaigns) == 1 else study
+        study = replace(own, tables=study.tables)
     return next(iter(study.parameter_files.values())), study.tables[0].scaling
+
+
+def campaigns_named(name: str) -> list[Path]:
+    """Where the campaigns are that a person names with commas between, or one whose own name holds a comma.
+
+    Parameters
+    ----------
+    name : str
+
+    Raises
+    ------
+    InputError
+        One is not there.
+    """
+    names = [name] if Path(name).exists() else [n.strip() for n in name.split(",")]
+    return [located(n, "cfd_data") for n in names if n]

@@ -229,8 +229,8 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
         stated = all(t.arm_point is not None for t in own if {"q", "r"} & set(t.varies))
         out.append(
             f"{listed([primed(s) for s in slopes])}: velocities of {f.campaign} are at {point_in_words(at, own[0].datum)}, {abs(shift):.3g} m "
-            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}put the drift runs "
-            f"into this campaign, for a move takes its {listed([primed(n) for n in needed])}."
+            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}give the drift runs "
+            f"beside it, for a move takes its {listed([primed(n) for n in needed])}."
         )
     return tuple(out)
 
