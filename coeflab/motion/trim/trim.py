@@ -358,7 +358,7 @@ def trim(
         Nothing given, nothing to be found, or a name or value that the vehicle does not have.
     """
     if not motion and not commands:
-        raise InputError("neither a motion nor a command", "--speed, --yaw-rate, --commands or the like")
+        raise InputError("neither a motion nor a command", "a speed, a yaw rate, commands or the like")
     steady = steady_motion(vehicle, motion, commands or {})
     unknowns = _ruled(steady.unknowns, near or {})
     if not any(u.low < u.high for u in unknowns):
