@@ -16,7 +16,7 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
@@ -333,13 +333,13 @@ def vehicle(
     conditions = None
     if density is not None or speed is not None:
         conditions = Conditions(
-            FRESH_WATER.density if density is None else si(density, "density", "density"),
-            FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+            FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
+            FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
         )  # fmt: skip
     stated = Stated(
-        None if mass is None else _positive(si(mass, "mass", "mass"), "mass"),
-        None if centre_of_gravity is None else np.asarray(centre_of_gravity, dtype=float),
-        None if inertia is None else np.diag(np.asarray(inertia, dtype=float)),
+        None if mass is None else above_zero(mass, "mass", "mass"),
+        None if centre_of_gravity is None else three(centre_of_gravity, "length", "centre_of_gravity"),
+        None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
     )
     called = stem(name or hull.name)
     result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
@@ -349,12 +349,6 @@ def vehicle(
     other = _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
     own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
     return Vehicle(merged(base, other, called, own).parameters)
-
-
-def _positive(value: float, keyword: str) -> float:
-    if not value > 0.0:
-        raise InputError(f"{value:g}", f"a {keyword} above zero", column=keyword)
-    return value
 
 
 def _of_datum(hull: Body, result: Result) -> Body:
