@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, si
 from coeflab.bodies import body as plain
 from coeflab.bodies.added_masses import added_masses, methods, near_walls
 from coeflab.bodies.finer_panels import finer_panels
@@ -19,9 +19,12 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.law import added_mass as law
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.water import FRESH_DENSITY
+from coeflab.vehicle.from_shape import displaced_mass
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
@@ -52,6 +55,19 @@ class AddedMass(law.AddedMass):
     >>> bool(added.matrix[1, 1] > 10 * added.matrix[0, 0])
     True
     """
+
+    def frame(self) -> pd.DataFrame:
+        """The matrix, a row a force, a column an acceleration; kg, kg m, kg m^2.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> bool(cf.read_body("remus100").added_mass("ellipsoid").frame().loc["Y", "v_dot"] > 0)
+        True
+        """
+        import pandas as pd
+
+        return pd.DataFrame(np.array(self.matrix), list(COMPONENTS), [f"{m}_dot" for m in MOTIONS])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """The matrix, each entry the darker the larger it is beside its two diagonal ones.
@@ -97,6 +113,34 @@ class Body(plain.Body):
     """
 
     place: Path | None = None
+
+    @property
+    def volume(self) -> float:
+        """Of the water that it displaces, m^3; that of the state that has the mass, where its file states several.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(cf.read_body("remus100").volume, 4)
+        0.0317
+        """
+        return displaced_mass(self, 1.0)
+
+    def displaced_mass(self, density: float | str = FRESH_DENSITY) -> float:
+        """Of the water that it displaces, kg: what weighs as much floats without effort.
+
+        Parameters
+        ----------
+        density : float or str
+            kg/m^3; fresh water.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(cf.read_body("remus100").displaced_mass("1.025 g/cm^3"), 1)
+        32.4
+        """
+        return displaced_mass(self, above_zero(density, "density", "density"))
 
     def added_mass(self, method: str = "all", density: float | str = FRESH_DENSITY, **options: Any) -> AddedMass:
         """The 6 x 6 added-mass matrix about the reference point, FRD, SI.

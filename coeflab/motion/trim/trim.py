@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.vehicle import THRUST, Vehicle
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
 LEANS = {"p": "roll", "q": "pitch"}
@@ -294,6 +298,34 @@ class Trim:
     velocity: Array
     others: tuple[tuple[dict[str, float], str], ...]
     refused: tuple[Finding, ...] = ()
+
+    @property
+    def commands(self) -> dict[str, float]:
+        """Thrusters in their units, control angles in rad, ``thrust`` in N where no thruster gives it.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.trim("remus100", speed=1.5).commands["thrust"] > 0.0
+        True
+        """
+        return {u.name: self.point.values[u.name] for u in self.motion.command_unknowns}
+
+    def frame(self) -> pd.DataFrame:
+        """A row a figure and a command: value and unit.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(float(cf.trim("remus100", speed=1.5).frame().loc["speed", "value"]), 6)
+        1.5
+        """
+        import pandas as pd
+
+        rows = {**self.figures, **{u.name: (self.commands[u.name], u.unit) for u in self.motion.command_unknowns}}
+        return pd.DataFrame(
+            [(np.nan if v is None else v, unit) for v, unit in rows.values()], list(rows), ["value", "unit"]
+        )
 
     @property
     def figures(self) -> dict[str, tuple[float | None, str]]:

@@ -20,9 +20,7 @@ citations = ("sname1950",)
 
 APART = 0.20
 LIGHT = "Unit of the mass or of the mesh? Rooms that flood: [[mass]] with flooded = true in its body.toml."
-HEAVY = (
-    "Unit of the mass or of the mesh? A mesh of the pressure hull alone? Water in the hull: [[mass]] with flooded = true."
-)
+HEAVY = "Unit of the mass or of the mesh? A mesh of the pressure hull alone? Water in the hull: [[mass]] with flooded = true."
 
 
 STEEP = float(np.radians(5.0))  # of trim or list at rest
