@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
+MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
 KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
 
 
@@ -215,9 +216,12 @@ class Body(plain.Body):
         if self.datum.id == datum:
             return self
         if not isinstance(self.shape, TriangleMesh) or not self.datum.id.startswith("origin of ") or datum != NOSE:
+            bare = isinstance(self.shape, TriangleMesh) and self.datum.id.startswith("origin of ")
+            aft = f"{self.shape.length / 2.0:.4g} m" if bare and self.shape and datum in MIDDLE else "X m"
             raise InputError(
-                f"{self.name}, whose places count from {shown(self.datum.id)}", f"{datum} as datum under [body] of its body.toml",
-                column="datum",
+                f"{self.name}, whose places count from {shown(self.datum.id)}",
+                f"places from the nose: a mesh names no {datum}" if bare else f"{datum} as datum under [body] of its body.toml",
+                column="datum", advice=f'about="nose, {aft} aft" of the tables; read_body(...).counted_from("nose") of the body.' if bare else "",
             )  # fmt: skip
         fore = np.array([float(self.shape.vertices[:, 0].max()), 0.0, 0.0])
         shape = replace(self.shape, vertices=self.shape.vertices - fore)
@@ -235,6 +239,8 @@ def read_body(
     repair: bool = False,
     fill: bool = False,
     sheets: bool = False,
+    units: str = "",
+    frame: str = "",
 ) -> Body:
     """A body from its body.toml, its folder, a shipped name or a mesh file.
 
@@ -248,6 +254,8 @@ def read_body(
         Of a mesh file: FLU, FRD, CFD or three directions with commas.
     repair, fill, sheets : bool
         Mend a mesh that is not sound; close its small holes; take its open surfaces as walls.
+    units, frame : str
+        The same as `unit` and `axes`, as `coeflab.read_table` calls them.
 
     Returns
     -------
@@ -270,7 +278,7 @@ def read_body(
     if not isinstance(source, str | Path):
         raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped body", column="source")
     try:
-        return typed_body(str(source), unit, axes, repair, fill, sheets, centred=True)
+        return typed_body(str(source), unit or units, axes or frame, repair, fill, sheets, centred=True)
     except InputError as why:
         for one in (why, *why.others):
             for option, keyword in KEYWORDS.items():

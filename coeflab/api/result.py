@@ -224,6 +224,8 @@ class Result(Mapping[str, Coefficient]):
         """
         import pandas as pd
 
+        if n < 1:
+            raise InputError(f"{n}", "a number of draws from 1", column="n")
         every, covariance = self._all(), self.covariance
         selected = [i for i, c in enumerate(every) if c.value is not None and np.isfinite(covariance[i, i])]
         drawn = np.random.default_rng(seed).multivariate_normal(

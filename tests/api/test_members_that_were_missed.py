@@ -37,7 +37,7 @@ def test_a_trim_gives_its_commands() -> None:
 
 def test_eigenvalues_are_those_of_the_modes() -> None:
     linear = cf.read_vehicle("remus100").linear(speed=1.5)
-    assert sorted(linear.eigenvalues.real) == pytest.approx(sorted(m.value.real for m in linear.modes), abs=1e-9)
+    assert sorted(linear.eigenvalues.real) == pytest.approx(sorted(m.eigenvalue.real for m in linear.modes), abs=1e-9)
 
 
 def test_a_comparison_is_summed_up() -> None:
