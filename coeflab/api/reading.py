@@ -317,7 +317,8 @@ def _keywords(said: Mapping[str, Any]) -> dict[str, Any]:
     InputError
         A keyword that there is not, with the one that is near.
     """
-    out, complaints = {}, []
+    out: dict[str, Any] = {}
+    complaints = []
     for given, value in said.items():
         keyword = {"axes": "frame", "unit": "units"}.get(given, given)
         if keyword not in KEYS:

@@ -30,11 +30,11 @@ def plugins(kind: str, begun: str) -> list[str]:
     return names(registry_of(kind).usable(), begun)
 
 
-def shipped(kind: str) -> list[str]:
-    """Shipped names of a kind."""
-    from coeflab.api.names import shipped_names
+def shipped_with(kind: str, file: str) -> list[str]:
+    """Shipped folders of a kind that have the file."""
+    from coeflab.core.files import shipped
 
-    return shipped_names()[kind]
+    return [place.parent.name for place in shipped(kind).glob(f"*/{file}")]
 
 
 def validations(incomplete: str) -> list[str]:
@@ -58,27 +58,29 @@ def folders(incomplete: str) -> list[str]:
 
 def plans(incomplete: str) -> list[str]:
     """Shipped plans, and paths."""
-    return or_paths(shipped("plans"), incomplete)
+    return or_paths(shipped_with("cfd_data", "plan.toml"), incomplete)
 
 
 def parameters(incomplete: str) -> list[str]:
     """Shipped parameter files, and paths."""
-    return or_paths(shipped("vehicles"), incomplete)
+    from coeflab.core.files import by_name
+
+    return or_paths(tuple(by_name("*.parameters.json")), incomplete)
 
 
 def campaigns(incomplete: str) -> list[str]:
     """Shipped campaigns, and paths."""
-    return or_paths(shipped("campaigns"), incomplete)
+    return or_paths(shipped_with("cfd_data", "campaign.toml"), incomplete)
 
 
 def bodies(incomplete: str) -> list[str]:
     """Shipped bodies, and paths."""
-    return or_paths(shipped("bodies"), incomplete)
+    return or_paths(shipped_with("geometry", "body.toml"), incomplete)
 
 
 def inspected(incomplete: str) -> list[str]:
     """Shipped campaigns and bodies, and paths."""
-    shipped_ones = (*shipped("campaigns"), *shipped("bodies"))
+    shipped_ones = (*shipped_with("cfd_data", "campaign.toml"), *shipped_with("geometry", "body.toml"))
     return or_paths(shipped_ones, incomplete)
 
 
