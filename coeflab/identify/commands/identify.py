@@ -142,9 +142,9 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
 def as_json(found: Identified) -> dict[str, Any]:
     """Every candidate with its values, absent ones null, and the works that the method rests on."""
-    from coeflab.cli.as_json import finding_as_data
     from coeflab.core.provenance import work
     from coeflab.identify.identify import citations
+    from coeflab.report.as_json.findings import finding_as_data
 
     return {
         "name": found.name,
