@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Axes, Datum, DatumKeys, Frame
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import named
 from coeflab.core.provenance import TABLE_KINDS, Source
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
@@ -537,19 +538,20 @@ class Campaign:
         return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
 
 
-def read_campaign(path: Path) -> Campaign:
+def read_campaign(path: str | Path) -> Campaign:
     """Read and check a campaign.toml.
 
     Parameters
     ----------
-    path : Path
-        The file itself.
+    path : str or Path
+        The file itself, or the name of a shipped campaign.
 
     Raises
     ------
     InputError
         Everything missing, unknown or inconsistent, by file, line and key.
     """
+    path = named(path, FILE)
     toml = read_toml(path)
     file = takes.declared(CampaignFile, toml)
     return campaign_of(file, path, tuple(toml.line(("table", i)) for i in range(len(file.table))))

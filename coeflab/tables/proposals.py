@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.axes import Axes
-from coeflab.core.errors import InputError, UnitsError
+from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.types import Array
 from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
@@ -161,6 +161,11 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         left = " leaves these cells out" * bool(np.any(np.isfinite(column.values)))
         return Proposal("", f"{_worded(column)}; {name} [{column.unit or OPEN}]{left}, or ignore")
     if column.is_text and not np.any(np.isfinite(column.values)):
+        if given.name in FORCES and column.unit:
+            return Proposal(
+                "",
+                f"its name and unit are of a force, and no cell is a number: {shown(column.texts[0])}; label, or ignore",
+            )
         return Proposal("label", "text")
     said_of = stated or {}
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))

@@ -312,7 +312,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
     yield Question(
         "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
-        f"{beyond}; m, with its name: 4.3 LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+        f"{beyond}; m, with its name: 4.3 m LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
         assumed=bool(length),
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",

@@ -47,7 +47,7 @@ READ = ("nope/none.csv", "FIFO", "LOOP", "EMPTY", "BINARY", "FOLDER", LONG)
 WRITTEN = ("TAKEN/below", "LOOP", LONG)
 WRONG: dict[str, tuple[str, ...]] = {
     "FOLDER": WRITTEN, "FILE.csv": WRITTEN, "DENSITY": NUMBER, "SECONDS": (*NUMBER, "-1"), "COUNT": COUNT, "NUMBER": COUNT[:2], "DEGREES": NUMBER,
-    "TANK.toml": READ, "FILE.toml": READ, "LIST.csv": READ, "PARAMS": READ, "FILE.mplstyle": READ, "CAMPAIGN": NAME, "NAME": NAME, "IMPORTER": NAME,
+    "TANK.toml": READ, "BODY": READ, "FILE.toml": READ, "LIST.csv": READ, "PARAMS": READ, "FILE.mplstyle": READ, "CAMPAIGN": NAME, "NAME": NAME, "IMPORTER": NAME,
     "UNIT": NAME, "AXES": NAME, "METHOD": NAME, "WALL": NAME, "FORMATS": NAME, "FORMAT": NAME, "TARGET": NAME, "PLANE": NAME, "convex": NAME,
     "measured|computed": NAME, "c|python|latex|octave": NAME, "u,v,r": NAME, "u": NAME, "Yv,Yr,...": NAME, "SYMBOL": NAME, "POINT": NAME,
     "KEY=VALUE": PAIR, "COLUMN=WHAT": PAIR, "NAME=VALUE": PAIR, "SYMBOL=VALUE": PAIR, "NAME=BOX": PAIR, "EQUATION": ("x", "Yv", "=", "Yv=Yv", LONG),
