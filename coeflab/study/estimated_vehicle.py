@@ -476,5 +476,9 @@ def campaigns_named(name: str) -> list[Path]:
     InputError
         One is not there.
     """
-    names = [name] if Path(name).exists() else [n.strip() for n in name.split(",")]
+    try:
+        alone = Path(name).exists()
+    except OSError:  # longer than any path can be
+        alone = False
+    names = [name] if alone else [n.strip() for n in name.split(",")]
     return [located(n, "cfd_data") for n in names if n]
