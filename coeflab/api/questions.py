@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,6 @@ KEYWORDS = {key: keyword for keyword, key in KEYS.items()}
 PLACES = ("about", "arm_point", "centre_of_gravity")
 _SIDE = re.compile(r"\b(aft|astern|behind|forward|fwd|ahead)(?:\s+of)?\b", re.IGNORECASE)
 _AFT = ("aft", "astern", "behind")
-_TYPED = re.compile(r"--(?:set|map) ([\w./]+)=")
 
 
 def settings_of(said: Mapping[str, Any]) -> dict[str, Setting]:
@@ -116,6 +116,36 @@ def in_signs(place: str) -> str:
     return f"{size} from {datum}" if datum else size
 
 
+_AS_TYPED = (
+    (re.compile(r"""--map ["']?([^\s=]+)=([^"']+)["']"""), r'columns={"\1": "\2"}'),
+    (re.compile(r"(?<![\w\"])(\w+)=([A-Z]\w*'? \[[^\]]*\])"), r'columns={"\1": "\2"}'),
+    (re.compile(r",? or by --words FILE\.toml"), ""),
+    (re.compile(r"--as\b"), "importer ="),
+    (re.compile(r", \.(?=centre_of_gravity|inertia)"), ", inertia."),
+    (re.compile(r"--set (?=[\w./]+=)"), ""),
+)
+
+
+def in_python(text: str) -> str:
+    """Words of the form of ``coeflab import`` with keywords in the place of keys and options.
+
+    Examples
+    --------
+    >>> in_python("SI for all; or Fy=Y [kN]")
+    'SI for all; or columns={"Fy": "Y [kN]"}'
+    >>> in_python("true: with inertia.mass, .centre_of_gravity")
+    'true: with mass, centre_of_gravity'
+    """
+    for pattern, words in _AS_TYPED:
+        text = pattern.sub(words, text)
+    for key, keyword in KEYWORDS.items():
+        text = re.sub(rf"(?<![\w.]){re.escape(key)}(?![\w.])", keyword, text)
+    return text
+
+
+_EITHER = re.compile(r"([+-]) if (.+), else ([+-])")
+
+
 def open_questions(lines: Sequence[Line], source: str, parts: Sequence[str] = ()) -> InputError:
     """What of a form is open or waits to be accepted, as one error that names the keywords.
 
@@ -137,14 +167,16 @@ def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator
     for one in lines:
         plain = one.key.rpartition("/")[2] if any(one.key.startswith(f"{p}/") for p in parts if p) else one.key
         keyword = KEYWORDS.get(plain)
-        offered = (
-            f'{keyword or "columns"}="{one.value}" if that is right, or accept=True: {one.why}'
-            if one.value
-            else one.why
-        )
+        either, why, about = _EITHER.fullmatch(str(one.value)), in_python(one.why), in_python(one.about)
+        if either is not None:
+            offered = f'{keyword}="{either[1]}" if {either[2]}, else {keyword}="{either[3]}"'
+        elif one.value:
+            offered = f'{keyword or "columns"}="{one.value}" if that is right, or accept=True: {why}'
+        else:
+            offered = why
         if keyword is None and "." in one.key and not one.argument.startswith("--map"):
             yield InputError(
-                f"nothing said of {one.key}", one.why or "a value", file=source, column=f'settings["{one.key}"]'
+                f"nothing said of {one.key}", why or "a value", file=source, column=f'settings["{one.key}"]'
             )
         elif keyword is None and not one.argument:  # of the importer, chosen in reading
             offered = f'options={{"{one.key}": "{one.value}"}} if that is right, or accept=True: {one.why}'
@@ -153,13 +185,13 @@ def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator
             offered = f'columns={{"{one.key}": "{one.value or "..."}"}}'
             yield InputError(
                 f"the column {one.key} of which nobody said what it is",
-                f"{offered}: {one.why}",
+                f"{offered}: {why}",
                 file=source,
                 column="columns",
             )
         else:
             yield InputError(
-                f"no {keyword}", offered, file=source, column=keyword, advice=one.about if not one.value else ""
+                f"no {keyword}", offered, file=source, column=keyword, advice=about if not one.value or either else ""
             )
 
 
@@ -168,9 +200,24 @@ def in_keywords(why: InputError, source: str) -> InputError:
     for one in (why, *why.others):
         if one.column is not None and (keyword := KEYWORDS.get(one.column.rpartition("/")[2])) is not None:
             one.column, one.keyed = keyword, True
+        one.found, one.expected, one.advice = map(in_python, (one.found, one.expected, one.advice))
         one.file = source if one.file is None or str(one.file) in (".", "campaign.toml") else one.file
         one.args = (str(one),)
     return why
+
+
+@contextmanager
+def keyword_of(**options: str) -> Iterator[None]:
+    """Complaints about options of the shell as ones about keywords: ``keyword_of(mass="--mass")``."""
+    try:
+        yield
+    except InputError as why:
+        for one in (why, *why.others):
+            for keyword, option in options.items():
+                one.column = keyword if one.column == option else one.column
+            one.args = (str(one),)
+        why.args = (str(why),)
+        raise
 
 
 def si(value: float | str, dimension: str, keyword: str) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coeflab.api.importing import column_maps, filled_in
-from coeflab.api.questions import in_keywords, open_questions, settings_of
+from coeflab.api.questions import KEYS, in_keywords, open_questions, settings_of
 from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
@@ -28,6 +29,15 @@ if TYPE_CHECKING:
 
 
 Source = "str | Path | pd.DataFrame | Mapping[str, Any] | ForceTable"
+SYMBOLS = {
+    "rho": "density",
+    "U": "speed",
+    "V": "speed",
+    "L": "length",
+    "nu": "viscosity",
+    "point": "about",
+    "half": "half_model",
+}
 ARRAYS = "columns"  # the importer of arrays, as the form names it
 
 
@@ -64,6 +74,7 @@ def read_table(
     importer: str = "",
     options: Mapping[str, Any] | None = None,
     accept: bool = False,
+    **also: Any,
 ) -> Table:
     """Forces over settings, in SI and FRD about one point.
 
@@ -120,7 +131,10 @@ def read_table(
     options : mapping, optional
         Of the importer.
     accept : bool
-        Take what the file offers and the numbers show, axes and signs too, as ``coeflab import --accept`` does.
+        Take what the file offers and the numbers show, axes and signs too, as ``coeflab import --accept`` does; not
+        `contains_inertia`, which no number shows and which turns the sign of Yr'.
+    **also
+        `axes` and `unit` are `frame` and `units`, as `coeflab.read_body` calls them.
 
     Returns
     -------
@@ -146,8 +160,8 @@ def read_table(
     words = {
         k: v
         for k, v in locals().items()
-        if k not in ("source", "columns", "name", "table", "importer", "options", "accept")
-    }
+        if k not in ("source", "columns", "name", "table", "importer", "options", "accept", "also")
+    } | also
     found = tables_from(source, words, columns or {}, name, importer, options or {}, accept)
     if table is not None:
         own_names = [t.name.rpartition("/")[2] for t in found]
@@ -214,6 +228,7 @@ def tables_from(
     said : mapping of str to object
         Its other keywords; None says nothing.
     """
+    said = _keywords(said)
     stated = {k: v for k, v in said.items() if v is not None}
     if isinstance(source, ForceTable | PlannedTable):
         _require_nothing(stated, columns, "a table that was read")
@@ -277,7 +292,6 @@ def _filled_in(
 ) -> tuple[Table, ...]:
     """Raw tables, filled in by what is said; complaints about what nobody said."""
     source = str(parts[0].raw.path) if len(parts) == 1 else str(parts[0].raw.path.parent)
-    _require_known(said)
     known = settings_of(said)
     maps = column_maps(columns, parts, "columns", 'columns["{name}"]', source, source)
     require_parts(known, parts)
@@ -295,8 +309,27 @@ def _filled_in(
         raise in_keywords(why, source) from None
 
 
-def _require_known(said: Iterable[str]) -> None:
-    from coeflab.api.questions import KEYS
+def _keywords(said: Mapping[str, Any]) -> dict[str, Any]:
+    """What is said by the names of the keywords; ``axes`` and ``unit``, as of `coeflab.read_body`, are ``frame`` and ``units``.
 
-    if strange := [k for k in said if k not in KEYS]:
-        raise InputError(f"the keyword {strange[0]}", f"one of {', '.join(KEYS)}", column=strange[0])
+    Raises
+    ------
+    InputError
+        A keyword that there is not, with the one that is near.
+    """
+    out: dict[str, Any] = {}
+    complaints = []
+    for given, value in said.items():
+        keyword = {"axes": "frame", "unit": "units"}.get(given, given)
+        if keyword not in KEYS:
+            near = SYMBOLS.get(given) or next(iter(get_close_matches(given, KEYS, 1)), "")
+            complaints.append(InputError(
+                f"the keyword {given}", f"one of {', '.join(KEYS)}", column=given, advice=f"Did you mean {near}?" if near else "",
+            ))  # fmt: skip
+        elif out.get(keyword) is None:
+            out[keyword] = value
+        elif value is not None:
+            complaints.append(InputError(f"{keyword} and {given}", "one of both, which are one", column=given))
+    if complaints:
+        raise together(complaints)
+    return out

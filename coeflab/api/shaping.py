@@ -10,7 +10,7 @@ from coeflab.bodies.body import Body
 from coeflab.core.types import brief
 from coeflab.formats.exporting import exports_of, placed, refuse_unknown
 from coeflab.study.checking import checked
-from coeflab.study.estimated_vehicle import NOTHING, asked, completed_by_hand, from_shape
+from coeflab.study.estimated_vehicle import NOTHING, asked, campaigns_named, completed_by_hand, from_shape
 from coeflab.study.study import Plan, Study
 from coeflab.vehicle.from_shape import Stated
 
@@ -59,7 +59,7 @@ def shaped(
     stated : Stated
         What is known of its mass beside the body's file.
     campaign : str
-        Whose fits replace estimates; then the merged file is exported, and the estimates are not.
+        Whose fits replace estimates, or several with commas between; then the merged file is exported, and the estimates are not.
     wall, distances
         As of `coeflab.study.estimated_vehicle.from_shape`.
     progress : callable, optional
@@ -79,6 +79,8 @@ def shaped(
     >>> found.study.parameter_files["remus100"].coefficient("Yv'").value < 0
     True
     """
+    if campaign:
+        campaigns_named(campaign)  # before minutes of added mass
     refuse_unknown(plan.exports)
     study = checked(
         from_shape(replace(plan, exports=()) if campaign else plan, body, stated, progress, wall, distances), progress

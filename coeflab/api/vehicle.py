@@ -16,11 +16,11 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import above_zero, si, three
+from coeflab.api.questions import above_zero, keyword_of, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
@@ -122,12 +122,17 @@ class Vehicle:
         Parameters
         ----------
         path : str or Path, optional
-            A file, or a folder that is there; by default NAME.parameters.json here.
+            A file that ends in .json, whose folders are made, or a folder that is there; by default NAME.parameters.json here.
 
         Returns
         -------
         Path
             Of the file.
+
+        Raises
+        ------
+        InputError
+            Another ending: a parameter file is JSON.
 
         Examples
         --------
@@ -138,6 +143,8 @@ class Vehicle:
         """
         file = Path(path) if path is not None else Path()
         file = file / f"{self.name}.parameters.json" if file.is_dir() else file
+        if file.suffix.lower() != ".json":
+            raise InputError(shown(str(file)), "a folder that is there, or a name that ends in .json", column="path")
         write_atomically(file, self.file.to_json())
         return file
 
@@ -342,7 +349,8 @@ def vehicle(
         None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
     )
     called = stem(name or hull.name)
-    result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
+    with keyword_of(mass="--mass", centre_of_gravity="--cg", inertia="--inertia", speed="--speed", density="--density"):
+        result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
     base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
     if coefficients is None:
         return Vehicle(base)

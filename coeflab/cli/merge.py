@@ -21,7 +21,7 @@ def command(
     other: str = typer.Argument(
         "",
         metavar="OTHER",
-        help="A parameter file, or a campaign that is fitted about the base's reference point; not with --set.",
+        help="A parameter file, or campaigns with commas between, fitted about the base's reference point; not with --set.",
         show_default=False,
     ),
     numbers: list[str] = typer.Option(

@@ -123,7 +123,7 @@ def new(
         [],
         "--set",
         metavar="SYMBOL=VALUE",
-        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s)"; again for each.',
+        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %"; again for each.',
         show_default=False,
     ),
     length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
@@ -160,6 +160,9 @@ def new(
         help='"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0", thrust with n^2; the keys of [[thruster]] of a body.toml; again for each.',
         show_default=False,
     ),
+    rudder: str = typer.Option(
+        "", metavar="ANGLE,RATE", help='Its limit and rate: "30 deg, 30 deg/s".', show_default=False
+    ),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -180,7 +183,7 @@ def new(
 
     result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
-        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster,
+        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster, rudder=rudder,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")

@@ -67,7 +67,7 @@ def command(
         "",
         metavar="CAMPAIGN",
         autocompletion=complete.campaigns,
-        help="Fit it and replace estimates by it, as coeflab merge does, into FOLDER/merged.",
+        help="Fit it, or several with commas, and replace estimates by it, as coeflab merge does, into FOLDER/merged.",
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/BODY."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -82,10 +82,8 @@ def command(
     from coeflab.cli import merge
     from coeflab.cli.added_mass import distances_of
     from coeflab.cli.export import named
-    from coeflab.core.files import located, write_all
+    from coeflab.core.files import write_all
 
-    if campaign:
-        located(campaign, "cfd_data")  # before minutes of added mass
     distances = distances_of(wall, distance, "panel") if wall or distance else []
     with show.progress(json) as say:
         say("reading the body")

@@ -124,9 +124,15 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     if len(path.parts) == 1 and (shipped(kind) / path).is_dir():
         return shipped(kind) / path
     known = ", ".join(sorted(p.name for p in shipped(kind).iterdir() if p.is_dir())) if shipped(kind).is_dir() else ""
+    other, read = {
+        "geometry": ("cfd_data", "a shipped campaign, with forces"),
+        "cfd_data": ("geometry", "a shipped body, a shape"),
+    }[kind]
+    is_other = len(path.parts) == 1 and (shipped(other) / path).is_dir()
     raise InputError(
         f"no file or folder {shown(candidate, 300)}",
         "a path that exists" + (f", or a shipped name ({known})" if known else ""),
+        advice=f"{path} is {read}." if is_other else "",
     )
 
 

@@ -12,6 +12,7 @@ from coeflab.report.figures.motion import draw_history, draw_track
 from coeflab.report.plots.axes import axes_of, palette
 
 IN_DEGREES = ("heading", "roll", "pitch")
+ALSO = {"rudder": "dr", "stern planes": "ds", "bow planes": "db", "yaw": "heading", "yaw rate": "r"}
 
 
 def plot_motion(motion: Trajectory, what: str = "track", ax: Axes | None = None) -> Axes:
@@ -35,6 +36,7 @@ def plot_motion(motion: Trajectory, what: str = "track", ax: Axes | None = None)
         **{m: (motion.velocity[:, i], "rad/s" if m in ANGULAR else "m/s") for i, m in enumerate(MOTIONS)},
         **{k: (np.degrees(v), "deg") if k in CONTROLS else (np.asarray(v), "") for k, v in motion.controls.items()},
     }  # fmt: skip
+    what = ALSO.get(what, what)
     if what != "track" and what not in known:
         raise InputError(shown(what), f"track, or one of {', '.join(known)}", column="what")
     axes = axes_of(ax)
