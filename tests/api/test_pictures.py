@@ -92,14 +92,16 @@ def scaled(points: Any) -> Any:
     return (at - low) / np.where(size > 0.0, size, 1.0)
 
 
-def assert_one_drawing(ours: Any, theirs: Any) -> None:
-    """The same series with the same points, but for the units of the axes; the look too, but for colours."""
+def assert_one_drawing(ours: Any, theirs: Any, alike: str = "") -> None:
+    """The same series with the same points, but for the units of the axes, which are ``alike`` across, up or both; and the same look."""
     a, b = lines(ours), lines(theirs)
     assert a
     assert a.keys() == b.keys()
     for key, drawn in a.items():
         for one, other in zip(drawn, b[key], strict=True):
             np.testing.assert_allclose(scaled(one), scaled(other), rtol=1e-9, atol=1e-9, equal_nan=True)
+            for axis in ("xy".index(name) for name in alike):
+                np.testing.assert_allclose(one[:, axis], other[:, axis], rtol=1e-12, equal_nan=True)
     looks = [[(one.get_linestyle(), one.get_marker(), one.get_linewidth()) for one in axes.get_lines() if one.get_gid()]
              for axes in (ours, theirs)]  # fmt: skip
     assert looks[0] == looks[1]
@@ -113,7 +115,7 @@ def run() -> cf.Motion:
 def test_a_track_is_drawn_once(run: cf.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
     made = captured(monkeypatch, motion)
     motion.track_figure(run.trajectory, "t", 0.0, False)
-    assert_one_drawing(run.plot(ax=new_axes()), made[0])
+    assert_one_drawing(run.plot(ax=new_axes()), made[0], "xy")
 
 
 @pytest.mark.parametrize(("what", "group"), [("depth", "depth"), ("speed", None)])
@@ -123,7 +125,7 @@ def test_a_quantity_over_time_is_drawn_once(
     made = captured(monkeypatch, motion)
     values = {"depth": run.trajectory.position[:, 2], "speed": run.trajectory.speed}[what]
     motion._history(run.trajectory.time, {what: values}, "h", f"{what}  [m]", group or what)
-    assert_one_drawing(run.plot(what, ax=new_axes()), made[0])
+    assert_one_drawing(run.plot(what, ax=new_axes()), made[0], "xy")
 
 
 def test_points_of_a_table_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -147,7 +149,7 @@ def test_a_law_along_a_motion_is_drawn_once(monkeypatch: pytest.MonkeyPatch) -> 
     law = next(m for m in result.fits[0].models if "Yv" in [s.removesuffix("'") for s in m.symbols])
     made = captured(monkeypatch, model)
     model.along_figure(law, "m")
-    assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[model.along(law).index("v")])
+    assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[model.along(law).index("v")], "x")
 
 
 def test_coefficients_with_their_intervals_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -158,7 +160,7 @@ def test_coefficients_with_their_intervals_are_drawn_once(monkeypatch: pytest.Mo
     ours = plot_forest([(s, [(value, half)]) for s, value, half in rows], (), new_axes())
     for one in made[0].get_lines():
         one.set_gid("data-series=s0" if one.get_gid() == "data-series=ours" else None)
-    assert_one_drawing(ours, made[0])
+    assert_one_drawing(ours, made[0], "x")
 
 
 @pytest.mark.parametrize("view", ["side", "top", "front"])
