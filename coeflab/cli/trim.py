@@ -84,7 +84,7 @@ def command(
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.core.options import named_numbers
-    from coeflab.motion.trim.linear_files import as_json as linear_as_json
+    from coeflab.motion.trim.linear_model import as_json as linear_as_json
     from coeflab.report.tables.linear_model import files, matrix_tables, mode_table, schedule_files, schedule_table
 
     speeds = [_measured("speed", text, "--speed") for text in speed.split(",")] if speed else []
