@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from coeflab.api.estimating import estimate
     from coeflab.api.exporting import export
     from coeflab.api.fitting import fit
-    from coeflab.api.motion import Motion, simulate
+    from coeflab.api.motion import Motion, manoeuvres, simulate
+    from coeflab.api.names import shipped_names
     from coeflab.api.reading import read_table, read_tables
     from coeflab.api.result import Points, Result
     from coeflab.api.studies import Study, run
@@ -81,8 +82,10 @@ _HOMES = {
     ),
     "api.motion": (
         "Motion",
+        "manoeuvres",
         "simulate",
     ),
+    "api.names": ("shipped_names",),
     "api.exporting": ("export",),
     "api.comparing": (
         "Comparison",
@@ -169,6 +172,7 @@ __all__ = [
     "estimate",
     "export",
     "fit",
+    "manoeuvres",
     "next_tests",
     "read_body",
     "read_campaign",
@@ -179,6 +183,7 @@ __all__ = [
     "rendered",
     "run",
     "shipped",
+    "shipped_names",
     "simulate",
     "tow",
     "trim",

@@ -55,11 +55,11 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
             "ParameterFile",
         ),
     ),
-    "api_motion": ("Motion", "A vehicle in a manoeuvre.", ("simulate", "Motion", "trim", "Trim")),
+    "api_motion": ("Motion", "A vehicle in a manoeuvre.", ("simulate", "manoeuvres", "Motion", "trim", "Trim")),
     "api_study": (
         "Study",
         "A plan.toml carried out, and its report.",
-        ("run", "Study", "Plan", "read_plan", "validation", "rendered", "shipped"),
+        ("run", "Study", "Plan", "read_plan", "validation", "rendered", "shipped", "shipped_names"),
     ),
     "api_tow": ("Tow", "A body in the virtual tow tank.", ("tow", "Tow")),
     "api_errors": (

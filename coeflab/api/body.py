@@ -8,22 +8,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, si
 from coeflab.bodies import body as plain
-from coeflab.bodies.added_masses import added_masses, methods
+from coeflab.bodies.added_masses import added_masses, methods, near_walls
+from coeflab.bodies.finer_panels import finer_panels
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
+from coeflab.bodies.simplify.source import mesh_body, subject
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.law import added_mass as law
-from coeflab.study.estimated_vehicle import subject
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.water import FRESH_DENSITY
+from coeflab.vehicle.from_shape import displaced_mass
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
-FRESH = 998.2
+__all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
+MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
 KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
 
 
@@ -50,6 +56,19 @@ class AddedMass(law.AddedMass):
     >>> bool(added.matrix[1, 1] > 10 * added.matrix[0, 0])
     True
     """
+
+    def frame(self) -> pd.DataFrame:
+        """The matrix, a row a force, a column an acceleration; kg, kg m, kg m^2.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> bool(cf.read_body("remus100").added_mass("ellipsoid").frame().loc["Y", "v_dot"] > 0)
+        True
+        """
+        import pandas as pd
+
+        return pd.DataFrame(np.array(self.matrix), list(COMPONENTS), [f"{m}_dot" for m in MOTIONS])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """The matrix, each entry the darker the larger it is beside its two diagonal ones.
@@ -96,7 +115,35 @@ class Body(plain.Body):
 
     place: Path | None = None
 
-    def added_mass(self, method: str = "all", density: float | str = FRESH, **options: Any) -> AddedMass:
+    @property
+    def volume(self) -> float:
+        """Of the water that it displaces, m^3; that of the state that has the mass, where its file states several.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(cf.read_body("remus100").volume, 4)
+        0.0317
+        """
+        return displaced_mass(self, 1.0)
+
+    def displaced_mass(self, density: float | str = FRESH_DENSITY) -> float:
+        """Of the water that it displaces, kg: what weighs as much floats without effort.
+
+        Parameters
+        ----------
+        density : float or str
+            kg/m^3; fresh water.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(cf.read_body("remus100").displaced_mass("1.025 g/cm^3"), 1)
+        32.4
+        """
+        return displaced_mass(self, above_zero(density, "density", "density"))
+
+    def added_mass(self, method: str = "all", density: float | str = FRESH_DENSITY, **options: Any) -> AddedMass:
         """The 6 x 6 added-mass matrix about the reference point, FRD, SI.
 
         Parameters
@@ -169,9 +216,12 @@ class Body(plain.Body):
         if self.datum.id == datum:
             return self
         if not isinstance(self.shape, TriangleMesh) or not self.datum.id.startswith("origin of ") or datum != NOSE:
+            bare = isinstance(self.shape, TriangleMesh) and self.datum.id.startswith("origin of ")
+            aft = f"{self.shape.length / 2.0:.4g} m" if bare and self.shape and datum in MIDDLE else "X m"
             raise InputError(
-                f"{self.name}, whose places count from {shown(self.datum.id)}", f"{datum} as datum under [body] of its body.toml",
-                column="datum",
+                f"{self.name}, whose places count from {shown(self.datum.id)}",
+                f"places from the nose: a mesh names no {datum}" if bare else f"{datum} as datum under [body] of its body.toml",
+                column="datum", advice=f'about="nose, {aft} aft" of the tables; read_body(...).counted_from("nose") of the body.' if bare else "",
             )  # fmt: skip
         fore = np.array([float(self.shape.vertices[:, 0].max()), 0.0, 0.0])
         shape = replace(self.shape, vertices=self.shape.vertices - fore)
@@ -189,6 +239,8 @@ def read_body(
     repair: bool = False,
     fill: bool = False,
     sheets: bool = False,
+    units: str = "",
+    frame: str = "",
 ) -> Body:
     """A body from its body.toml, its folder, a shipped name or a mesh file.
 
@@ -202,6 +254,8 @@ def read_body(
         Of a mesh file: FLU, FRD, CFD or three directions with commas.
     repair, fill, sheets : bool
         Mend a mesh that is not sound; close its small holes; take its open surfaces as walls.
+    units, frame : str
+        The same as `unit` and `axes`, as `coeflab.read_table` calls them.
 
     Returns
     -------
@@ -224,7 +278,7 @@ def read_body(
     if not isinstance(source, str | Path):
         raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped body", column="source")
     try:
-        return body_of(subject(str(source), unit, axes, repair, fill, sheets), located(source, "geometry"))
+        return typed_body(str(source), unit or units, axes or frame, repair, fill, sheets, centred=True)
     except InputError as why:
         for one in (why, *why.others):
             for option, keyword in KEYWORDS.items():
@@ -233,6 +287,22 @@ def read_body(
             one.column = KEYWORDS.get(one.column or "", one.column)
             one.args = (str(one),)
         raise
+
+
+def typed_body(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False, *, centred: bool = False,
+) -> Body:  # fmt: skip
+    """A body as a shell names it: complaints are about its options, such as ``--unit``.
+
+    Parameters
+    ----------
+    name, unit, axes, repair, fill, sheets
+        As of `read_body`.
+    centred : bool
+        Of a bare mesh about its centre of buoyancy, else about the origin of its file.
+    """
+    found = (subject if centred else mesh_body)(name, unit, axes, repair, fill, sheets)
+    return body_of(found, located(name, "geometry"))
 
 
 def body_of(found: plain.Body, place: Path | None = None) -> Body:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero
+from coeflab.core.table import Table as Shown
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
@@ -56,6 +57,19 @@ class Comparison(plain.Comparison):
             for r in self.rows
         ]  # fmt: skip
         return pd.DataFrame(rows, index=pd.Index([r.symbol for r in self.rows], name="symbol"))
+
+    def summary(self) -> Shown:
+        """Every coefficient of both with U95, difference and verdict, to be printed or shown in a notebook.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.compare("remus100", "remus100").summary().headers[0]
+        ''
+        """
+        from coeflab.report.tables.models import coefficients
+
+        return coefficients(self)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Both values of every coefficient with their intervals, each over the size of the first.
@@ -139,4 +153,4 @@ def behaviour(
     >>> comparing.behaviour("remus100", "remus100", 1.5)[0].difference
     0.0
     """
-    return of_both(parameters_of(first), parameters_of(second), si(speed, "speed", "speed"))
+    return of_both(parameters_of(first), parameters_of(second), above_zero(speed, "speed", "speed"))

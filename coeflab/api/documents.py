@@ -12,8 +12,9 @@ from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import brief
+from coeflab.formats.exporting import parameter_files_rendered
 from coeflab.report import content
-from coeflab.report.acceptance import Acceptance
+from coeflab.report.acceptance import Acceptance, acceptance_csv
 from coeflab.report.document import Document, Section
 from coeflab.report.first_page import acceptance_summary, study_summary
 from coeflab.report.formats import REPORTERS
@@ -176,6 +177,13 @@ def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
         with REPORTERS.guarded(name):
             files.update(renderer.render(document))
     return files
+
+
+def acceptance_files(found: Acceptance) -> dict[str, bytes]:
+    """Report, parameter files, numbers as CSV and figures of a publication, by name; nothing is written."""
+    files = parameter_files_rendered(found.parameter_files) | dict(written(report_of(found).document, ["html"]))
+    files |= {f"{found.name}.csv": acceptance_csv(found)}
+    return files | {f"{name}.svg": figure.svg.encode() for name, figure in found.figures} | dict(found.pages)
 
 
 def _meant(study: str) -> Plan | str:

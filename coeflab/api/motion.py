@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
-from coeflab.core.errors import InputError, together
+from coeflab.api.questions import three
 from coeflab.core.options import described
 from coeflab.core.table import Table as Shown
 from coeflab.core.types import in_angles
@@ -18,7 +18,10 @@ from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulation import simulate as carried_out
 from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.vehicle import THRUST
 from coeflab.vehicle.parameter_file import ParameterFile
+
+__all__ = ["Motion", "Simulation", "carried_out", "manoeuvres", "simulate"]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +29,7 @@ if TYPE_CHECKING:
 
 
 NAMES = ("time [s]", "north [m]", "east [m]", "down [m]", "roll [rad]", "pitch [rad]", "heading [rad]",
-         "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]")  # fmt: skip
+         "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]", "speed [m/s]")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +87,7 @@ class Motion(Mapping[str, Figure]):
         return self.simulation.undetermined
 
     def frame(self) -> pd.DataFrame:
-        """A row a time: place (NED), attitude, velocity through the water (FRD), controls; SI and rad.
+        """A row a time: place (NED), attitude, velocity through the water (FRD), controls in rad, thrusters in their units.
 
         Examples
         --------
@@ -96,8 +99,10 @@ class Motion(Mapping[str, Figure]):
 
         t = self.trajectory
         angles = np.column_stack([t.angles[:, :2], t.heading])
-        values = np.column_stack([t.time, t.position, angles, t.velocity])
-        return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | {k: np.array(v) for k, v in t.controls.items()})
+        values = np.column_stack([t.time, t.position, angles, t.velocity, t.speed])
+        units = {thruster.name: thruster.curve.unit for thruster in self.simulation.vehicle.thrusters} | {THRUST: "N"}
+        commands = {f"{k} [{units.get(k, 'rad')}]": np.array(v) for k, v in t.controls.items()}
+        return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | commands)
 
     def summary(self) -> Shown:
         """The figures, to be printed or shown in a notebook.
@@ -119,7 +124,8 @@ class Motion(Mapping[str, Figure]):
         Parameters
         ----------
         what : str
-            ``track`` (north over east), ``depth``, or a column of `frame` without its unit: ``heading``, ``r`` ...
+            ``track`` (north over east), ``depth``, or a column of `frame` without its unit: ``heading``, ``r``, ``dr`` ...; also
+            ``rudder``, ``yaw`` (the heading), ``yaw rate``.
         ax : Axes, optional
             To draw into; by default that of a new figure.
 
@@ -132,6 +138,30 @@ class Motion(Mapping[str, Figure]):
         from coeflab.report.plots.motion import plot_motion
 
         return plot_motion(self.trajectory, what, ax)
+
+
+def manoeuvres(name: str = "") -> Shown:
+    """The manoeuvres, or what one of them takes: the options of `coeflab.simulate`, to be printed or shown in a notebook.
+
+    Parameters
+    ----------
+    name : str
+        A manoeuvre.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> [row[0] for row in cf.manoeuvres("zigzag").rows][:2]
+    ['rudder', 'heading']
+    """
+    if not name:
+        rows = [(n, MANOEUVRES.load(n).summary) for n in MANOEUVRES.usable()]
+        return Shown("Manoeuvres", ("", "what"), tuple(rows), (), frozenset({0, 1}))
+    found = described(MANOEUVRES.load(name).Options)
+    return Shown(
+        f"Options of {name}", ("", "takes", "default", "meaning"), tuple((o.name, o.takes, o.default, o.meaning) for o in found),
+        (), frozenset({0, 1, 2, 3}),
+    )  # fmt: skip
 
 
 def simulate(
@@ -187,15 +217,10 @@ def simulate(
     >>> round(run["reach"].value, 2)
     4.86
     """
-    known = [o.name for o in described(MANOEUVRES.load(manoeuvre).Options)]
-    if strange := [name for name in options if name not in known]:
-        raise together([
-            InputError(f"{name} for {manoeuvre}", f"one of {', '.join(known)}", column=name) for name in strange
-        ])  # fmt: skip
     given = {"integrator": integrator, "step": step, "record": record}
     how = {k: v for k, v in given.items() if v is not None}
     if len(current):
-        how |= dict(zip(("north", "east", "down"), map(float, current), strict=True))
+        how |= dict(zip(("north", "east", "down"), three(current, "speed", "current").tolist(), strict=True))
     found = carried_out(
         parameters_of(vehicle),
         manoeuvre,

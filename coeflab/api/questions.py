@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
-from coeflab.core.errors import InputError, together
+import numpy as np
+
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.tables.form import Group, Line
 from coeflab.tables.settings import Setting, read_in, require_one_datum
@@ -41,7 +45,6 @@ KEYWORDS = {key: keyword for keyword, key in KEYS.items()}
 PLACES = ("about", "arm_point", "centre_of_gravity")
 _SIDE = re.compile(r"\b(aft|astern|behind|forward|fwd|ahead)(?:\s+of)?\b", re.IGNORECASE)
 _AFT = ("aft", "astern", "behind")
-_TYPED = re.compile(r"--(?:set|map) ([\w./]+)=")
 
 
 def settings_of(said: Mapping[str, Any]) -> dict[str, Setting]:
@@ -113,6 +116,36 @@ def in_signs(place: str) -> str:
     return f"{size} from {datum}" if datum else size
 
 
+_AS_TYPED = (
+    (re.compile(r"""--map ["']?([^\s=]+)=([^"']+)["']"""), r'columns={"\1": "\2"}'),
+    (re.compile(r"(?<![\w\"])(\w+)=([A-Z]\w*'? \[[^\]]*\])"), r'columns={"\1": "\2"}'),
+    (re.compile(r",? or by --words FILE\.toml"), ""),
+    (re.compile(r"--as\b"), "importer ="),
+    (re.compile(r", \.(?=centre_of_gravity|inertia)"), ", inertia."),
+    (re.compile(r"--set (?=[\w./]+=)"), ""),
+)
+
+
+def in_python(text: str) -> str:
+    """Words of the form of ``coeflab import`` with keywords in the place of keys and options.
+
+    Examples
+    --------
+    >>> in_python("SI for all; or Fy=Y [kN]")
+    'SI for all; or columns={"Fy": "Y [kN]"}'
+    >>> in_python("true: with inertia.mass, .centre_of_gravity")
+    'true: with mass, centre_of_gravity'
+    """
+    for pattern, words in _AS_TYPED:
+        text = pattern.sub(words, text)
+    for key, keyword in KEYWORDS.items():
+        text = re.sub(rf"(?<![\w.]){re.escape(key)}(?![\w.])", keyword, text)
+    return text
+
+
+_EITHER = re.compile(r"([+-]) if (.+), else ([+-])")
+
+
 def open_questions(lines: Sequence[Line], source: str, parts: Sequence[str] = ()) -> InputError:
     """What of a form is open or waits to be accepted, as one error that names the keywords.
 
@@ -134,26 +167,31 @@ def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator
     for one in lines:
         plain = one.key.rpartition("/")[2] if any(one.key.startswith(f"{p}/") for p in parts if p) else one.key
         keyword = KEYWORDS.get(plain)
-        offered = (
-            f'{keyword or "columns"}="{one.value}" if that is right, or accept=True: {one.why}'
-            if one.value
-            else one.why
-        )
+        either, why, about = _EITHER.fullmatch(str(one.value)), in_python(one.why), in_python(one.about)
+        if either is not None:
+            offered = f'{keyword}="{either[1]}" if {either[2]}, else {keyword}="{either[3]}"'
+        elif one.value:
+            offered = f'{keyword or "columns"}="{one.value}" if that is right, or accept=True: {why}'
+        else:
+            offered = why
         if keyword is None and "." in one.key and not one.argument.startswith("--map"):
             yield InputError(
-                f"nothing said of {one.key}", one.why or "a value", file=source, column=f'settings["{one.key}"]'
+                f"nothing said of {one.key}", why or "a value", file=source, column=f'settings["{one.key}"]'
             )
+        elif keyword is None and not one.argument:  # of the importer, chosen in reading
+            offered = f'options={{"{one.key}": "{one.value}"}} if that is right, or accept=True: {one.why}'
+            yield InputError(f"no option {one.key}", offered, file=source, column="options")
         elif keyword is None:
             offered = f'columns={{"{one.key}": "{one.value or "..."}"}}'
             yield InputError(
                 f"the column {one.key} of which nobody said what it is",
-                f"{offered}: {one.why}",
+                f"{offered}: {why}",
                 file=source,
                 column="columns",
             )
         else:
             yield InputError(
-                f"no {keyword}", offered, file=source, column=keyword, advice=one.about if not one.value else ""
+                f"no {keyword}", offered, file=source, column=keyword, advice=about if not one.value or either else ""
             )
 
 
@@ -162,9 +200,24 @@ def in_keywords(why: InputError, source: str) -> InputError:
     for one in (why, *why.others):
         if one.column is not None and (keyword := KEYWORDS.get(one.column.rpartition("/")[2])) is not None:
             one.column, one.keyed = keyword, True
+        one.found, one.expected, one.advice = map(in_python, (one.found, one.expected, one.advice))
         one.file = source if one.file is None or str(one.file) in (".", "campaign.toml") else one.file
         one.args = (str(one),)
     return why
+
+
+@contextmanager
+def keyword_of(**options: str) -> Iterator[None]:
+    """Complaints about options of the shell as ones about keywords: ``keyword_of(mass="--mass")``."""
+    try:
+        yield
+    except InputError as why:
+        for one in (why, *why.others):
+            for keyword, option in options.items():
+                one.column = keyword if one.column == option else one.column
+            one.args = (str(one),)
+        why.args = (str(why),)
+        raise
 
 
 def si(value: float | str, dimension: str, keyword: str) -> float:
@@ -193,6 +246,49 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
         return with_unit(number, dimension) if isinstance(value, str) or dimension == "density" else float(number)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=keyword, advice=why.advice) from None
+
+
+def above_zero(value: float | str, dimension: str, keyword: str) -> float:
+    """A number in SI, or a text with its unit, that is above zero; as `si`.
+
+    Parameters
+    ----------
+    value : float or str
+    dimension : str
+        Key of `coeflab.core.units.SI`, and what the number is called.
+    keyword : str
+        For the error.
+    """
+    found = si(value, dimension, keyword)
+    if not found > 0.0:
+        raise InputError(shown(str(value)), f"a {dimension} above zero", column=keyword)
+    return found
+
+
+def three(values: Any, dimension: str, keyword: str) -> Array:
+    """Three numbers in SI, each a text with its unit where it is one, such as x, y, z.
+
+    Parameters
+    ----------
+    values : sequence of float or str
+    dimension : str
+        Key of `coeflab.core.units.SI`.
+    keyword : str
+        For the error.
+
+    Raises
+    ------
+    InputError
+        Not three, or no numbers.
+
+    Examples
+    --------
+    >>> three((0.1, 0, "20 mm"), "length", "centre_of_gravity").tolist()
+    [0.1, 0.0, 0.02]
+    """
+    if isinstance(values, str) or np.shape(values) != (3,):
+        raise InputError(shown(str(values)), "three numbers", column=keyword)
+    return np.array([si(v, dimension, keyword) for v in values])
 
 
 def _number(value: Any) -> float:

@@ -2,35 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coeflab.api.questions import in_keywords, open_questions, settings_of
-from coeflab.api.table import Table
+from coeflab.api.importing import column_maps, filled_in
+from coeflab.api.questions import KEYS, in_keywords, open_questions, settings_of
+from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.wording import identifier
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
-from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.form import of_campaign
-from coeflab.tables.imported import Filled
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
-from coeflab.tables.mapping import assigned
-from coeflab.tables.parts import Part, own, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.parts import Part, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.settings import assumed
 from coeflab.tables.several_tables import complaints_of, form_together, is_pending, settled_together
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from coeflab.tables.raw_table import RawTable
 
 Source = "str | Path | pd.DataFrame | Mapping[str, Any] | ForceTable"
+SYMBOLS = {
+    "rho": "density",
+    "U": "speed",
+    "V": "speed",
+    "L": "length",
+    "nu": "viscosity",
+    "point": "about",
+    "half": "half_model",
+}
 ARRAYS = "columns"  # the importer of arrays, as the form names it
 
 
@@ -67,6 +74,7 @@ def read_table(
     importer: str = "",
     options: Mapping[str, Any] | None = None,
     accept: bool = False,
+    **also: Any,
 ) -> Table:
     """Forces over settings, in SI and FRD about one point.
 
@@ -123,7 +131,10 @@ def read_table(
     options : mapping, optional
         Of the importer.
     accept : bool
-        Take what the file offers and the numbers show, axes and signs too, as ``coeflab import --accept`` does.
+        Take what the file offers and the numbers show, axes and signs too, as ``coeflab import --accept`` does; not
+        `contains_inertia`, which no number shows and which turns the sign of Yr'.
+    **also
+        `axes` and `unit` are `frame` and `units`, as `coeflab.read_body` calls them.
 
     Returns
     -------
@@ -149,8 +160,8 @@ def read_table(
     words = {
         k: v
         for k, v in locals().items()
-        if k not in ("source", "columns", "name", "table", "importer", "options", "accept")
-    }
+        if k not in ("source", "columns", "name", "table", "importer", "options", "accept", "also")
+    } | also
     found = tables_from(source, words, columns or {}, name, importer, options or {}, accept)
     if table is not None:
         own_names = [t.name.rpartition("/")[2] for t in found]
@@ -217,6 +228,7 @@ def tables_from(
     said : mapping of str to object
         Its other keywords; None says nothing.
     """
+    said = _keywords(said)
     stated = {k: v for k, v in said.items() if v is not None}
     if isinstance(source, ForceTable | PlannedTable):
         _require_nothing(stated, columns, "a table that was read")
@@ -242,7 +254,10 @@ def tables_from(
 
 def table_of(read: ForceTable) -> Table:
     """A force table with the front door's methods."""
-    return read if isinstance(read, Table) else Table(**{f.name: getattr(read, f.name) for f in fields(ForceTable)})
+    if isinstance(read, Table):
+        return read
+    kind = OscillatingTable if isinstance(read, PlanarMotionTable) else Table
+    return kind(**{f.name: getattr(read, f.name) for f in fields(read)})
 
 
 def _called(source: Any) -> str:
@@ -277,9 +292,8 @@ def _filled_in(
 ) -> tuple[Table, ...]:
     """Raw tables, filled in by what is said; complaints about what nobody said."""
     source = str(parts[0].raw.path) if len(parts) == 1 else str(parts[0].raw.path.parent)
-    _require_known(said)
     known = settings_of(said)
-    maps = _mapped(columns, [p.raw for p in parts], source)
+    maps = column_maps(columns, parts, "columns", 'columns["{name}"]', source, source)
     require_parts(known, parts)
     settings = {**assumed(Path(name)), **stated_together(parts), **known}
     whole = source if len(parts) > 1 else ""
@@ -289,44 +303,33 @@ def _filled_in(
     if is_pending(parts, founds) or (chosen and not accept):
         lines = form_together(parts, founds, settings, [one.line for one in chosen] if not accept else [], None, whole)
         raise open_questions(lines, source, [p.name for p in parts])
-    filled = []
-    for part, found in zip(parts, founds, strict=True):
-        mine = of_campaign(own(settled, part, parts))
-        got = assigned(part.raw, found.mapping)
-        filled.append(
-            Filled(part.name, part.raw, part.importer, part.options, got, found.mapping, mine, frozenset(found.about))
-        )
     try:
-        return tuple(map(table_of, tables_of(filled)))
+        return tuple(map(table_of, tables_of(filled_in(parts, founds, settled))))
     except InputError as why:
         raise in_keywords(why, source) from None
 
 
-def _require_known(said: Iterable[str]) -> None:
-    from coeflab.api.questions import KEYS
+def _keywords(said: Mapping[str, Any]) -> dict[str, Any]:
+    """What is said by the names of the keywords; ``axes`` and ``unit``, as of `coeflab.read_body`, are ``frame`` and ``units``.
 
-    if strange := [k for k in said if k not in KEYS]:
-        raise InputError(f"the keyword {strange[0]}", f"one of {', '.join(KEYS)}", column=strange[0])
-
-
-def _mapped(columns: Mapping[str, str], raws: Sequence[RawTable], source: str) -> dict[str, ColumnMap]:
-    """What a person said of columns."""
-    have = list(dict.fromkeys(c.name for raw in raws for c in raw.columns))
-    out: dict[str, ColumnMap] = {}
+    Raises
+    ------
+    InputError
+        A keyword that there is not, with the one that is near.
+    """
+    out: dict[str, Any] = {}
     complaints = []
-    for name, text in columns.items():
-        plain = name.partition(" [")[0]
-        if plain not in have and name not in have:
-            complaints.append(
-                InputError(f"no column {shown(name)}", f"one of {', '.join(have)}", file=source, column="columns")
-            )
-            continue
-        try:
-            out[name if name in have else plain] = read_column_map(text)
-        except InputError as why:
-            complaints.append(
-                InputError(why.found, why.expected, file=source, column=f'columns["{name}"]', advice=why.advice)
-            )
+    for given, value in said.items():
+        keyword = {"axes": "frame", "unit": "units"}.get(given, given)
+        if keyword not in KEYS:
+            near = SYMBOLS.get(given) or next(iter(get_close_matches(given, KEYS, 1)), "")
+            complaints.append(InputError(
+                f"the keyword {given}", f"one of {', '.join(KEYS)}", column=given, advice=f"Did you mean {near}?" if near else "",
+            ))  # fmt: skip
+        elif out.get(keyword) is None:
+            out[keyword] = value
+        elif value is not None:
+            complaints.append(InputError(f"{keyword} and {given}", "one of both, which are one", column=given))
     if complaints:
         raise together(complaints)
     return out

@@ -224,6 +224,8 @@ class Result(Mapping[str, Coefficient]):
         """
         import pandas as pd
 
+        if n < 1:
+            raise InputError(f"{n}", "a number of draws from 1", column="n")
         every, covariance = self._all(), self.covariance
         selected = [i for i, c in enumerate(every) if c.value is not None and np.isfinite(covariance[i, i])]
         drawn = np.random.default_rng(seed).multivariate_normal(
@@ -292,7 +294,8 @@ class Result(Mapping[str, Coefficient]):
         symbol : str or sequence of str, optional
             One symbol: the points, the curve and the slope with U95. None or several: a forest.
         ax : Axes, optional
-            To draw into, in the style that is set; by default that of a new figure.
+            To draw into, in the style that is set; by default that of a new figure. A colour of your own:
+            ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.
         kind : {"", "forms"}
             ``forms``: what single forms would have given over growing ranges.
 

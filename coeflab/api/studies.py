@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from coeflab.report.acceptance import Acceptance
     from coeflab.report.document import Document
+    from coeflab.study.towed import Towed
 
+__all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
@@ -40,6 +42,13 @@ class Study(plain.Study):
     def result(self) -> Result:
         """The coefficients of all fits; of one that several give, ``of(campaign)`` chooses."""
         return Result(tuple(self.fits), tuple(self.tables))
+
+    @property
+    def tows(self) -> tuple[Towed, ...]:
+        """Every planned tow, carried out or not: its coefficients beside published columns and tests."""
+        from coeflab.study.towed import towed
+
+        return towed(self)
 
     def vehicle(self, name: str = "") -> Vehicle:
         """A parameter file of the study as a vehicle.
@@ -133,20 +142,6 @@ def report_files(
     if short:
         files = {name.replace("report", "summary", 1): content for name, content in files.items()}
     return document, files, result.failed
-
-
-def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> plain.Study | Acceptance:
-    """What a person names computed: a plan, a folder with one, a campaign, a shipped validation or publication.
-
-    Parameters
-    ----------
-    study : str
-    progress : callable, optional
-        Takes what is being done, in words.
-    """
-    from coeflab.api.documents import studied as computed
-
-    return computed(study, progress)
 
 
 def require_formats(names: Sequence[str]) -> None:

@@ -16,11 +16,11 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, keyword_of, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
@@ -122,12 +122,17 @@ class Vehicle:
         Parameters
         ----------
         path : str or Path, optional
-            A file, or a folder that is there; by default NAME.parameters.json here.
+            A file that ends in .json, whose folders are made, or a folder that is there; by default NAME.parameters.json here.
 
         Returns
         -------
         Path
             Of the file.
+
+        Raises
+        ------
+        InputError
+            Another ending: a parameter file is JSON.
 
         Examples
         --------
@@ -138,6 +143,8 @@ class Vehicle:
         """
         file = Path(path) if path is not None else Path()
         file = file / f"{self.name}.parameters.json" if file.is_dir() else file
+        if file.suffix.lower() != ".json":
+            raise InputError(shown(str(file)), "a folder that is there, or a name that ends in .json", column="path")
         write_atomically(file, self.file.to_json())
         return file
 
@@ -333,28 +340,23 @@ def vehicle(
     conditions = None
     if density is not None or speed is not None:
         conditions = Conditions(
-            FRESH_WATER.density if density is None else si(density, "density", "density"),
-            FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+            FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
+            FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
         )  # fmt: skip
     stated = Stated(
-        None if mass is None else _positive(si(mass, "mass", "mass"), "mass"),
-        None if centre_of_gravity is None else np.asarray(centre_of_gravity, dtype=float),
-        None if inertia is None else np.diag(np.asarray(inertia, dtype=float)),
+        None if mass is None else above_zero(mass, "mass", "mass"),
+        None if centre_of_gravity is None else three(centre_of_gravity, "length", "centre_of_gravity"),
+        None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
     )
     called = stem(name or hull.name)
-    result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
+    with keyword_of(mass="--mass", centre_of_gravity="--cg", inertia="--inertia", speed="--speed", density="--density"):
+        result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
     base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
     if coefficients is None:
         return Vehicle(base)
     other = _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
     own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
     return Vehicle(merged(base, other, called, own).parameters)
-
-
-def _positive(value: float, keyword: str) -> float:
-    if not value > 0.0:
-        raise InputError(f"{value:g}", f"a {keyword} above zero", column=keyword)
-    return value
 
 
 def _of_datum(hull: Body, result: Result) -> Body:

@@ -31,8 +31,8 @@ def check(
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
+    from coeflab.api.parameters import read_model_file
     from coeflab.core.errors import InputError
-    from coeflab.formats.model_files import read_model_file
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -40,7 +40,7 @@ def check(
     found = read_model_file(file, density)
     p = found.parameters
     if json:
-        from coeflab.cli.as_json import findings as findings_json
+        from coeflab.report.as_json.findings import findings as findings_json
 
         show.json_object({
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
@@ -76,10 +76,10 @@ def convert(
     """
     import shlex
 
+    from coeflab.api.parameters import OWN, read_model_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
-    from coeflab.formats.model_files import OWN, read_model_file
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -95,7 +95,7 @@ def convert(
         raise OutputError(f"{path} exists. Give --name or --out.")
     write_all(path.parent, {path.name: p.to_json()})
     if json:
-        from coeflab.cli.as_json import findings as findings_json
+        from coeflab.report.as_json.findings import findings as findings_json
 
         show.json_object({
             "format": found.format, "name": p.name, "coefficients": [c.symbol for c in p.coefficients],
@@ -123,7 +123,7 @@ def new(
         [],
         "--set",
         metavar="SYMBOL=VALUE",
-        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s)"; again for each.',
+        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %"; again for each.',
         show_default=False,
     ),
     length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
@@ -160,6 +160,9 @@ def new(
         help='"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0", thrust with n^2; the keys of [[thruster]] of a body.toml; again for each.',
         show_default=False,
     ),
+    rudder: str = typer.Option(
+        "", metavar="ANGLE,RATE", help='Its limit and rate: "30 deg, 30 deg/s".', show_default=False
+    ),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -172,16 +175,15 @@ def new(
     """
     import shlex
 
+    from coeflab.api.parameters import plausibility, typed_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.model_file import contents
-    from coeflab.vehicle.own_numbers import typed_file
-    from coeflab.vehicle.plausibility import plausibility
 
     result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
-        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster,
+        inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster, rudder=rudder,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
@@ -191,7 +193,7 @@ def new(
     write_all(path.parent, {path.name: result.to_json()})
     found = plausibility(result)
     if json:
-        from coeflab.cli.as_json import findings
+        from coeflab.report.as_json.findings import findings
 
         show.json_object({
             "name": result.name, "coefficients": [c.symbol for c in result.coefficients], "findings": findings(found), "files": [str(path)],
@@ -208,10 +210,10 @@ def new(
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means."""
+    from coeflab.api.schemas import schema as of_kind
     from coeflab.report.tables.schema_page import schema_page
-    from coeflab.vehicle import parameter_file
 
-    show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))
+    show.lines((of_kind("parameters") if json else schema_page()).decode().removesuffix("\n"))
 
 
 @app.command(cls=Command, epilog='Example: coeflab params conform "python3 docs/reference/reader.py"')
@@ -227,10 +229,10 @@ def conform(
     """
     import shlex
 
+    from coeflab.api.parameters import conform as run
     from coeflab.core.errors import InputError
     from coeflab.core.finding import Severity, worst
     from coeflab.core.table import as_check
-    from coeflab.vehicle.conform import conform as run
 
     try:
         words = shlex.split(program)
@@ -240,7 +242,7 @@ def conform(
         raise InputError("no command", "a program with its arguments", column="COMMAND")
     found = run(words)
     if json:
-        from coeflab.cli.as_json import findings
+        from coeflab.report.as_json.findings import findings
 
         show.json_object({"findings": findings([as_check("conform", f) for f in found])})
     else:

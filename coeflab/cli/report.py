@@ -49,7 +49,8 @@ def command(
 
     Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
     """
-    from coeflab.api.studies import report_files, require_formats, studied
+    from coeflab.api.documents import studied
+    from coeflab.api.studies import report_files, require_formats
     from coeflab.cli.run import REPORTS
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all

@@ -135,23 +135,33 @@ def also_written(unit: str) -> str:
     )
 
 
+def unit_ratio(one: str, other: str) -> float | None:
+    """How much of a derivative's unit another is; None where they are of other kinds.
+
+    Examples
+    --------
+    >>> unit_ratio("N s/m", "N/(m/s)"), round(unit_ratio("N/deg", "N/(rad)"), 4), unit_ratio("N", "N*m")
+    (1.0, 57.2958, None)
+    """
+    if one.split() == other.split():
+        return 1.0
+    one, other = (_MOMENT.sub(r"(N*m)", text) for text in (one, other))
+    if any(len(text) > _LONGEST or not _DERIVED.fullmatch(text) for text in (one, other)):
+        return None
+    import pint
+
+    try:
+        return float(_registry().Quantity(1.0, one).to(other).magnitude)
+    except (pint.errors.PintError, TokenError, SyntaxError, AttributeError, TypeError, ValueError):
+        return None
+
+
 def same_unit(one: str, other: str) -> bool:
     """Whether two units are one, factor and all: ``N s/m`` and ``N/(m/s)`` are, ``N/(deg)`` and ``N/(rad)`` are not.
 
     A moment may be ``N*m``, ``N m`` or ``Nm``.
     """
-    if one.split() == other.split():
-        return True
-    one, other = (_MOMENT.sub(r"(N*m)", text) for text in (one, other))
-    if any(len(text) > _LONGEST or not _DERIVED.fullmatch(text) for text in (one, other)):
-        return False
-    import pint
-
-    try:
-        factor = _registry().Quantity(1.0, one).to(other).magnitude
-    except (pint.errors.PintError, TokenError, SyntaxError, AttributeError, TypeError, ValueError):
-        return False
-    return math.isclose(factor, 1.0, rel_tol=1e-9)
+    return math.isclose(unit_ratio(one, other) or 0.0, 1.0, rel_tol=1e-9)
 
 
 def parse_header(text: str) -> Header:

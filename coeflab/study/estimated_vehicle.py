@@ -18,7 +18,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outlining import fins_along
-from coeflab.bodies.simplify.source import BODY, mesh_body
+from coeflab.bodies.simplify.source import BODY
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
@@ -56,7 +56,6 @@ STRAIGHT = ("u",)
 # Sway and yaw accelerations of a straight course, of U^2/L and (U/L)^2, that are rounding of a body alike to both sides.
 ASIDE = 1e-6
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
-ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
 STATES = 200  # of each manoeuvre, at which law and force model are compared
 REMAINING = 0.2  # of the speed, of a coast-down
@@ -362,34 +361,6 @@ def replaced(
     moves, _ = first_manoeuvres(result.parameters)
     carried, _ = _carried(result.parameters, moves, lambda _: None) if estimates_of(result.parameters) else ((), ())
     return result, moves, carried
-
-
-def subject(
-    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
-) -> Body:
-    """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
-
-    Parameters
-    ----------
-    name : str
-        A mesh file, a body.toml, its folder or a shipped body.
-    unit, axes : str
-        Of a mesh file.
-    repair, fill, sheets : bool
-        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
-
-    Raises
-    ------
-    InputError
-        As of `coeflab.bodies.simplify.source.mesh_body`.
-    """
-    body = mesh_body(name, unit, axes, repair, fill, sheets)
-    middle = body.configurations[0].centre_of_buoyancy
-    bare = body.datum.id.startswith("origin of ") and not body.lengths
-    if not bare or middle is None:
-        return body
-    size = body.require_shape().length
-    return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
 
 
 def completed_by_hand(

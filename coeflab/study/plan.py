@@ -456,13 +456,13 @@ def _of_campaign(path: Path) -> Plan:
     )
 
 
-def read_plan(path: Path) -> Plan:
+def read_plan(path: str | Path) -> Plan:
     """Read a plan.
 
     Parameters
     ----------
-    path : Path
-        Paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, by the fit that suits it.
+    path : str or Path
+        The file itself, or the name of a shipped one; paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, by the fit that suits it.
 
     Raises
     ------

@@ -120,13 +120,13 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     if mass is None:
         mass = displaced
         assumed.append("mass")
-        words.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
+        words.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; no mass is stated")
     else:
         _refuse_absurd(body, mass, displaced, density)
         words.append(_buoyed(mass, displaced, density) + _to_neutral(body, mass / displaced, stated))
         if stated.mass is not None and body.mass_model is not None:
             words.append(
-                f"--mass {stated.mass:.4g} kg stands in the place of the {body.mass_model.mass:.4g} kg of [[mass]] in the body.toml; "
+                f"the stated {stated.mass:.4g} kg stand in the place of the {body.mass_model.mass:.4g} kg of [[mass]] in the body.toml; "
                 "centre of gravity and inertia are those of the file unless stated"
             )
         words += _of_other_water(body, density) if stated.mass is None else []
@@ -137,7 +137,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
     if centre is None:
         centre = buoyancy
         assumed.append("centre")
-        words.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
+        words.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; none is stated")
         rest = None
     else:
         _refuse_far(body, centre - buoyancy, "--cg" if stated.centre is not None else "centre_of_gravity")
@@ -150,7 +150,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         water = spread_of(body, base)
         turning = mass / displaced * density * (np.trace(water) * np.eye(3) - water)
         assumed.append("inertia")
-        words.append("assumed: inertia of the displaced water, scaled to the mass; --inertia states another")
+        words.append("assumed: inertia of the displaced water, scaled to the mass; none is stated")
     elif why := inertia_doubt(mass, np.zeros(3), turning):
         raise InputError(why, "moments of inertia of a body about its centre of gravity", column="--inertia")
     about = about_another(turning, mass, np.zeros(3), centre)
@@ -236,7 +236,7 @@ def _to_neutral(body: Body, share: float, stated: Stated) -> str:
     """What makes a light vehicle neutral; empty of one that is not light, or whose file states its masses."""
     if share >= 1.0 - TRIMMED or body.mass_model is not None:
         return ""
-    neutral = ", and without --mass it is neutral" * (
+    neutral = ", and without a stated mass it is neutral" * (
         stated.mass is not None and all(c.mass is None for c in body.configurations)
     )
     return f"; [[mass]] with ballast = true, or flooded = true, in its body.toml makes up for it{neutral}"

@@ -216,7 +216,7 @@ def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:
     if abs(own.length / base.scaling.length - 1.0) < SAME_LENGTH:
         return ""
     return (
-        f"lengths differ: {other.name} has {own}, {base.name} has {base.scaling}. The numbers are converted, as of one body "
+        f"lengths differ: the numbers of {other.name} are by {own}, the vehicle's by {base.scaling}. The numbers are converted, as of one body "
         "with two lengths; those of a scale model would be wrong: make the vehicle at the model's size"
     )
 

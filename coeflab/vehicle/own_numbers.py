@@ -15,9 +15,9 @@ import numpy as np
 from coeflab.bodies.thrusters import ThrusterKeys
 from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError, shown, together
 from coeflab.core.types import Array, brief
-from coeflab.core.units import also_written, positive_typed, same_unit, three_typed
+from coeflab.core.units import also_written, positive_typed, three_typed, unit_ratio
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, repeated
 from coeflab.law.coefficient import Coefficient, Status
@@ -27,13 +27,20 @@ from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.from_shape import parameter_thruster
 from coeflab.vehicle.matching import one_slope
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
-from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics, ParameterThruster
+from coeflab.vehicle.parameter_parts import (
+    ParameterCovariance,
+    ParameterHydrostatics,
+    ParameterSurface,
+    ParameterThruster,
+)
 
 STATED, BY_HAND = "stated", "--set"
 EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_UNIT = r"(?:[^\s,.\d+%\u00b1](?:(?!\+-|\+/-|\u00b1).)*?)?"
 _TYPED = re.compile(
-    rf"\s*(?P<value>{_NUMBER})\s*(?:(?:\+-|\+/-|\u00b1)\s*(?P<u95>{_NUMBER}))?\s*(?P<unit>(?:[^\s,.\d].*?)?)\s*"
+    rf"\s*(?P<value>{_NUMBER})\s*(?P<unit>{_UNIT})\s*"
+    rf"(?:(?:\+-|\+/-|\u00b1)\s*(?P<u95>{_NUMBER})\s*(?P<of>%|{_UNIT})\s*)?"
 )
 
 
@@ -69,12 +76,12 @@ class OwnNumber:
 
 
 def own_number(typed: str) -> OwnNumber:
-    """Read ``Yv'=-0.0278 +- 0.0014`` or ``Yv=-35.5 +- 2 N/(m/s)``.
+    """Read ``Yv'=-0.0278 +- 0.0014``, ``Yv=-35.5 N/(m/s) +- 6 %`` or ``Ydr=1.9 +- 0.2 N/deg``; a unit of the kind is converted.
 
     Raises
     ------
     InputError
-        No symbol, no number, a negative U95, a unit behind a prime, or none or another behind an SI value.
+        No symbol, no number, a negative U95, a unit behind a prime, or none or one of another kind behind an SI value.
     """
     named, equals, rest = typed.partition("=")
     symbol = named.strip()
@@ -88,20 +95,27 @@ def own_number(typed: str) -> OwnNumber:
     if match is None:
         raise InputError(f"{shown(rest.strip())} for {symbol}", f"a number, such as {EXAMPLE}", column="--set",
                          advice="Write a decimal point." if "," in rest else "")  # fmt: skip
-    value, u95, unit = float(match["value"]), None if match["u95"] is None else float(match["u95"]), match["unit"]
+    value, u95 = float(match["value"]), None if match["u95"] is None else float(match["u95"])
+    units = [match["unit"] or (match["of"] or "").strip("%"), (match["of"] or match["unit"]).strip("%")]
+    if u95 is not None and match["of"] == "%":
+        u95 *= abs(value) / 100.0
     if not np.isfinite(value) or (u95 is not None and not (np.isfinite(u95) and u95 >= 0.0)):
         raise InputError(f"{shown(rest.strip())} for {symbol}", "finite numbers, U95 of zero or more", column="--set")
     is_prime = symbol.endswith("'")
+    unit = units[0] or units[1]
     if is_prime and unit:
         raise InputError(
             f"the unit {shown(unit)} behind the prime {symbol}", "no unit", column="--set",
             advice=f"For an SI value write {d.text}= without the prime.",
         )  # fmt: skip
-    if not is_prime and not same_unit(unit, d.unit):
+    ratios = [1.0 if is_prime else unit_ratio(u, d.unit) for u in units]
+    if ratios[0] is None or (u95 is not None and ratios[1] is None and match["of"] != "%"):
         raise InputError(
             f"{d.text} with {f'the unit {shown(unit)}' if unit else 'no unit'}", f"{d.unit}, also written {also_written(d.unit)}",
             column="--set", advice=f"For a prime write {d.text}'=.",
         )  # fmt: skip
+    value *= ratios[0]
+    u95 = None if u95 is None else u95 * (ratios[0] if match["of"] == "%" or ratios[1] is None else ratios[1])
     return OwnNumber(primed(d.text), value, u95, not is_prime)
 
 
@@ -113,7 +127,15 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
     InputError
         As of `own_number`, or a symbol that stands twice, be it under two names.
     """
-    out = tuple(map(own_number, typed))
+    read, complaints = [], []
+    for one in typed:
+        try:
+            read.append(own_number(one))
+        except InputError as why:
+            complaints.append(why)
+    if complaints:
+        raise together(complaints)
+    out = tuple(read)
     if twice := repeated(n.symbol for n in out):
         raise InputError(f"{', '.join(twice)} twice", "each symbol once", column="--set")
     for slope, names in one_slope(n.symbol for n in out).items():
@@ -214,7 +236,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
 
 def typed_file(
     name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
-    cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (),
+    cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (), rudder: str = "",
 ) -> ParameterFile:  # fmt: skip
     """A parameter file of what a person typed behind the options of ``coeflab params new``; empty: not stated.
 
@@ -234,6 +256,8 @@ def typed_file(
         About the centre of gravity, one or three numbers, kg m^2.
     thrusters : sequence of str
         As `typed_thruster` reads them.
+    rudder : str
+        Limit of its angle, and its rate: ``30 deg, 30 deg/s``; without a rate it moves at once.
 
     Raises
     ------
@@ -286,7 +310,21 @@ def typed_file(
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
-    return result.model_copy(update={"thrusters": driven})
+    return result.model_copy(update={"thrusters": driven, "surfaces": (typed_rudder(rudder),) if rudder else ()})
+
+
+def typed_rudder(text: str) -> ParameterSurface:
+    """Read ``30 deg, 30 deg/s``: the limit of the rudder's angle, and its rate.
+
+    Raises
+    ------
+    InputError
+    """
+    limit, comma, rate = text.partition(",")
+    return ParameterSurface(
+        control="dr", limit=positive_typed(limit.strip(), "angle", "--rudder"),
+        rate=positive_typed(rate.strip(), "rate", "--rudder") if comma else None,
+    )  # fmt: skip
 
 
 NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit")

@@ -54,6 +54,7 @@ WRONG: dict[str, tuple[str, ...]] = {
     "PATTERN": ("{", "b{beta}", "b{beta:parsec}", "{}"), "LENGTH": MEASURE, "SPEED": MEASURE, "MASS": MEASURE, "VOLUME": MEASURE, "TIME": MEASURE,
     "VALUE": MEASURE, "SHARE": MEASURE, "X,Y,Z": TRIPLE, "IX,IY,IZ": TRIPLE, "N,E,D": TRIPLE, "M,M,..": ("x", "nan", "-1", "1e999", "1,,2"),
     "ANGLE": MEASURE, "RATE": (*NUMBER, "-1"), "FIGURE": NAME, "TABLE": NAME,
+    "NAMES": ("x", "t [s]", "t [parsec], u [m/s]", "-,-,-,-,-", LONG),
     "ADDRESS": ("x", "tcp://", LONG), "port": ("x", "-1", "65536", "1.5"),
 }  # fmt: skip
 # An option whose metavar says less than it takes; `state` of an import and `figure` are files to be written.

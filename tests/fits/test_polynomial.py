@@ -174,7 +174,7 @@ def test_the_rule_outside_is_the_one_asked_for():
         ({"variable": "v", "responses": "K"}, "no usable rows for K"),
         ({"variable": "v", "responses": "Q"}, '"Q"'),
         ({"variable": "v", "responses": "C_D"}, "no X in planted/table.csv"),
-        ({"variable": "w"}, "1 usable rows for 4 terms of Y"),
+        ({"variable": "w"}, "zero on every row"),
         ({"variable": "speed"}, "one of"),
         ({"parity": "ood"}, "Did you mean odd?"),
     ],

@@ -8,13 +8,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from coeflab.cli import as_json, show
+from coeflab.cli import show
 from coeflab.identify.output_error import estimate
 from coeflab.identify.tuning import OPEN, SIGN
 from coeflab.published.huuv.acceptance import acceptance
 from coeflab.published.huuv.model import read_huuv
 from coeflab.published.huuv.tuning import BASE, ERRORS, FREE, NAMES, hidden, predicted, start_of, tuned, turning_problem
 from coeflab.report.acceptance import Acceptance
+from coeflab.report.as_json import studies as as_json
 
 # Steady turns of the constants, worked out independently: commands, u, |beta|, R.
 POINTS = {

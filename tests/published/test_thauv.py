@@ -8,11 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from coeflab.cli import as_json, show
+from coeflab.cli import show
 from coeflab.formats.exporting import export
 from coeflab.motion.simulation import simulate
 from coeflab.published.thauv.acceptance import acceptance
 from coeflab.report.acceptance import Acceptance, ComparedTable
+from coeflab.report.as_json import studies as as_json
 
 pytestmark = pytest.mark.slow
 

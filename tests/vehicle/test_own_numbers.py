@@ -64,6 +64,41 @@ def test_what_is_typed_wrongly(typed: str, said: str) -> None:
     assert caught.value.column == "--set"
 
 
+@pytest.mark.parametrize(
+    ("typed", "value", "u95"),
+    [
+        ("Ydr=1.9 N/deg", 1.9 * 180.0 / np.pi, None),
+        ("Ydr=1.9 +- 0.1 N/(deg)", 1.9 * 180.0 / np.pi, 0.1 * 180.0 / np.pi),
+        ("Yv=-10 lbf/(m/s) +- 5%", -10 * 4.4482216152605, 0.5 * 4.4482216152605),
+        ("Yv=-130 N/(m/s) +- 20 N/(m/s)", -130.0, 20.0),
+        ("Yv=-130 N/(m/s) +- 20", -130.0, 20.0),
+        ("Yv=-130 N s/m +/- 10 %", -130.0, 13.0),
+        ("Yv=-130 N/(m/s) +- 2 lbf/(m/s)", -130.0, 2 * 4.4482216152605),
+        ("Yv'=-0.03 +- 10%", -0.03, 0.003),
+        ("Nr=-5 ft*lbf/(deg/s)", -5 * 1.3558179483314 * 180.0 / np.pi, None),
+    ],
+)
+def test_units_and_intervals_as_people_write_them(typed: str, value: float, u95: float | None) -> None:
+    """Factors by hand: 1 lbf = 4.4482216152605 N, 1 ft lbf = 1.3558179483314 N m, 1 rad = 180/pi deg."""
+    found = own_number(typed)
+    assert found.value == pytest.approx(value, rel=1e-9)
+    assert found.u95 == (None if u95 is None else pytest.approx(u95, rel=1e-9))
+
+
+def test_all_that_is_typed_wrongly_is_told_at_once() -> None:
+    with pytest.raises(InputError) as caught:
+        own_numbers(["Yv'=a", "Nr'=-0.01", "Yq=1 N/(m/s)", "Zz'=1"])
+    assert len(caught.value.others) == 2
+
+
+def test_a_rudder_has_its_limit_and_rate() -> None:
+    (found,) = typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg, 20 deg/s").surfaces
+    assert (found.control, found.limit, found.rate) == ("dr", pytest.approx(np.pi / 6), pytest.approx(np.pi / 9))
+    assert typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg").surfaces[0].rate is None
+    with pytest.raises(InputError, match="--rudder"):
+        typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30")
+
+
 def test_a_symbol_stands_once() -> None:
     with pytest.raises(InputError, match="Yv' twice"):
         own_numbers(["Yv'=1", "Yv=1 N/(m/s)"])

@@ -58,7 +58,9 @@ def parse_json(text: str, file: Path | str | None = None, expected: str = "JSON"
     try:
         return json.loads(text, parse_constant=refuse, parse_int=whole, object_pairs_hook=once)
     except json.JSONDecodeError as why:
-        raise InputError(why.msg, "JSON", file=file, line=why.lineno, column=f"character {why.colno}") from None
+        raise InputError(
+            f"no JSON ({why.msg})", "JSON", file=file, line=why.lineno, column=f"character {why.colno}"
+        ) from None
     except RecursionError:
         raise InputError("too deep nesting", expected, file=file) from None
     except ValueError as why:

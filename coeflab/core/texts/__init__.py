@@ -93,4 +93,5 @@ def remark(finding: Finding) -> str:
         text = words(finding)
     except PluginError:
         return f"{finding.code}: {finding.subject}"
-    return f"{text.statement} {text.advice}".strip()
+    stop = "." if text.advice and text.statement[-1:] not in ".!?:;" else ""
+    return f"{text.statement}{stop} {text.advice}".strip()

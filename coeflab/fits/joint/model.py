@@ -244,12 +244,6 @@ def _excited(parts: Sequence[Component], constraint: Constraint) -> None:
     InputError
     """
     n, free = sum(len(p.data.run) for p in parts), sum(p.width for p in parts) - len(constraint[1])
-    if n <= free:
-        what = "free terms and intercepts" if any(p.own for p in parts) else "free terms"
-        raise InputError(
-            f"{n} usable rows for {free} {what} of {', '.join(p.name for p in parts)}", "more rows than terms",
-            column="terms", advice="Run more points or ask for fewer terms.",
-        )  # fmt: skip
     named = np.any(constraint[0] != 0.0, axis=0)
     at = 0
     for p in parts:
@@ -260,6 +254,12 @@ def _excited(parts: Sequence[Component], constraint: Constraint) -> None:
                 f"{', '.join(empty)} zero on every row of {p.data.rows.campaign}", "terms that the data excite",
                 column="terms", advice="Leave these terms out, or add runs in which their motion occurs.",
             )  # fmt: skip
+    if n <= free:
+        what = "free terms and intercepts" if any(p.own for p in parts) else "free terms"
+        raise InputError(
+            f"{n} usable rows for {free} {what} of {', '.join(p.name for p in parts)}", "more rows than terms",
+            column="terms", advice="Run more points or ask for fewer terms.",
+        )  # fmt: skip
 
 
 def _several(

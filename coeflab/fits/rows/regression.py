@@ -217,16 +217,16 @@ def model_of(
     """
     matrix = design(terms, rows.x)
     free = len(terms) - (0 if constraint is None else len(constraint[1]))
-    if len(rows.y) <= free:
-        raise InputError(
-            f"{len(rows.y)} usable rows for {free} terms of {rows.response}", "more rows than terms",
-            column=form, advice="Run more points or ask for fewer terms.",
-        )  # fmt: skip
     empty = [s for s, column in zip(symbols, matrix.T, strict=True) if not np.any(column)]
     if empty:
         raise InputError(
             f"{', '.join(empty)} zero on every row", "terms that the data excite", column=form,
             advice="Leave these terms out, or add runs in which their motion occurs.",
+        )  # fmt: skip
+    if len(rows.y) <= free:
+        raise InputError(
+            f"{len(rows.y)} usable rows for {free} terms of {rows.response}", "more rows than terms",
+            column=form, advice="Run more points or ask for fewer terms.",
         )  # fmt: skip
     try:
         errors = rows.errors if weighted else None

@@ -79,7 +79,7 @@ def command(
 
 def as_json(flown: Flown) -> dict[str, Any]:
     """Steady glides and phases of one glider, SI and radians."""
-    from coeflab.cli.as_json import finding_as_data
+    from coeflab.report.as_json.findings import finding_as_data
 
     run = flown.run
     return {

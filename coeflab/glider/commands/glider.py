@@ -62,9 +62,8 @@ def command(
     from coeflab.core.texts import remark
     from coeflab.core.units import quantity
     from coeflab.glider import tables as glide_tables
-    from coeflab.glider.from_body import Ordered, glider_of
+    from coeflab.glider.from_body import Ordered, density_of, glider_of
     from coeflab.glider.glide import steady_glides
-    from coeflab.law.water import FRESH_WATER
 
     def value(text: str, dimension: str, option: str) -> float:
         try:
@@ -83,7 +82,7 @@ def command(
         )
     }  # fmt: skip
     hull = cf.read_body(body)
-    density = hull.mass_model.density if hull.mass_model is not None else FRESH_WATER.density
+    density = density_of(hull)
     ordered = Ordered(
         numbers["--engine"], numbers["--engine-at"] if engine_at else None, sliding, numbers["--travel"], numbers["--net-mass"],
         numbers["--shift"], numbers["--lasts"], numbers["--pitch-damping"] if pitch_damping else _estimated(hull, density), not munk,
@@ -92,7 +91,7 @@ def command(
     written = {} if out is None else write_all(out, {f"{made.name}.glider.toml": made.file()})
     paths = [str((out or Path()) / name) for name in written]
     if json:
-        from coeflab.cli.as_json import finding_as_data
+        from coeflab.report.as_json.findings import finding_as_data
 
         show.json_object(
             {

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
@@ -111,6 +112,19 @@ class LinearModel:
     def B(self) -> Array:  # noqa: N802
         """(n, m) of the commands."""
         return self.b.matrix
+
+    @property
+    def eigenvalues(self) -> NDArray[np.complex128]:
+        """(n,) of A, 1/s: a real part below zero dies away.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> linear = cf.read_vehicle("remus100").linear(speed=1.5)
+        >>> linear.eigenvalues.shape == (len(linear.states),)
+        True
+        """
+        return np.asarray(np.linalg.eigvals(self.A), dtype=np.complex128)
 
     @property
     def C(self) -> Array:  # noqa: N802

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.vehicle import THRUST, Vehicle
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
 LEANS = {"p": "roll", "q": "pitch"}
@@ -296,6 +300,34 @@ class Trim:
     refused: tuple[Finding, ...] = ()
 
     @property
+    def commands(self) -> dict[str, float]:
+        """Thrusters in their units, control angles in rad, ``thrust`` in N where no thruster gives it.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.trim("remus100", speed=1.5).commands["thrust"] > 0.0
+        True
+        """
+        return {u.name: self.point.values[u.name] for u in self.motion.command_unknowns}
+
+    def frame(self) -> pd.DataFrame:
+        """A row a figure and a command: value and unit.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> round(float(cf.trim("remus100", speed=1.5).frame().loc["speed", "value"]), 6)
+        1.5
+        """
+        import pandas as pd
+
+        rows = {**self.figures, **{u.name: (self.commands[u.name], u.unit) for u in self.motion.command_unknowns}}
+        return pd.DataFrame(
+            [(np.nan if v is None else v, unit) for v, unit in rows.values()], list(rows), ["value", "unit"]
+        )
+
+    @property
     def figures(self) -> dict[str, tuple[float | None, str]]:
         """Speed, incidence and radius with their units; None where there is none, as the radius of a straight course."""
         u, v, w = self.velocity[:3]
@@ -358,7 +390,7 @@ def trim(
         Nothing given, nothing to be found, or a name or value that the vehicle does not have.
     """
     if not motion and not commands:
-        raise InputError("neither a motion nor a command", "--speed, --yaw-rate, --commands or the like")
+        raise InputError("neither a motion nor a command", "a speed, a yaw rate, commands or the like")
     steady = steady_motion(vehicle, motion, commands or {})
     unknowns = _ruled(steady.unknowns, near or {})
     if not any(u.low < u.high for u in unknowns):

@@ -8,9 +8,11 @@ from matplotlib.axes import Axes
 from coeflab.core.errors import InputError, shown
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS
 from coeflab.motion.trajectory import Trajectory
-from coeflab.report.plots.axes import axes_of
+from coeflab.report.figures.motion import draw_history, draw_track
+from coeflab.report.plots.axes import axes_of, palette
 
 IN_DEGREES = ("heading", "roll", "pitch")
+ALSO = {"rudder": "dr", "stern planes": "ds", "bow planes": "db", "yaw": "heading", "yaw rate": "r"}
 
 
 def plot_motion(motion: Trajectory, what: str = "track", ax: Axes | None = None) -> Axes:
@@ -34,17 +36,18 @@ def plot_motion(motion: Trajectory, what: str = "track", ax: Axes | None = None)
         **{m: (motion.velocity[:, i], "rad/s" if m in ANGULAR else "m/s") for i, m in enumerate(MOTIONS)},
         **{k: (np.degrees(v), "deg") if k in CONTROLS else (np.asarray(v), "") for k, v in motion.controls.items()},
     }  # fmt: skip
+    what = ALSO.get(what, what)
     if what != "track" and what not in known:
         raise InputError(shown(what), f"track, or one of {', '.join(known)}", column="what")
     axes = axes_of(ax)
     if what == "track":
-        axes.plot(motion.position[:, 1], motion.position[:, 0])
+        draw_track(axes, motion, palette=palette())
         axes.set_xlabel("east [m]")
         axes.set_ylabel("north [m]")
         axes.set_aspect("equal", adjustable="datalim")
         return axes
     values, unit = known[what]
-    axes.plot(motion.time, values)
+    draw_history(axes, motion.time, {what: values}, palette())
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{what} [{unit}]" if unit else what)
     return axes

@@ -19,10 +19,8 @@ summary = "mass of a vehicle from its shape against its displacement"
 citations = ("sname1950",)
 
 APART = 0.20
-LIGHT = "Unit of --mass or of the mesh? Rooms that flood: [[mass]] with flooded = true in its body.toml."
-HEAVY = (
-    "Unit of --mass or of the mesh? A mesh of the pressure hull alone? Water in the hull: [[mass]] with flooded = true."
-)
+LIGHT = "Unit of the mass or of the mesh? Rooms that flood: [[mass]] with flooded = true in its body.toml."
+HEAVY = "Unit of the mass or of the mesh? A mesh of the pressure hull alone? Water in the hull: [[mass]] with flooded = true."
 
 
 STEEP = float(np.radians(5.0))  # of trim or list at rest

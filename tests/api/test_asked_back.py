@@ -1,0 +1,95 @@
+"""What a person gets wrong from Python is asked back in the words of Python: keywords, no options of the shell, the near name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+import coeflab as cf
+from coeflab.core.errors import InputError
+
+V = np.linspace(-0.3, 0.3, 9)
+KNOWN = {"frame": "FRD", "length": 2.0, "length_name": "LOA", "density": 1000, "speed": 2.0, "about": "nose"}
+ARM = {"contains_inertia": False, "arm_point": "reference point"}
+DRIFT = {"v [m/s]": V, "Y [N]": -120.0 * V, "N [N m]": -60.0 * V}
+YAW = {"r [rad/s]": V, "Y [N]": 20.0 * V, "N [N m]": -60.0 * V}
+
+
+def table(columns: dict[str, Any] = DRIFT, **words: Any) -> cf.Table:
+    return cf.read_table(columns, **{**KNOWN, **words})
+
+
+def without(keyword: str, columns: dict[str, Any]) -> cf.Table:
+    return cf.read_table(columns, **{k: v for k, v in KNOWN.items() if k != keyword})
+
+
+def mesh(folder: Path) -> str:
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    ball.apply_scale([1.0, 0.2, 0.2])
+    ball.export(folder / "hull.stl")
+    return str(folder / "hull.stl")
+
+
+DRIFT_ANGLES = {"beta [deg]": V, "Y [N]": -120.0 * V}
+ASKED: dict[str, tuple[Callable[[], Any], str]] = {
+    "a misspelt keyword": (lambda: table(lenght=2), "Did you mean length?"),
+    "a symbol": (lambda: table(rho=1000), "Did you mean density?"),
+    "units": (lambda: table({"v [m/s]": V, "Fy": V}), 'columns={"Fy": "Y [kN]"}'),
+    "a length": (lambda: without("length", DRIFT_ANGLES) and None, "4.3 m LOA"),
+    "a sign": (lambda: without("frame", DRIFT_ANGLES), 'beta="+" if y is starboard, else beta="-"'),
+    "inertia": (lambda: table(YAW), "with mass, centre_of_gravity"),
+    "a text": (lambda: table(DRIFT | {"Y [N]": ["a"] * 9}), "no cell is a number"),
+    "a term": (lambda: cf.fit(table(), terms=["Yq"]), "Yq zero on every row"),
+    "a campaign": (lambda: cf.estimate("suboff_roddy_2"), "shipped campaign"),
+    "a body": (lambda: cf.fit("spheroid_example"), "shipped body"),
+    "draws": (lambda: cf.fit(table()).samples(-1), "from 1"),
+    "no motion": (lambda: cf.trim("remus100"), "a yaw rate"),
+    "a point twice": (lambda: cf.fit([table(), table()]), "twice"),
+    "an ending": (lambda: cf.read_vehicle("remus100").save("x.txt"), "ends in .json"),
+}
+
+
+@pytest.mark.parametrize("case", ASKED)
+def test_it_is_asked_back_in_words_of_python(case: str) -> None:
+    call, words = ASKED[case]
+    with pytest.raises(InputError) as caught:
+        call()
+    assert words in str(caught.value)
+    assert " --" not in str(caught.value)
+
+
+def test_a_mass_is_complained_of_by_its_keyword() -> None:
+    with pytest.raises(InputError) as caught:
+        cf.vehicle("remus100", mass=3000)
+    assert caught.value.column == "mass"
+
+
+def test_no_accept_settles_whether_forces_contain_inertia() -> None:
+    with pytest.raises(InputError, match="contains_inertia"):
+        table(YAW, accept=True)
+
+
+def test_both_names_of_axes_and_units_are_taken(tmp_path: Path) -> None:
+    words = {k: v for k, v in KNOWN.items() if k != "frame"}
+    assert cf.read_table(DRIFT, axes="FRD", unit="SI", **words).varies == ("v",)
+    path = mesh(tmp_path)
+    assert cf.read_body(path, units="m", frame="FRD").volume == cf.read_body(path, unit="m", axes="FRD").volume
+
+
+def test_a_mesh_says_how_its_tables_name_the_middle(tmp_path: Path) -> None:
+    hull = cf.read_body(mesh(tmp_path), unit="m", axes="FRD")
+    with pytest.raises(InputError, match='about="nose, 1 m aft"'):
+        cf.vehicle(hull, coefficients=cf.fit(table(about="mid-length")))
+
+
+def test_tables_that_nobody_named_are_told_apart() -> None:
+    both = cf.fit([table(), table(YAW, **ARM)])
+    assert [f.campaign for f in both.fits] == ["table_v", "table_r"]
+    changed = DRIFT | {"Y [N]": -121.0 * V}
+    assert [f.campaign for f in cf.fit([table(), table(changed)]).fits] == ["table_1", "table_2"]
+    assert cf.fit(table()).fits[0].campaign == "table"

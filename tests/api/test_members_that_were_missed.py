@@ -1,0 +1,70 @@
+"""What a person looked for on the nouns of the front door, and what it holds: numbers against those that stood elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coeflab as cf
+from coeflab.core.errors import InputError
+
+
+def test_added_mass_is_a_frame() -> None:
+    added = cf.read_body("spheroid_example").added_mass("ellipsoid")
+    frame = added.frame()
+    np.testing.assert_array_equal(frame.to_numpy(), added.matrix)
+    assert frame.loc["N", "r_dot"] == added.matrix[5, 5]
+
+
+def test_a_body_says_what_it_displaces() -> None:
+    """4/3 pi a b^2 of a spheroid."""
+    body = cf.read_body("spheroid_example")
+    a, b = body.shape.length / 2.0, body.shape.volume / (2.0 / 3.0 * np.pi * body.shape.length)
+    assert body.volume == pytest.approx(4.0 / 3.0 * np.pi * a * b, rel=1e-6)
+    assert body.displaced_mass(1025) == pytest.approx(1025.0 * body.volume)
+    with pytest.raises(InputError, match="g/cm"):
+        body.displaced_mass(1.025)
+
+
+def test_a_trim_gives_its_commands() -> None:
+    trim = cf.trim("remus100", speed=1.5)
+    assert set(trim.commands) == {"thrust", "dr", "ds"}
+    assert trim.commands["thrust"] == pytest.approx(1.62 * 1.5**2, rel=1e-6)  # Xu|u| of the file, -1.62 N/(m/s)^2
+    frame = trim.frame()
+    assert (frame.loc["thrust", "value"], frame.loc["thrust", "unit"]) == (trim.commands["thrust"], "N")
+    assert set(frame.index) == {*trim.figures, *trim.commands}
+
+
+def test_eigenvalues_are_those_of_the_modes() -> None:
+    linear = cf.read_vehicle("remus100").linear(speed=1.5)
+    assert sorted(linear.eigenvalues.real) == pytest.approx(sorted(m.eigenvalue.real for m in linear.modes), abs=1e-9)
+
+
+def test_a_comparison_is_summed_up() -> None:
+    found = cf.compare("remus100", "remus100")
+    assert len(found.summary().rows) == len(found.rows)
+
+
+def test_a_motion_has_units_and_the_names_that_people_use() -> None:
+    run = cf.simulate("remus100", "zigzag", rudder="20 deg")
+    frame = run.frame()
+    assert all("[" in name for name in frame.columns)
+    speed = np.sqrt((frame[["u [m/s]", "v [m/s]", "w [m/s]"]] ** 2).sum(axis=1))
+    np.testing.assert_allclose(frame["speed [m/s]"], speed, rtol=1e-12)
+    assert np.max(np.abs(frame["dr [rad]"])) == pytest.approx(np.radians(20.0))
+    for name, same in (("rudder", "dr"), ("yaw", "heading"), ("yaw rate", "r"), ("speed", "speed")):
+        drawn, known = (run.plot(n).lines[0].get_ydata() for n in (name, same))
+        np.testing.assert_array_equal(drawn, known)
+    huuv = cf.simulate("huuv", "straight_run").frame()
+    assert "thrust [N]" in huuv.columns
+
+
+def test_manoeuvres_and_shipped_names_are_listed() -> None:
+    assert "zigzag" in [row[0] for row in cf.manoeuvres().rows]
+    for name in (row[0] for row in cf.manoeuvres().rows):
+        assert cf.manoeuvres(name).title
+    names = cf.shipped_names()
+    for vehicle in names["vehicles"]:
+        assert cf.read_vehicle(vehicle).name
+    assert {"remus100", "huuv"} <= set(names["vehicles"])
+    assert "suboff_bare_hull" in names["bodies"]
