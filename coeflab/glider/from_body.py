@@ -14,7 +14,6 @@ from coeflab.fits.glide_polar import fit
 from coeflab.glider.glider import BuoyancyEngine, Glider, GliderMass, GliderPhase, SlidingMass, StatedPolar
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.rigid_body import parallel_axis
-from coeflab.law.water import FRESH_WATER
 from coeflab.tables.force_table import ForceTable
 
 NEUTRAL = 0.005  # of the displacement: weight and buoyancy of a glider at rest agree within what its engine trims
@@ -54,11 +53,6 @@ class Ordered:
     lasts: float
     pitch_damping: float
     holds_munk: bool
-
-
-def density_of(body: Body) -> float:
-    """Of the water that the [[mass]] parts of a body are trimmed for, kg/m^3; fresh water of one without."""
-    return FRESH_WATER.density if body.mass_model is None else body.mass_model.density
 
 
 def polar_of(table: ForceTable, body: Body, ordered: Ordered) -> StatedPolar:

@@ -62,7 +62,7 @@ def command(
     from coeflab.core.texts import remark
     from coeflab.core.units import quantity
     from coeflab.glider import tables as glide_tables
-    from coeflab.glider.from_body import Ordered, density_of, glider_of
+    from coeflab.glider.from_body import Ordered, glider_of
     from coeflab.glider.glide import steady_glides
 
     def value(text: str, dimension: str, option: str) -> float:
@@ -82,7 +82,7 @@ def command(
         )
     }  # fmt: skip
     hull = cf.read_body(body)
-    density = density_of(hull)
+    density = hull.mass_model.density if hull.mass_model is not None else show.FRESH_WATER
     ordered = Ordered(
         numbers["--engine"], numbers["--engine-at"] if engine_at else None, sliding, numbers["--travel"], numbers["--net-mass"],
         numbers["--shift"], numbers["--lasts"], numbers["--pitch-damping"] if pitch_damping else _estimated(hull, density), not munk,
