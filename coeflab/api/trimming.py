@@ -9,8 +9,8 @@ from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.api.questions import si
 from coeflab.core.errors import InputError
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.trim.linear_files import as_json as linear_as_json
 from coeflab.motion.trim.linear_model import LinearModel, LinearSchedule, linear_model
+from coeflab.motion.trim.linear_model import as_json as linear_as_json
 from coeflab.motion.trim.trim import Trim
 from coeflab.motion.trim.trim import trim as found
 from coeflab.motion.vehicle import vehicle as moving

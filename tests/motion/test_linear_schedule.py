@@ -19,8 +19,7 @@ from coeflab.motion.dynamics import from_euler
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.marching import march_by_tolerance
 from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.trim.linear_files import content
-from coeflab.motion.trim.linear_model import LinearModel, linear_model
+from coeflab.motion.trim.linear_model import LinearModel, content, linear_model
 from coeflab.motion.trim.trim import MOTION, Trim, trim
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.parameter_file import read_parameter_file

@@ -11,7 +11,8 @@ from coeflab.core.table import ABSENT, Table, folded, number
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed, one_line
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.trim.linear_files import ENDINGS, content
+from coeflab.motion.trim.linear_files import ENDINGS
+from coeflab.motion.trim.linear_model import content
 from coeflab.vehicle.expected_signs import TURNS
 
 if TYPE_CHECKING:
