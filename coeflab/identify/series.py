@@ -13,7 +13,8 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import Header, factor
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST
 
 FEWEST = 50  # rows: fewer hold no motion from which forces could be told
 COMMAND = "command"

@@ -24,7 +24,8 @@ from coeflab.law.transforms import incidence
 from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
 LEANS = {"p": "roll", "q": "pitch"}
