@@ -5,7 +5,7 @@
 >>> round(result["Yv'"].value, 4), round(result["Yv'"].u95, 4)
 (-0.0262, 0.0027)
 
-Data in: `read_table`, `read_tables`, `read_body`, `read_vehicle`. Coefficients: `fit`, `estimate`. Vehicles: `vehicle`, `compare`, `export`.
+Data in: `read_table`, `read_tables`, `read_body`, `read_vehicle`. Coefficients: `fit`, `estimate`, `next_tests`. Vehicles: `vehicle`, `compare`, `export`.
 Motions: `simulate`, `trim`. Towing: `tow`. Studies: `run`. What these return has ``frame()`` for a DataFrame and ``plot(ax=...)`` for a picture.
 SI and radians; a text such as ``"20 deg"`` has its unit. Wrong input is an `InputError`; nothing is written but by what says so.
 
@@ -26,6 +26,7 @@ from coeflab.core.version import VERSION
 if TYPE_CHECKING:
     from coeflab.api.body import AddedMass, Body, read_body
     from coeflab.api.comparing import Comparison, compare
+    from coeflab.api.designing import NextTests, next_tests
     from coeflab.api.estimating import estimate
     from coeflab.api.exporting import export
     from coeflab.api.fitting import fit
@@ -88,6 +89,7 @@ _HOMES = {
         "compare",
     ),
     "api.estimating": ("estimate",),
+    "api.designing": ("NextTests", "next_tests"),
     "tank.front_door": ("Tow", "tow"),
     "api.trimming": ("Trim", "trim"),
     "api.studies": (
@@ -146,6 +148,7 @@ __all__ = [
     "LinearModel",
     "LinearSchedule",
     "Motion",
+    "NextTests",
     "ParameterFile",
     "Plan",
     "PlannedTable",
@@ -166,6 +169,7 @@ __all__ = [
     "estimate",
     "export",
     "fit",
+    "next_tests",
     "read_body",
     "read_campaign",
     "read_plan",

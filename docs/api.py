@@ -26,6 +26,8 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
         (
             "fit",
             "estimate",
+            "next_tests",
+            "NextTests",
             "Result",
             "Points",
             "Coefficient",

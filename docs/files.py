@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coeflab.cli.schema import KINDS, schema
+from coeflab.api.schemas import KINDS, schema
 
 HEAD = """# Files that people write
 

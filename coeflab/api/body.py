@@ -10,19 +10,21 @@ import numpy as np
 
 from coeflab.api.questions import si
 from coeflab.bodies import body as plain
-from coeflab.bodies.added_masses import added_masses, methods
+from coeflab.bodies.added_masses import added_masses, methods, near_walls
+from coeflab.bodies.finer_panels import finer_panels
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
+from coeflab.bodies.simplify.source import mesh_body, subject
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.law import added_mass as law
-from coeflab.study.estimated_vehicle import subject
+from coeflab.law.water import FRESH_DENSITY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FRESH = 998.2
+__all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
 KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
 
@@ -96,7 +98,7 @@ class Body(plain.Body):
 
     place: Path | None = None
 
-    def added_mass(self, method: str = "all", density: float | str = FRESH, **options: Any) -> AddedMass:
+    def added_mass(self, method: str = "all", density: float | str = FRESH_DENSITY, **options: Any) -> AddedMass:
         """The 6 x 6 added-mass matrix about the reference point, FRD, SI.
 
         Parameters
@@ -224,7 +226,7 @@ def read_body(
     if not isinstance(source, str | Path):
         raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped body", column="source")
     try:
-        return body_of(subject(str(source), unit, axes, repair, fill, sheets), located(source, "geometry"))
+        return typed_body(str(source), unit, axes, repair, fill, sheets, centred=True)
     except InputError as why:
         for one in (why, *why.others):
             for option, keyword in KEYWORDS.items():
@@ -233,6 +235,22 @@ def read_body(
             one.column = KEYWORDS.get(one.column or "", one.column)
             one.args = (str(one),)
         raise
+
+
+def typed_body(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False, *, centred: bool = False,
+) -> Body:  # fmt: skip
+    """A body as a shell names it: complaints are about its options, such as ``--unit``.
+
+    Parameters
+    ----------
+    name, unit, axes, repair, fill, sheets
+        As of `read_body`.
+    centred : bool
+        Of a bare mesh about its centre of buoyancy, else about the origin of its file.
+    """
+    found = (subject if centred else mesh_body)(name, unit, axes, repair, fill, sheets)
+    return body_of(found, located(name, "geometry"))
 
 
 def body_of(found: plain.Body, place: Path | None = None) -> Body:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
@@ -139,4 +139,4 @@ def behaviour(
     >>> comparing.behaviour("remus100", "remus100", 1.5)[0].difference
     0.0
     """
-    return of_both(parameters_of(first), parameters_of(second), si(speed, "speed", "speed"))
+    return of_both(parameters_of(first), parameters_of(second), above_zero(speed, "speed", "speed"))

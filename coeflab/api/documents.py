@@ -12,8 +12,9 @@ from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import brief
+from coeflab.formats.exporting import parameter_files_rendered
 from coeflab.report import content
-from coeflab.report.acceptance import Acceptance
+from coeflab.report.acceptance import Acceptance, acceptance_csv
 from coeflab.report.document import Document, Section
 from coeflab.report.first_page import acceptance_summary, study_summary
 from coeflab.report.formats import REPORTERS
@@ -60,7 +61,7 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
 
 
 @one_thread()
-def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = False) -> Report:
+def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = False, review: bool = False) -> Report:
     """The report of what was computed; figures are drawn on several cores while this process has a single thread.
 
     Parameters
@@ -70,17 +71,21 @@ def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = Fa
         One page.
     full : bool
         With the appendix.
+    review : bool
+        With what a reviewer asks for in the place of the appendix; of a publication the whole.
     """
     if isinstance(found, Study):
         if short:
             return Report(_one_page(study_summary(found)), found.failed)
-        result = content.document(found, full=full)
-        return Report(_commanded(result) if full else result, found.failed)
+        result = content.document(found, full=full, review=review)
+        return Report(
+            _commanded(result, "--for-review" if review else "--full") if full or review else result, found.failed
+        )
     whole = acceptance_document.document(found, _inputs(found.name))
     if short:
         return Report(_one_page(acceptance_summary(found, whole)), not found.holds)
     parted = _parted(whole, found)
-    return Report(_commanded(parted) if full else content.core(parted), not found.holds)
+    return Report(_commanded(parted, "--full") if full or review else content.core(parted), not found.holds)
 
 
 def _one_page(made: Document) -> Document:
@@ -113,12 +118,12 @@ def _parted(whole: Document, found: Acceptance) -> Document:
     return replace(whole, sections=tuple(map(marked, whole.sections)))
 
 
-def _commanded(whole: Document) -> Document:
+def _commanded(whole: Document, option: str) -> Document:
     """The command that makes it again, with its appendix; `coeflab run` writes the core alone."""
 
     def marked(section: Section) -> Section:
         text = tuple(p.replace("writes the same HTML", "writes the core of it as HTML") for p in section.paragraphs)
-        return replace(section, code=tuple(f"{line} --full" for line in section.code), paragraphs=text)
+        return replace(section, code=tuple(f"{line} {option}" for line in section.code), paragraphs=text)
 
     return replace(whole, sections=tuple(marked(s) if s.anchor == REPRODUCE else s for s in whole.sections))
 
@@ -172,6 +177,13 @@ def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
         with REPORTERS.guarded(name):
             files.update(renderer.render(document))
     return files
+
+
+def acceptance_files(found: Acceptance) -> dict[str, bytes]:
+    """Report, parameter files, numbers as CSV and figures of a publication, by name; nothing is written."""
+    files = parameter_files_rendered(found.parameter_files) | dict(written(report_of(found).document, ["html"]))
+    files |= {f"{found.name}.csv": acceptance_csv(found)}
+    return files | {f"{name}.svg": figure.svg.encode() for name, figure in found.figures} | dict(found.pages)
 
 
 def _meant(study: str) -> Plan | str:

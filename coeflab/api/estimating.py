@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from coeflab.api.body import read_body
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero
 from coeflab.api.result import Result
 from coeflab.bodies import body as plain
 from coeflab.core.files import stem
@@ -53,8 +53,8 @@ def estimate(
     """
     hull = read_body(body)
     conditions = Conditions(
-        FRESH_WATER.density if density is None else si(density, "density", "density"),
-        FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+        FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
+        FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
     )  # fmt: skip
     result = estimated(Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method), hull)
     return Result(tuple(result.fits))

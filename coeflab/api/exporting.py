@@ -8,14 +8,13 @@ from pathlib import Path
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
-from coeflab.formats import EXPORTERS
+from coeflab.formats import EXPORTERS, loss_tables
 from coeflab.formats.export import Export, Kind
 from coeflab.formats.exporting import export as rendered
 from coeflab.formats.lacking_law import without_law
-from coeflab.formats.loss_tables import in_short
 from coeflab.vehicle.parameter_file import ParameterFile
 
-__all__ = ["Export", "ParameterFile", "export", "refusal", "require_targets", "without_law"]
+__all__ = ["Export", "ParameterFile", "export", "loss_tables", "refusal", "require_targets", "without_law"]
 WITH_MASS = "Give the vehicle a mass and an added mass."
 
 
@@ -88,7 +87,7 @@ def refusal(
     lost = () if loss is None else loss.lost
     missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost)
     return InputError(
-        f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else in_short(loss)}", expected,
+        f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else loss_tables.in_short(loss)}", expected,
         advice=advice if missing else "",
     )  # fmt: skip
 

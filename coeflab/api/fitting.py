@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero
 from coeflab.api.reading import read_tables
 from coeflab.api.result import Result
-from coeflab.core.errors import InputError, together
+from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.core.options import described
 from coeflab.fits import FITS
 from coeflab.fits.joint.rows import one_length
 from coeflab.law.scaling import Scaling
-from coeflab.study.fitting import fitted
+from coeflab.study.fitting import fitted, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import suited_fit
 
 USUAL = Importer.fit
@@ -89,22 +89,20 @@ def fit(
     if include_uncertain:
         read = [t.with_uncertain_cells() for t in read]
     by = by or (MODEL if "terms" in options else _suited(every))
-    given = _options(by, options)
+    given = {k: list(v) if isinstance(v, tuple) else v for k, v in options.items()}
     scaling = None
     if (length is None) != (length_name is None):
         raise InputError(
             "length without its name" if length else "length_name alone", "length and length_name", column="length"
         )
     if length is not None:
-        scaling = Scaling(si(length, "length", "length"), str(length_name))
+        scaling = Scaling(above_zero(length, "length", "length"), str(length_name))
     with one_thread():
         if FITS.load(by).joins_campaigns:
             return Result((fitted(by, read, scaling or one_length(read), given)[0],), tuple(read))
-        fits = []
-        for campaign in dict.fromkeys(t.campaign for t in read):
-            own = [t for t in read if t.campaign == campaign]
-            fits.append(fitted(by, own, scaling or own[0].scaling, given)[0])
-    return Result(tuple(fits), tuple(read))
+        by_campaign = [[t for t in read if t.campaign == c] for c in dict.fromkeys(t.campaign for t in read)]
+        asked = [(by, own, scaling or own[0].scaling, given) for own in by_campaign]
+        return Result(rejoined([fitted(*one)[0] for one in asked], asked), tuple(read))
 
 
 def _suited(every: Sequence[Any]) -> str:
@@ -112,20 +110,6 @@ def _suited(every: Sequence[Any]) -> str:
     from coeflab.core.files import located
 
     first = every[0]
+    if isinstance(first, PlanarMotionTable):
+        return next(name for name in FITS.usable() if FITS.load(name).reads_series)
     return suited_fit(located(first, "cfd_data")) if isinstance(first, str | Path) else USUAL
-
-
-def _options(by: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of a fit; a list of words is one option, and what the fit has not is complained of with the fit that has it."""
-    known = [o.name for o in described(FITS.load(by).Options)]
-    complaints = []
-    for name in options:
-        if name not in known:
-            able = [n for n in FITS.usable() if name in [o.name for o in described(FITS.load(n).Options)]]
-            complaints.append(InputError(
-                f"{name} for the fit {by}", f"one of {', '.join(known)}" if known else "no option", column=name,
-                advice=f"{', '.join(able)} has it." if able else "",
-            ))  # fmt: skip
-    if complaints:
-        raise together(complaints)
-    return {k: list(v) if isinstance(v, tuple) else v for k, v in options.items()}

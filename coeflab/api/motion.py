@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
-from coeflab.core.errors import InputError, together
-from coeflab.core.options import described
+from coeflab.api.questions import three
 from coeflab.core.table import Table as Shown
 from coeflab.core.types import in_angles
 from coeflab.motion.manoeuvre import Figure, Simulation
-from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulation import simulate as carried_out
 from coeflab.motion.trajectory import Trajectory
 from coeflab.vehicle.parameter_file import ParameterFile
+
+__all__ = ["Motion", "Simulation", "carried_out", "simulate"]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -187,15 +187,10 @@ def simulate(
     >>> round(run["reach"].value, 2)
     4.86
     """
-    known = [o.name for o in described(MANOEUVRES.load(manoeuvre).Options)]
-    if strange := [name for name in options if name not in known]:
-        raise together([
-            InputError(f"{name} for {manoeuvre}", f"one of {', '.join(known)}", column=name) for name in strange
-        ])  # fmt: skip
     given = {"integrator": integrator, "step": step, "record": record}
     how = {k: v for k, v in given.items() if v is not None}
     if len(current):
-        how |= dict(zip(("north", "east", "down"), map(float, current), strict=True))
+        how |= dict(zip(("north", "east", "down"), three(current, "speed", "current").tolist(), strict=True))
     found = carried_out(
         parameters_of(vehicle),
         manoeuvre,

@@ -6,8 +6,17 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from coeflab.core.errors import InputError
-from coeflab.formats.model_files import read_vehicle_file
+from coeflab.formats.model_files import OWN, read_model_file, read_vehicle_file
+from coeflab.vehicle.conform import conform
+from coeflab.vehicle.force_law import EDGE, not_used
+from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import plausibility
+
+__all__ = [
+    "EDGE", "OWN", "HasParameters", "ParameterFile", "conform", "not_used", "parameters_of", "plausibility", "read_model_file",
+    "read_parameters", "typed_file",
+]  # fmt: skip
 
 
 class HasParameters(Protocol):

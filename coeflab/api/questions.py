@@ -6,7 +6,10 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from coeflab.core.errors import InputError, together
+import numpy as np
+
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.tables.form import Group, Line
 from coeflab.tables.settings import Setting, read_in, require_one_datum
@@ -143,6 +146,9 @@ def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator
             yield InputError(
                 f"nothing said of {one.key}", one.why or "a value", file=source, column=f'settings["{one.key}"]'
             )
+        elif keyword is None and not one.argument:  # of the importer, chosen in reading
+            offered = f'options={{"{one.key}": "{one.value}"}} if that is right, or accept=True: {one.why}'
+            yield InputError(f"no option {one.key}", offered, file=source, column="options")
         elif keyword is None:
             offered = f'columns={{"{one.key}": "{one.value or "..."}"}}'
             yield InputError(
@@ -189,9 +195,53 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     0.349066
     """
     try:
-        return with_unit(value, dimension) if isinstance(value, str) else _number(value)
+        number = value if isinstance(value, str) else _number(value)
+        return with_unit(number, dimension) if isinstance(value, str) or dimension == "density" else float(number)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=keyword, advice=why.advice) from None
+
+
+def above_zero(value: float | str, dimension: str, keyword: str) -> float:
+    """A number in SI, or a text with its unit, that is above zero; as `si`.
+
+    Parameters
+    ----------
+    value : float or str
+    dimension : str
+        Key of `coeflab.core.units.SI`, and what the number is called.
+    keyword : str
+        For the error.
+    """
+    found = si(value, dimension, keyword)
+    if not found > 0.0:
+        raise InputError(shown(str(value)), f"a {dimension} above zero", column=keyword)
+    return found
+
+
+def three(values: Any, dimension: str, keyword: str) -> Array:
+    """Three numbers in SI, each a text with its unit where it is one, such as x, y, z.
+
+    Parameters
+    ----------
+    values : sequence of float or str
+    dimension : str
+        Key of `coeflab.core.units.SI`.
+    keyword : str
+        For the error.
+
+    Raises
+    ------
+    InputError
+        Not three, or no numbers.
+
+    Examples
+    --------
+    >>> three((0.1, 0, "20 mm"), "length", "centre_of_gravity").tolist()
+    [0.1, 0.0, 0.02]
+    """
+    if isinstance(values, str) or np.shape(values) != (3,):
+        raise InputError(shown(str(values)), "three numbers", column=keyword)
+    return np.array([si(v, dimension, keyword) for v in values])
 
 
 def _number(value: Any) -> float:

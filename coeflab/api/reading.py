@@ -7,28 +7,25 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coeflab.api.importing import column_maps, filled_in
 from coeflab.api.questions import in_keywords, open_questions, settings_of
-from coeflab.api.table import Table
+from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.wording import identifier
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
-from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.form import of_campaign
-from coeflab.tables.imported import Filled
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.in_memory import raw_of_columns, tables_of
-from coeflab.tables.mapping import assigned
-from coeflab.tables.parts import Part, own, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.parts import Part, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.settings import assumed
 from coeflab.tables.several_tables import complaints_of, form_together, is_pending, settled_together
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from coeflab.tables.raw_table import RawTable
 
 Source = "str | Path | pd.DataFrame | Mapping[str, Any] | ForceTable"
 ARRAYS = "columns"  # the importer of arrays, as the form names it
@@ -242,7 +239,10 @@ def tables_from(
 
 def table_of(read: ForceTable) -> Table:
     """A force table with the front door's methods."""
-    return read if isinstance(read, Table) else Table(**{f.name: getattr(read, f.name) for f in fields(ForceTable)})
+    if isinstance(read, Table):
+        return read
+    kind = OscillatingTable if isinstance(read, PlanarMotionTable) else Table
+    return kind(**{f.name: getattr(read, f.name) for f in fields(read)})
 
 
 def _called(source: Any) -> str:
@@ -279,7 +279,7 @@ def _filled_in(
     source = str(parts[0].raw.path) if len(parts) == 1 else str(parts[0].raw.path.parent)
     _require_known(said)
     known = settings_of(said)
-    maps = _mapped(columns, [p.raw for p in parts], source)
+    maps = column_maps(columns, parts, "columns", 'columns["{name}"]', source, source)
     require_parts(known, parts)
     settings = {**assumed(Path(name)), **stated_together(parts), **known}
     whole = source if len(parts) > 1 else ""
@@ -289,15 +289,8 @@ def _filled_in(
     if is_pending(parts, founds) or (chosen and not accept):
         lines = form_together(parts, founds, settings, [one.line for one in chosen] if not accept else [], None, whole)
         raise open_questions(lines, source, [p.name for p in parts])
-    filled = []
-    for part, found in zip(parts, founds, strict=True):
-        mine = of_campaign(own(settled, part, parts))
-        got = assigned(part.raw, found.mapping)
-        filled.append(
-            Filled(part.name, part.raw, part.importer, part.options, got, found.mapping, mine, frozenset(found.about))
-        )
     try:
-        return tuple(map(table_of, tables_of(filled)))
+        return tuple(map(table_of, tables_of(filled_in(parts, founds, settled))))
     except InputError as why:
         raise in_keywords(why, source) from None
 
@@ -307,26 +300,3 @@ def _require_known(said: Iterable[str]) -> None:
 
     if strange := [k for k in said if k not in KEYS]:
         raise InputError(f"the keyword {strange[0]}", f"one of {', '.join(KEYS)}", column=strange[0])
-
-
-def _mapped(columns: Mapping[str, str], raws: Sequence[RawTable], source: str) -> dict[str, ColumnMap]:
-    """What a person said of columns."""
-    have = list(dict.fromkeys(c.name for raw in raws for c in raw.columns))
-    out: dict[str, ColumnMap] = {}
-    complaints = []
-    for name, text in columns.items():
-        plain = name.partition(" [")[0]
-        if plain not in have and name not in have:
-            complaints.append(
-                InputError(f"no column {shown(name)}", f"one of {', '.join(have)}", file=source, column="columns")
-            )
-            continue
-        try:
-            out[name if name in have else plain] = read_column_map(text)
-        except InputError as why:
-            complaints.append(
-                InputError(why.found, why.expected, file=source, column=f'columns["{name}"]', advice=why.advice)
-            )
-    if complaints:
-        raise together(complaints)
-    return out

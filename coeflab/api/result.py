@@ -12,6 +12,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
 from coeflab.core.types import in_angles
+from coeflab.fits.results.fit_result import covariance_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 
@@ -151,12 +152,7 @@ class Result(Mapping[str, Coefficient]):
         >>> round(float(2.0 * result.covariance[i, i] ** 0.5 / result["Yv'"].u95), 6)
         1.0
         """
-        sizes = [len(f.coefficients.coefficients) for f in self.fits]
-        out, at = np.zeros((sum(sizes), sum(sizes))), 0
-        for f, size in zip(self.fits, sizes, strict=True):
-            out[at : at + size, at : at + size] = f.coefficients.covariance
-            at += size
-        return out
+        return covariance_of(self.fits)
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value.

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from coeflab.report.acceptance import Acceptance
     from coeflab.report.document import Document
+    from coeflab.study.towed import Towed
 
+__all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
@@ -41,6 +43,13 @@ class Study(plain.Study):
         """The coefficients of all fits; of one that several give, ``of(campaign)`` chooses."""
         return Result(tuple(self.fits), tuple(self.tables))
 
+    @property
+    def tows(self) -> tuple[Towed, ...]:
+        """Every planned tow, carried out or not: its coefficients beside published columns and tests."""
+        from coeflab.study.towed import towed
+
+        return towed(self)
+
     def vehicle(self, name: str = "") -> Vehicle:
         """A parameter file of the study as a vehicle.
 
@@ -54,15 +63,15 @@ class Study(plain.Study):
             raise InputError(f"no vehicle {shown(name)}", f"one of {', '.join(files)}", column="name")
         return Vehicle(files[name] if name else next(iter(files.values())))
 
-    def report(self, path: str | Path, *, full: bool = False, short: bool = False) -> Path:
+    def report(self, path: str | Path, *, full: bool = False, short: bool = False, review: bool = False) -> Path:
         """Write the report; equal studies give equal bytes.
 
         Parameters
         ----------
         path : str or Path
             Ends in .html, .pdf or .tex; of a folder that is there report.html in it.
-        full, short : bool
-            With the appendix; one page.
+        full, short, review : bool
+            With the appendix; one page; with what a reviewer asks for.
 
         Returns
         -------
@@ -76,7 +85,7 @@ class Study(plain.Study):
         file = Path(path) / "report.html" if Path(path).is_dir() else Path(path)
         if file.suffix not in FORMATS:
             raise InputError(shown(file.name), f"a name that ends in {', '.join(FORMATS)}", column="path")
-        _, result, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short)
+        _, result, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short, review=review)
         own = next(name for name in result if name.endswith(file.suffix))
         write_all(file.parent, {file.name if name == own else name: content for name, content in result.items()})
         return file
@@ -92,6 +101,7 @@ def report_files(
     *,
     full: bool = False,
     short: bool = False,
+    review: bool = False,
     sections: Sequence[str] = (),
     style: str | Path | None = None,
 ) -> tuple[Document, dict[str, bytes], bool]:
@@ -103,8 +113,8 @@ def report_files(
         From `run`, or from `studied`.
     formats : sequence of str
         html, pdf, latex, workbench, figures.
-    full, short : bool
-        With the appendix; one page.
+    full, short, review : bool
+        With the appendix; one page; from files to points and every curve.
     sections : sequence of str
         Only these, by anchor or title.
     style : str or Path, optional
@@ -124,7 +134,7 @@ def report_files(
     from coeflab.report.figures.files import styled
 
     with styled(style):
-        result = report_of(found, short=short, full=full or bool(sections))
+        result = report_of(found, short=short, full=full or (bool(sections) and not review), review=review)
         document = only(result.document, sections)
         files: dict[str, bytes] = {}
         for name in formats:
@@ -132,20 +142,6 @@ def report_files(
     if short:
         files = {name.replace("report", "summary", 1): content for name, content in files.items()}
     return document, files, result.failed
-
-
-def studied(study: str, progress: Callable[[str], None] = lambda _: None) -> plain.Study | Acceptance:
-    """What a person names computed: a plan, a folder with one, a campaign, a shipped validation or publication.
-
-    Parameters
-    ----------
-    study : str
-    progress : callable, optional
-        Takes what is being done, in words.
-    """
-    from coeflab.api.documents import studied as computed
-
-    return computed(study, progress)
 
 
 def require_formats(names: Sequence[str]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.planar_motion import PlanarMotionTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,3 +82,8 @@ class Table(ForceTable):
         from coeflab.report.plots.table import plot_table
 
         return plot_table(self, component, over, ax)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class OscillatingTable(Table, PlanarMotionTable):
+    """Oscillating runs, whose rows are means over the record; ``runs`` has the records."""

@@ -9,6 +9,7 @@ from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.api.questions import si
 from coeflab.core.errors import InputError
 from coeflab.law.symbols import CONTROLS
+from coeflab.motion.trim.linear_files import as_json as linear_as_json
 from coeflab.motion.trim.linear_model import LinearModel, LinearSchedule, linear_model
 from coeflab.motion.trim.trim import Trim
 from coeflab.motion.trim.trim import trim as found
@@ -19,7 +20,7 @@ AXES = {"speed": "u", "sway": "v", "heave": "w"}
 MOTION = {"speed": "speed", "sway": "speed", "heave": "speed", "yaw_rate": "rate", "roll": "angle", "pitch": "angle"}
 UPRIGHT = frozenset({"w", "pitch", "ds", "db"})
 
-__all__ = ["AXES", "CONTROLS", "LinearModel", "LinearSchedule", "Trim", "linear_model", "trim"]
+__all__ = ["AXES", "CONTROLS", "LinearModel", "LinearSchedule", "Trim", "linear_as_json", "linear_model", "trim"]
 
 
 def trim(

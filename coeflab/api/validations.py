@@ -39,7 +39,7 @@ def validations() -> tuple[str, ...]:
     return tuple(sorted((*(name for name in plans if not name.endswith("_synthetic")), *_systems())))
 
 
-def validation(name: str) -> Plan | Acceptance:
+def validation(name: str | Path) -> Plan | Acceptance:
     """The plan of a shipped validation, or a publication as it comes out.
 
     Raises
@@ -47,6 +47,7 @@ def validation(name: str) -> Plan | Acceptance:
     InputError
         No validation has that name.
     """
+    name = str(name)
     if name not in validations():
         near = difflib.get_close_matches(name.casefold(), validations(), n=1)
         raise InputError(

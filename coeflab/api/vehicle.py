@@ -16,7 +16,7 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
@@ -25,6 +25,7 @@ from coeflab.core.files import stem, write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
+from coeflab.fits.joint.moving import fits_about
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Conditions
@@ -332,13 +333,13 @@ def vehicle(
     conditions = None
     if density is not None or speed is not None:
         conditions = Conditions(
-            FRESH_WATER.density if density is None else si(density, "density", "density"),
-            FRESH_WATER.speed if speed is None else si(speed, "speed", "speed"), FRESH_WATER.viscosity,
+            FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
+            FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
         )  # fmt: skip
     stated = Stated(
-        None if mass is None else _positive(si(mass, "mass", "mass"), "mass"),
-        None if centre_of_gravity is None else np.asarray(centre_of_gravity, dtype=float),
-        None if inertia is None else np.diag(np.asarray(inertia, dtype=float)),
+        None if mass is None else above_zero(mass, "mass", "mass"),
+        None if centre_of_gravity is None else three(centre_of_gravity, "length", "centre_of_gravity"),
+        None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
     )
     called = stem(name or hull.name)
     result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
@@ -350,12 +351,6 @@ def vehicle(
     return Vehicle(merged(base, other, called, own).parameters)
 
 
-def _positive(value: float, keyword: str) -> float:
-    if not value > 0.0:
-        raise InputError(f"{value:g}", f"a {keyword} above zero", column=keyword)
-    return value
-
-
 def _of_datum(hull: Body, result: Result) -> Body:
     """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
     datum = result.fits[0].coefficients.datum.id
@@ -364,18 +359,10 @@ def _of_datum(hull: Body, result: Result) -> Body:
 
 
 def _fitted_file(result: Result, base: ParameterFile, hull: Body) -> ParameterFile:
-    """The parameter file of fits alone, primed and about the point of the vehicle."""
+    """The parameter file of fits alone, primed and about the point of the vehicle, to which each helps the others."""
     point = np.array(base.reference_point.point)
-    fits = []
-    for f in result.fits:
-        moved = f.coefficients.to_length(base.scaling)
-        if moved.datum != base.reference_point.origin:
-            moved = (
-                replace(moved, datum=base.reference_point.origin)
-                if moved.datum.id == base.reference_point.origin.id
-                else moved
-            )
-        fits.append(replace(f, coefficients=replace(moved.about(point), body=hull.name), body=hull.name))
+    fits = [replace(f, coefficients=replace(f.coefficients, body=hull.name), body=hull.name) for f in result.fits]
+    fits = list(fits_about(fits, point, base.scaling))
     tables = [replace(t, body=hull.name).about(point) for t in result.tables]
     inputs = tuple(dict.fromkeys(f for t in result.tables for f in t.files))
     group = PlannedParameterFile(stem(hull.name), hull.name, tuple(f.campaign for f in fits), ())

@@ -24,6 +24,7 @@ from coeflab.bodies.thrusters import Thruster
 from coeflab.core.axes import Axes, Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties
@@ -50,6 +51,8 @@ class Configuration:
         Along x, y and z, m^2, where each line of sight crosses the surface twice; hidden faces count as well.
     second_moments : (3, 3) array, optional
         Integral of d d^T over the volume, d from the centre of buoyancy, m^5.
+    findings : tuple of Finding
+        What of its mass is assumed.
     """
 
     name: str
@@ -60,6 +63,7 @@ class Configuration:
     mass: MassProperties | None
     projected_areas: NDArray[np.float64] | None = None
     second_moments: NDArray[np.float64] | None = None
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("centre_of_buoyancy", "projected_areas", "second_moments"):

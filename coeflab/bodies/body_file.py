@@ -21,6 +21,7 @@ from coeflab.bodies.thrusters import ThrusterKeys
 from coeflab.core import declarations as takes
 from coeflab.core.axes import DatumKeys
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array
@@ -39,6 +40,46 @@ def mass_from_primes(mass: float, moment: float, inertia: float | None, by: Scal
     return MassProperties(
         mass * unit, moment * unit * by.length, None if inertia is None else inertia * by.unit("I", density)
     )
+
+
+@dataclass(frozen=True, slots=True)
+class AssumedMassKeys(takes.Declaration):
+    """What the source does not print of the mass, for every configuration with ``inertia_prime``.
+
+    Attributes
+    ----------
+    centre_of_gravity_below : float
+        How far the centre of gravity lies below the reference point.
+    roll_gyradius : float
+        Radius of gyration about the axis along x through the centre of gravity.
+    why : str
+        What the assumption is; it goes with the numbers into parameter files and exports.
+    """
+
+    centre_of_gravity_below: takes.Length
+    roll_gyradius: Annotated[takes.Length, takes.ABOVE_ZERO]
+    why: takes.Text
+
+    def filled(self, printed: MassProperties) -> MassProperties:
+        """With centre and matrix; the printed transverse inertia is about the reference point."""
+        m, below = printed.mass, self.centre_of_gravity_below
+        centre = np.array([printed.mass_moment / m, 0.0, below])
+        matrix = np.diag([m * (self.roll_gyradius**2 + below**2), *[printed.inertia or 0.0] * 2])
+        matrix[0, 2] = matrix[2, 0] = -m * centre[0] * below
+        return replace(printed, centre=centre, inertia_matrix=matrix)
+
+    def findings(self, name: str, mass: MassProperties) -> tuple[Finding, ...]:
+        """What is assumed of a configuration, its roll inertia as the statistic."""
+        centre, matrix = (
+            mass.centre_of_gravity,
+            np.zeros((3, 3)) if mass.inertia_matrix is None else mass.inertia_matrix,
+        )
+        return (
+            Finding.of(
+                "assumed.mass", name, Severity.NOTE, statistic=float(matrix[0, 0]), below=float(centre[2]),
+                gyradius=self.roll_gyradius, why=self.why.strip().removesuffix("."),
+            ),
+        )  # fmt: skip
 
 
 ROW = takes.numbers(3, "inertia", "three rows of three moments of inertia")
@@ -120,7 +161,7 @@ class ConfigurationKeys(takes.Declaration):
             if doubt:
                 raise InputError(doubt, "the inertia of a body about its centre of gravity", column="inertia_matrix")
 
-    def made(self, prime: PrimeKeys | None, reference: Array) -> Configuration:
+    def made(self, prime: PrimeKeys | None, reference: Array, assumed: AssumedMassKeys | None = None) -> Configuration:
         """The configuration.
 
         Parameters
@@ -129,9 +170,24 @@ class ConfigurationKeys(takes.Declaration):
             What primed mass properties are divided by.
         reference : (3,) array
             The body's reference point, m, FRD, from its datum.
+        assumed : AssumedMassKeys, optional
+            What is not printed beside primes.
+
+        Raises
+        ------
+        InputError
+            With what is assumed, an inertia that no body has.
         """
         mass = self._mass(prime, reference)
-        return Configuration(self.name, self.title, self.volume, self.wetted_surface, self.centre_of_buoyancy, mass)
+        whole = Configuration(self.name, self.title, self.volume, self.wetted_surface, self.centre_of_buoyancy, mass)
+        if assumed is None or mass is None or self.inertia_prime is None:
+            return whole
+        mass = assumed.filled(mass)
+        try:
+            mass.refuse()
+        except ValueError as why:
+            raise InputError(f"{why} in {self.name}", "the inertia of a body", column="roll_gyradius") from None
+        return replace(whole, mass=mass, findings=assumed.findings(self.name, mass))
 
     def _mass(self, prime: PrimeKeys | None, reference: Array) -> MassProperties | None:
         if self.mass_prime is not None and prime is not None and prime.density is not None:
@@ -247,6 +303,8 @@ class BodyFile(takes.Declaration):
         Named lengths, such as length_overall and diameter.
     prime : table
         The length of primed values.
+    assumed_mass : table
+        What the source does not print of the mass.
     configuration : array of tables
         States of appendages.
     """
@@ -256,6 +314,7 @@ class BodyFile(takes.Declaration):
     source: Source
     particulars: Mapping[str, Annotated[takes.Length, takes.ABOVE_ZERO]] = field(default_factory=dict)
     prime: Annotated[PrimeKeys | None, takes.OrEmpty()] = None
+    assumed_mass: AssumedMassKeys | None = None
     configuration: tuple[ConfigurationKeys, ...] = ()
 
     @classmethod
@@ -277,7 +336,10 @@ class BodyFile(takes.Declaration):
             raise InputError("nothing", what, column=key, advice=f"Add {key}.")
         if self.prime is not None and not primed and (self.prime.density is not None or not self.reader):
             key = "prime.density" if self.reader else "prime"
-            raise InputError("a key without mass_prime", "one [[configuration]] at least with mass_prime", column=key)
+            raise InputError(
+                "a key without mass_prime", "one [[configuration]] at least with mass_prime", column=key,
+                advice="Delete density in [prime]." if self.reader else "Delete [prime].",
+            )  # fmt: skip
         for i, one in enumerate(self.configuration):
             try:
                 one.require_mass()
@@ -285,11 +347,21 @@ class BodyFile(takes.Declaration):
                 raise InputError(
                     why.found, why.expected, column=f"configuration[{i}].{why.column}", advice=why.advice
                 ) from None
+        if self.assumed_mass is None:
+            return
+        if not any(c.inertia_prime is not None for c in self.configuration):
+            found = "a table without inertia_prime"
+            raise InputError(found, "one [[configuration]] at least with inertia_prime", column="assumed_mass")
+        for one in self.configuration:
+            try:
+                one.made(self.prime, self.body.reference_point, self.assumed_mass)
+            except InputError as why:
+                raise InputError(why.found, why.expected, column=f"assumed_mass.{why.column}") from None
 
     def made(self, path: Path, shape: Shape | None = None, computed: tuple[Configuration, ...] = ()) -> Body:
         """The body; printed configurations follow those that were computed from the shape."""
         head = self.body
-        printed = tuple(c.made(self.prime, head.reference_point) for c in self.configuration)
+        printed = tuple(c.made(self.prime, head.reference_point, self.assumed_mass) for c in self.configuration)
         return Body(
             name=head.name,
             title=head.title,

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from scipy.special import elliprd
@@ -129,13 +129,16 @@ def ellipsoid_added_mass(axes: Array, density: float) -> Array:
     return density * np.diag(out)
 
 
+_gauss = lru_cache(32)(np.polynomial.legendre.leggauss)  # whose arrays nothing here changes
+
+
 def graded_nodes(start: float, end: float, count: int, power: int = 1) -> tuple[Array, Array]:
     """Gauss-Legendre nodes and weights on [start, end], graded to both ends.
 
     ``power`` above 1 clusters them by t^power / (t^power + (1 - t)^power), which takes the roots at a round nose or tail
     out of the integrand.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(count)
+    nodes, weights = _gauss(count)
     t, w = (nodes + 1.0) / 2.0, weights / 2.0
     up, down = t**power, (1.0 - t) ** power
     share = up / (up + down)

@@ -17,7 +17,6 @@ from coeflab.bodies.outline import Bluff, Foil, Outline, Propeller, RingWing, Se
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Part, Parts, Revolution
 from coeflab.bodies.thrusters import Thruster
-from coeflab.core.table import Table, number
 from coeflab.core.types import Array
 
 STATIONS, SHARES, STEPS = 121, 33, 257
@@ -374,67 +373,6 @@ def _bluff(part: Part) -> Bluff:
     extents = part.form.half_extents(np.eye(3))
     kind = CLASSES[type(part.form)]
     return Bluff(part.name, LIKE.get(kind, kind), part.centre, part.rotation, extents, areas)
-
-
-def outline_table(outline: Outline) -> Table:
-    """Hulls, foils, ring wings and bluff parts with their sizes and places.
-
-    Parameters
-    ----------
-    outline : Outline
-    """
-    rows = []
-    for hull in outline.hulls:
-        size = f"length {hull.length:.4g}, {float(hull.breadth.max()):.3g} x {float(hull.depth.max()):.3g}"
-        rows.append(
-            (
-                hull.name,
-                "hull",
-                number(float(-np.trapezoid(hull.girth, hull.x)), 3),
-                size,
-                number(round(float(hull.x[0]), 9), 4),
-                "",
-            )
-        )
-    for foil in outline.foils:
-        size = f"span {foil.span:.3g}, chords {foil.root_chord:.3g} to {foil.tip_chord:.3g}, t/c {foil.thickness:.2g}"
-        rows.append((foil.name, "foil", number(foil.area, 3), size, number(float(foil.root[0]), 4), foil.control))
-    for ring in outline.rings:
-        size = f"diameter {ring.diameter:.3g}, chord {ring.chord:.3g}, t/c {ring.thickness:.2g}"
-        rows.append(
-            (
-                ring.name,
-                "ring",
-                number(np.pi * ring.diameter * ring.chord, 3),
-                size,
-                number(float(ring.centre[0]), 4),
-                "",
-            )
-        )
-    for screw in outline.propellers:
-        size = f"diameter {screw.diameter:.3g}, P/D {screw.pitch_ratio:.3g}, {screw.blades} blades"
-        area = number(np.pi / 4.0 * screw.diameter**2 * screw.area_ratio, 3)
-        rows.append((screw.name, "propeller", area, size, number(float(screw.centre[0]), 4), ""))
-    for part in outline.bluff:
-        size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
-        rows.append(
-            (
-                part.name,
-                f"bluff {part.kind}",
-                number(float(part.areas.max()), 3),
-                size,
-                number(float(part.centre[0]), 4),
-                "",
-            )
-        )
-    notes = [
-        "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
-        "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
-        *(("propeller: expanded area of its blades, centre of its disc",) if outline.propellers else ()),
-        *(f"left out: {line}" for line in outline.left_out),
-    ]
-    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
-    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
 
 
 @dataclass(frozen=True, slots=True)

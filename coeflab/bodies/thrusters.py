@@ -9,14 +9,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from coeflab.bodies.pieces import Direction
-from coeflab.bodies.wageningen import AREAS, BLADES, PITCHES, thrust_over_speed
+from coeflab.bodies.wageningen import AREAS, BLADES, PITCHES, over_speed, thrust_over_speed
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 
 
 @brief
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Screw:
     """The propeller of a thruster.
 
@@ -28,7 +28,9 @@ class Screw:
     pitch_ratio, area_ratio : float
         P/D, and expanded blade area over the disc's, A_E/A_0.
     highest_rpm : float, optional
-        Speed of rotation up to which the Wageningen B-series gives its thrust.
+        Speed of rotation up to which its open water gives its thrust.
+    measured : (n, 2) or (n, 3) array, optional
+        Its own open water, J, K_T and K_Q; None: that of the Wageningen B-series.
     """
 
     diameter: float
@@ -36,6 +38,7 @@ class Screw:
     pitch_ratio: float
     area_ratio: float
     highest_rpm: float | None = None
+    measured: Array | None = None
 
 
 @brief
@@ -154,15 +157,34 @@ class Thruster:
         s = self.screw
         if s is None or s.highest_rpm is None:
             raise InputError(f"{self.name} without a curve", "a curve, or a propeller with highest_rpm", column="curve")
+        if s.measured is not None:
+            result = self._measured(s, s.measured, 1, ahead, density)
+            return np.column_stack([result[:, 0], np.maximum.accumulate(result[:, 1])])
         inflow = ahead * float(self.axis[0])
         result = thrust_over_speed(
             s.diameter, s.pitch_ratio, s.area_ratio, s.blades, s.highest_rpm / 60.0, inflow, density
         )
         return np.asarray(result * np.array([60.0, 1.0]))
 
+    def torques(self, ahead: float, density: float) -> Array | None:
+        """(n, 2) commands and torques of the water on the rotor, N m, by its own open water; None where that has no K_Q."""
+        s = self.screw
+        if self.curve is not None or self.squares or s is None or s.measured is None or s.measured.shape[1] < FULL:
+            return None
+        return self._measured(s, s.measured, 2, ahead, density)
+
+    def _measured(self, s: Screw, points: Array, column: int, ahead: float, density: float) -> Array:
+        """Commands in rpm, and K_T rho n^2 D^4 or K_Q rho n^2 D^5 with straight lines between the points."""
+        scale = density * s.diameter ** (3 + column)
+        result = over_speed(
+            lambda j, n: np.interp(j, points[:, 0], points[:, column]) * scale * n**2, float(points[-1, 0]), s.diameter,
+            (s.highest_rpm or 0.0) / 60.0, ahead * float(self.axis[0]),
+        )  # fmt: skip
+        return np.asarray(result * np.array([60.0, 1.0]))
+
 
 CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")
-FEWEST, POINTS = 2, 17
+FEWEST, POINTS, FULL = 2, 17, 3
 
 
 def _blades(value: Any, _file: Path) -> int:
@@ -180,7 +202,20 @@ def _curve(value: Any, file: Path) -> Array:
     return points
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+def _open_water(value: Any, file: Path) -> Array:
+    rows = value if isinstance(value, list) else []
+    widths = {len(r) if isinstance(r, list) else 0 for r in rows}
+    if len(rows) < FEWEST or widths not in ({FEWEST}, {FULL}):
+        raise InputError(shown(value), "two points [J, K_T] or more, or all of them [J, K_T, K_Q]")
+    points = np.array([takes.numbers(widths.copy().pop(), "none", "numbers").read(r, file) for r in rows])
+    if points[0, 0] != 0.0 or np.any(np.diff(points[:, 0]) <= 0.0):
+        raise InputError(shown(value), "J that rises from 0")
+    if np.any(points[:-1, 1:] <= 0.0) or points[-1, 1] < 0.0 or np.any(np.diff(points[:, 1]) >= 0.0):
+        raise InputError(shown(value), "K_T and K_Q above zero, K_T falling, to the last point at most to zero")
+    return points
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PropellerKeys(takes.Declaration):
     """The propeller of a thruster.
 
@@ -195,7 +230,9 @@ class PropellerKeys(takes.Declaration):
     area_ratio : float
         Expanded blade area over the disc's, A_E/A_0, 0.30 to 1.05.
     highest_rpm : float
-        Of a thruster without a curve: up to there the Wageningen B-series gives it, at the vehicle's speed, without a wake.
+        Of a thruster without a curve: up to there open water gives it, at the vehicle's speed, without a wake.
+    open_water : (n, 2) or (n, 3) array
+        Points [J, K_T] or [J, K_T, K_Q] of this propeller, J = V/(n D) from 0; the Wageningen B-series unless given.
     """
 
     diameter: takes.Length
@@ -206,9 +243,18 @@ class PropellerKeys(takes.Declaration):
     pitch_ratio: takes.Pure
     area_ratio: takes.Pure
     highest_rpm: takes.Pure | None = None
+    open_water: Annotated[
+        Array,
+        takes.Takes(
+            "points [J, K_T] or [J, K_T, K_Q]", _open_water,
+            {"type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}, "minItems": 2},
+        ),
+    ] | None = None  # fmt: skip
 
     def check(self) -> None:
-        """It has a size, and is of the series."""
+        """It has a size, and is of the series; open water has a highest speed of rotation."""
+        if self.open_water is not None and self.highest_rpm is None:
+            raise InputError("open_water without highest_rpm", "both", column="highest_rpm")
         if not self.diameter > 0.0:
             raise InputError(f"{self.diameter:g} m", "a diameter above zero", column="diameter")
         if self.highest_rpm is not None and not self.highest_rpm > 0.0:
@@ -221,7 +267,7 @@ class PropellerKeys(takes.Declaration):
     @property
     def made(self) -> Screw:
         """The same as a noun."""
-        return Screw(self.diameter, self.blades, self.pitch_ratio, self.area_ratio, self.highest_rpm)
+        return Screw(self.diameter, self.blades, self.pitch_ratio, self.area_ratio, self.highest_rpm, self.open_water)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -5,6 +5,8 @@ M. M. Bernitsas, D. Ray, P. Kinley, University of Michigan, report 237 (1981).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from coeflab.core.errors import InputError
@@ -93,13 +95,40 @@ def thrust_over_speed(
         Outside the series, or no thrust at the highest speed of rotation.
     """
     advance = np.linspace(0.0, 2.0 * PITCHES[1], 2801)
-    idle = advance[np.argmax(open_water(advance, pitch, area, blades)[0] <= 0.0)]
+    idle = float(advance[np.argmax(open_water(advance, pitch, area, blades)[0] <= 0.0)])
+    found = over_speed(
+        lambda j, n: open_water(j, pitch, area, blades)[0] * density * n**2 * diameter**4,
+        idle,
+        diameter,
+        highest,
+        ahead,
+    )
+    return np.column_stack([found[:, 0], np.maximum.accumulate(found[:, 1])])
+
+
+def over_speed(
+    value: Callable[[Array, Array], Array], idle: float, diameter: float, highest: float, ahead: float
+) -> Array:
+    """(n, 2) speeds of rotation, 1/s, and thrusts or torques at one speed ahead; nothing where the advance is beyond ``idle``.
+
+    Parameters
+    ----------
+    value : callable
+        (n,) advance J = V/(n D) and speed of rotation, 1/s -> value.
+    idle, diameter, highest, ahead : float
+        J, m, 1/s, m/s of the water into the propeller.
+
+    Raises
+    ------
+    InputError
+        Nothing at the highest speed of rotation.
+    """
     least = ahead / (idle * diameter)
     if not highest > least:
         found = f"a propeller of {60.0 * highest:.4g} rpm at {ahead:g} m/s"
         raise InputError(found, f"more than {60.0 * least:.4g} rpm, below which it brakes", column="highest_rpm")
     turns = np.concatenate([[0.0], np.linspace(least, highest, POINTS)])
     own = np.divide(ahead, turns * diameter, out=np.full_like(turns, idle), where=turns > 0.0)
-    found = open_water(own, pitch, area, blades)[0] * density * turns**2 * diameter**4
-    found[:2] = 0.0
-    return np.column_stack([turns, np.maximum.accumulate(found)])
+    values = value(own, turns)
+    values[:2] = 0.0
+    return np.column_stack([turns, values])

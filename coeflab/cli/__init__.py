@@ -19,7 +19,7 @@ from coeflab.core.applications import declared
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 GROUPS = {
     "Data": ["new", "import", "inspect"],
-    "Fit and report": ["fit", "run", "validate", "report", "serve"],
+    "Fit and report": ["fit", "next", "run", "validate", "report", "serve"],
     "Body": ["added-mass", "simplify", "draw", "mass"],
     "Vehicle": ["vehicle", "params", "merge", "compare", "table"],
     "Motion": ["simulate", "trim", "uncertainty"],

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
-    from coeflab.bodies.body import Body
-    from coeflab.law.added_mass import AddedMass
+    from coeflab.api.body import Body
 
 EXAMPLE = "coeflab added-mass suboff_bare_hull"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -18,12 +17,7 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
-    ),
+    body: str = options.BODY,
     method: str = typer.Option(
         "all",
         "--method",
@@ -31,20 +25,11 @@ def command(
         autocompletion=complete.methods,
         help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ...",
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     wall: str = typer.Option(
         "",
         "--wall",
@@ -62,17 +47,16 @@ def command(
 
     About its reference point in FRD. With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
-    from coeflab.bodies.added_masses import added_masses
-    from coeflab.bodies.finer_panels import finer_panels
-    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.api.body import added_masses, finer_panels, typed_body
     from coeflab.cli.fit import further
     from coeflab.core.provenance import work
+    from coeflab.report.as_json.shapes import added_mass as as_json
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
 
     share = _share(error) if error else ""
     with show.narrated():
-        given = mesh_body(body, unit, axes, repair, fill, sheets)
+        given = typed_body(body, unit, axes, repair, fill, sheets)
         if wall or distance:
             more = further(ctx.args) | ({"error": share} if share else {})
             _near(given, density, method, wall, distance, more, json)
@@ -82,7 +66,7 @@ def command(
         for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
             show.error(line)
         chosen = "" if found.none_recommended else found.recommended.method
-        show.json_object({r.method: _as_json(r, density, chosen) for r in found.results})
+        show.json_object({r.method: as_json(r, density, chosen) for r in found.results})
         return
     show.table(tables.particulars(found.body))
     show.table(tables.displaced(found.body, density))
@@ -95,20 +79,6 @@ def command(
     show.found(cost)
     for citation in found.citations:
         show.text(f"  {work(citation)}")
-
-
-def _as_json(found: AddedMass, density: float, recommended: str) -> dict[str, object]:
-    """Everything that a method says of its matrix, which is in kg, kg m, kg m^2 about the point, FRD."""
-    return {
-        "matrix": found.matrix.tolist(),
-        "error": None if found.error is None else found.error.tolist(),
-        "point": found.reference_point.tolist(),
-        "datum": found.datum.id,
-        "density": density,
-        "rough": found.rough,
-        "recommended": found.method == recommended,
-        "statements": list(found.statements),
-    }
 
 
 def _share(text: str) -> str:
@@ -151,7 +121,8 @@ def distances_of(wall: str, distance: str, method: str) -> list[float]:
 def _near(
     body: Body, density: float, method: str, wall: str, distance: str, given: dict[str, int | float | str], json: bool
 ) -> None:
-    from coeflab.bodies.added_masses import near_walls
+    from coeflab.api.body import near_walls
+    from coeflab.report.as_json.shapes import added_mass as as_json
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
 
@@ -159,7 +130,7 @@ def _near(
     if json:
         far = found[0]
         walls = [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in far.walls]
-        show.json_object({"method": far.method, **_as_json(far, density, far.method), "walls": walls})
+        show.json_object({"method": far.method, **as_json(far, density, far.method), "walls": walls})
         return
     for result in found:
         show.table(noun_tables.matrix(result))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from importlib import import_module
 from pathlib import Path
 
 DIRECTIONS = (("forward", "aft"), ("starboard", "port"), ("down", "up"))
@@ -24,10 +23,11 @@ def or_paths(words: Iterable[str], begun: str) -> list[str]:
     return [*names(words, begun), *sorted(found)]
 
 
-def plugins(registry: str, begun: str) -> list[str]:
-    """Plugins of a registry (module below coeflab, a dot, its name) that begin so."""
-    package, _, name = registry.rpartition(".")
-    return names(getattr(import_module(f"coeflab.{package}"), name).usable(), begun)
+def plugins(kind: str, begun: str) -> list[str]:
+    """Plugins of a kind that begin so."""
+    from coeflab.core.registry import registry_of
+
+    return names(registry_of(kind).usable(), begun)
 
 
 def shipped_with(kind: str, file: str) -> list[str]:
@@ -86,38 +86,38 @@ def inspected(incomplete: str) -> list[str]:
 
 def fits(incomplete: str) -> list[str]:
     """Fits."""
-    return plugins("fits.FITS", incomplete)
+    return plugins("fits", incomplete)
 
 
 def importers(incomplete: str) -> list[str]:
     """Importers of tables."""
-    return plugins("tables.importers.IMPORTERS", incomplete)
+    return plugins("importers", incomplete)
 
 
 def exporters(incomplete: str) -> list[str]:
     """Targets of an export."""
-    return plugins("formats.EXPORTERS", incomplete)
+    return plugins("exporters", incomplete)
 
 
 def manoeuvres(incomplete: str) -> list[str]:
     """Manoeuvres."""
-    return plugins("motion.manoeuvres.MANOEUVRES", incomplete)
+    return plugins("manoeuvres", incomplete)
 
 
 def simulators(incomplete: str) -> list[str]:
     """Simulators."""
-    return plugins("motion.simulators.SIMULATORS", incomplete)
+    return plugins("simulators", incomplete)
 
 
 def methods(incomplete: str) -> list[str]:
     """Methods of added mass."""
-    return [*names(("all", "strip:lamb"), incomplete), *plugins("bodies.added_mass.ADDED_MASS", incomplete)]
+    return [*names(("all", "strip:lamb"), incomplete), *plugins("added_mass", incomplete)]
 
 
 def reports(incomplete: str) -> list[str]:
     """Formats of a report; behind a comma another."""
     ahead, comma, last = incomplete.rpartition(",")
-    return [f"{ahead}{comma}{name}" for name in plugins("report.formats.REPORTERS", last)]
+    return [f"{ahead}{comma}{name}" for name in plugins("reporting", last)]
 
 
 def formats(incomplete: str) -> list[str]:
@@ -150,7 +150,7 @@ def kernels(incomplete: str) -> list[str]:
 
 def accelerations(incomplete: str) -> list[str]:
     """Where coefficients of acceleration come from."""
-    from coeflab.vehicle.inertia import ACCELERATIONS
+    from coeflab.api.names import ACCELERATIONS
 
     return names(ACCELERATIONS, incomplete)
 
@@ -171,27 +171,27 @@ def axes(incomplete: str) -> list[str]:
 
 def symbols(incomplete: str) -> list[str]:
     """Derivatives of forces and moments by velocities, rates and control angles, without primes."""
-    from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
+    from coeflab.api.names import slopes
 
-    return names((f"{force}{motion}" for force in COMPONENTS for motion in (*MOTIONS, *CONTROLS)), incomplete)
+    return names(slopes(), incomplete)
 
 
-def options_of(registry: str, name: str, begun: str) -> list[tuple[str, str]]:
+def options_of(kind: str, name: str, begun: str) -> list[tuple[str, str]]:
     """Options of a plugin as they are typed, with their meaning; none where no plugin has that name.
 
     Parameters
     ----------
-    registry : str
-        Module below coeflab, a dot, its registry: ``fits.FITS``.
+    kind : str
+        Of the plugin.
     name : str
         Of the plugin.
     begun : str
         What stands on the command line, from ``--`` on.
     """
     from coeflab.core.options import described
+    from coeflab.core.registry import registry_of
 
-    package, _, known = registry.rpartition(".")
-    plugins = getattr(import_module(f"coeflab.{package}"), known)
+    plugins = registry_of(kind)
     if name not in plugins.names():
         return []
     of_plugin = described(plugins.load(name).Options)

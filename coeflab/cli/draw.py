@@ -6,33 +6,18 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab draw myring_auv"
 
 
 def command(
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
-    ),
-    unit: str = typer.Option(
-        "", "--unit", metavar="UNIT", autocompletion=complete.units, help="Of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        "--axes",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Of a mesh file: FRD, FLU, CFD or forward,port,up.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    body: str = options.BODY,
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder to write; the current one without it."
     ),
@@ -42,22 +27,17 @@ def command(
 
     NAME.svg and NAME.png with dimensions, datum, reference point, centres, hinges and thrusters; particulars, hulls, foils, ring wings and bluff parts, and what of the body no estimate sees.
     """
-    from coeflab.bodies.outlining import outline_table
-    from coeflab.bodies.simplify.source import mesh_body
-    from coeflab.core.errors import OutputError
-    from coeflab.core.files import write_all
-    from coeflab.core.text.bounded import holds
+    from coeflab.api.body import typed_body
+    from coeflab.core.files import refuse_others, write_all
     from coeflab.report.figures.three_views import three_views
-    from coeflab.report.tables.added_mass import particulars
+    from coeflab.report.tables.added_mass import outline_table, particulars
 
-    found = mesh_body(body, unit, axes, repair, fill, sheets)
+    found = typed_body(body, unit, axes, repair, fill, sheets)
     folder = Path() if out is None else out
     stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in found.name)
     files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}
-    for file, content in files.items():
-        path = folder / file
-        if not force and path.exists() and not holds(path, content):
-            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+    if not force:
+        refuse_others(folder, files)
     outline = found.outline
     show.table(particulars(found))
     if outline is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.exporting import Export, ParameterFile
@@ -20,9 +20,7 @@ EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to x
 
 
 def command(
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
+    file: Path = options.PARAMS,
     to: list[str] = typer.Option(
         [],
         "--to",
@@ -39,9 +37,7 @@ def command(
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although a target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    accelerations: str = options.ACCELERATIONS,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Write what simulators load, and say what is lost.
@@ -52,10 +48,10 @@ def command(
     """
     import coeflab as cf
     from coeflab.api.exporting import require_targets
-    from coeflab.cli.as_json import export as export_json
-    from coeflab.cli.as_json import findings as findings_json
     from coeflab.core.errors import together
     from coeflab.core.files import write_all
+    from coeflab.report.as_json.findings import findings as findings_json
+    from coeflab.report.as_json.studies import export as export_json
 
     targets = named(to)
     require_targets(targets)
@@ -65,6 +61,8 @@ def command(
         show.not_used(parameters)
     result, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = vehicle.checks()
+    if not json and not show.whole() and any(one.loss is not None for one in result):
+        show.text("Differences force by force: the .loss.txt beside the files, or --wide.")
     if not json:
         show.file_findings(parameters.name, found)
     gone = {target for target, _ in refused}
@@ -136,8 +134,8 @@ def _made(
 
 
 def _print_loss(made: Export, parameters: ParameterFile) -> None:
+    from coeflab.api.exporting import loss_tables as tables
     from coeflab.api.exporting import without_law
-    from coeflab.formats.loss_tables import at_points, forces, in_short, parts
 
     loss = made.loss
     if loss is None:
@@ -147,15 +145,17 @@ def _print_loss(made: Export, parameters: ParameterFile) -> None:
         if made.lossless
         else f"{made.target} does not hold all of {parameters.name}:"
     )
-    show.text(whole + ("" if made.lossless else f" {in_short(loss)}."))
+    show.text(whole + ("" if made.lossless else f" {tables.in_short(loss)}."))
     for words in without_law(parameters):
         show.sentence(f"The file has {words}.")
+    if not show.whole():
+        return
     show.text()
-    show.table(forces(loss))
-    show.table(at_points(loss.at_points, f"Force law of {made.target}", controls=False))
+    show.table(tables.forces(loss))
+    show.table(tables.at_points(loss.at_points, f"Force law of {made.target}", controls=False))
     if not parameters.measured:
         show.text("The parameter file has no measured points to compare the law with.")
-    show.table(parts(parameters, loss.water))
+    show.table(tables.parts(parameters, loss.water))
 
 
 def _refusal(made: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:

@@ -10,19 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
+    from coeflab.api.campaigns import Study, Sweep
     from coeflab.core.table import Table
-    from coeflab.fits.results.fit_result import Sweep
     from coeflab.report.document import Figure
-    from coeflab.study.study import Study
 
 
 SUITS = 0.05  # probability of a lack of fit as large by chance, below which a form does not suit its window
 DEFAULT = "slope_at_origin"
-MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -76,7 +74,7 @@ def command(
     include_uncertain: bool = typer.Option(
         False, "--include-uncertain", help="Use cells that the source marks as doubtful."
     ),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Fit the coefficients of one table, or of several jointly.
@@ -85,20 +83,17 @@ def command(
     Exit code 1 when a check fails; with --strict when one warns, too.
     """
     from coeflab.core.files import located
-    from coeflab.core.units import quantity
-    from coeflab.core.wording import Verbatim
-    from coeflab.law.scaling import Scaling
-    from coeflab.study.run import run
-    from coeflab.study.study import Plan, PlannedJoint
-    from coeflab.tables.reading import suited_fit, table_at
+    from coeflab.core.units import positive_typed
 
     if help_options:
         from coeflab.cli.formats import explain
-        from coeflab.fits import FITS
 
-        explain(FITS, fit or DEFAULT)
+        explain("fits", fit or DEFAULT)
         return
-    names, options = given([*table, *ctx.args], constraint)
+    import coeflab as cf
+    from coeflab.api.campaigns import fit_campaigns, suited_fit
+
+    names, of_fit = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
     if figure is not None and figure.suffix not in (".svg", ".pdf", ".png"):
@@ -109,31 +104,18 @@ def command(
         raise InputError(f"--next with --fit {shown(fit)}", f"--fit {DEFAULT}", column="--next")
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
-    alone = len(paths) == 1
-    at = (
-        quantity(f"{speed} m/s" if speed.replace(".", "", 1).isdecimal() else speed, "speed", key="--speed")
-        if speed
-        else None
-    )
-    plan = Plan(
-        name=Verbatim("_".join(p.stem for p in paths)[:80]),
-        title=Verbatim(", ".join(p.name for p in paths)),
-        tables=(table_at(paths[0], (fit,), {fit: options}, at),) if alone else (),
-        joint=() if alone else (PlannedJoint(tuple(table_at(p, speed=at) for p in paths), fit, options),),
-        scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
-        wanted=MAIN if fit == DEFAULT else (),
-        include_uncertain=include_uncertain,
-    )
+    at = positive_typed(speed, "speed", "--speed") if speed else None
+    scaling = cf.Scaling(positive_typed(length, "length", "--length"), length_name) if length else None
     with show.progress(json) as say:
-        study = run(plan, say)
-        offered = tuple(c for c in study.checks if c.name != "law at points")  # no law is offered by a fit alone
-        study = replace(study, checks=offered)
+        study = fit_campaigns(
+            paths, fit, of_fit, speed=at, scaling=scaling, include_uncertain=include_uncertain, progress=say
+        )
     wanted = [s.removesuffix("'") for s in symbol]
     _refuse_strange(study, wanted)
     if figure is not None:
         _draw(study, wanted, figure)
     if json:
-        from coeflab.cli import as_json
+        from coeflab.report.as_json import studies as as_json
 
         out = _only(as_json.study(study, []), wanted)
         if next_runs:
@@ -189,7 +171,7 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
 
 def _only(told: dict[str, Any], symbols: list[str]) -> dict[str, Any]:
     """The object of a study with nothing but the wanted coefficients, where any are."""
-    from coeflab.law.symbols import primed
+    from coeflab.api.names import primed
 
     named = set(map(primed, symbols))
     parts = ("coefficients", "comparisons") if named else ()
@@ -260,7 +242,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
     show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
-    for line in tables.lost_by_move(study):
+    for line in (*tables.lost_by_move(study), *tables.answers(study)):
         show.sentence(line)
     if symbols:
         _of_symbols(study, symbols)

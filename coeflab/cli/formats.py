@@ -48,9 +48,11 @@ def command(
             show.table(options_of(registry, plugin))
 
 
-def explain(registry: Registry[Any], plugin: str) -> None:
-    """Print the options of a plugin."""
-    show.table(options_of(registry, plugin))
+def explain(kind: str, plugin: str) -> None:
+    """Print the options of a plugin of a kind such as fits."""
+    from coeflab.core.registry import registry_of
+
+    show.table(options_of(registry_of(kind), plugin))
 
 
 def options_of(registry: Registry[Any], plugin: str) -> Table:

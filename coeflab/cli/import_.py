@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
-from coeflab.core.errors import InputError, OutputError
+from coeflab.cli import complete, options, show
+from coeflab.core.errors import OutputError
 
 if TYPE_CHECKING:
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.imported import Filled
-
+    from coeflab import ForceTable
+    from coeflab.api.importing import Campaign
 
 MODEL = "manoeuvring_model"
 FINDINGS = 12  # lines of findings below the first slopes
@@ -46,9 +45,7 @@ def command(
         [], "--set", metavar="KEY=VALUE", help="Any key of campaign.toml: axes.frame=CFD; repeatable."
     ),
     mapping: Path = typer.Option(None, metavar="FILE.toml", help="A mapping.toml that an earlier import wrote."),
-    option: list[str] = typer.Option(
-        [], "--option", metavar="NAME=VALUE", help="An option of the importer: sheet=Drift; repeatable."
-    ),
+    option: list[str] = options.OF_IMPORTER,
     as_: str = typer.Option(
         "",
         "--as",
@@ -56,19 +53,12 @@ def command(
         autocompletion=complete.importers,
         help="Read it with this importer (coeflab formats importers).",
     ),
-    name: list[str] = typer.Option(
-        [],
-        "--name",
-        metavar="PATTERN",
-        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
-    ),
-    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    name: list[str] = options.PATTERN,
+    runs: Path = options.RUNS,
     state: Path = typer.Option(
         None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
     ),
-    words: Path = typer.Option(
-        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
-    ),
+    words: Path = options.WORDS,
     accept: bool = typer.Option(
         False, "--accept", "--yes", help="Accept the proposals of the form, axes and signs too."
     ),
@@ -80,12 +70,9 @@ def command(
     it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
     first slopes with the checks that fail or warn. Nothing is taken that the form did not show. Exit code 1 when a check fails.
     """
-    from coeflab.cli.draft import Draft, of_runs, print_list, said_on_command_line
+    from coeflab.api.importing import Draft, assumed, of_runs, stated_of, words_of
+    from coeflab.cli.draft import asked, print_list, read, unasked
     from coeflab.core.files import readable, typed, write_all
-    from coeflab.tables.form import of_campaign
-    from coeflab.tables.imported import checked, contents
-    from coeflab.tables.settings import assumed
-    from coeflab.tables.vocabulary import words_of
 
     ctx.with_resource(words_of(words))
     file = typed(path)
@@ -93,23 +80,21 @@ def command(
     readable(file)
     if not force and out.exists() and not _may_be_written(out, accept):
         raise OutputError(f"{out} exists and is not empty. {OTHER_OUT}")
-    phrases = said_on_command_line(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
-    draft = Draft(file, phrases, assumed(out), map_)
-    draft.read()
+    stated = stated_of(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
+    draft = Draft(file, stated, assumed(out), map_)
+    read(draft)
     if sys.stdin.isatty():
-        draft.asked()
+        asked(draft)
     else:
-        draft.unasked(
-            _typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept
+        unasked(
+            draft, _typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force, words), accept
         )
-    filled = draft.filled()
-    result = contents(filled, of_campaign(draft.settings), file)
-    tables = checked(result, filled)
-    write_all(out, result, new=not force, otherwise=OTHER_OUT)
+    campaign = draft.campaign()
+    write_all(out, campaign.files, new=not force, otherwise=OTHER_OUT)
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
     print_list("Not taken", draft.left)  # travels with what was written: the form may not have been shown
-    _written(out, filled, tables)
+    _written(out, campaign)
     failed = _first_slopes(out)
     if failed:
         raise typer.Exit(1)
@@ -128,7 +113,7 @@ def _may_be_written(out: Path, accept: bool) -> bool:
 def _named_after(file: Path) -> Path:
     """A folder of the current one, called after what is read."""
     whole = file.resolve()
-    name = f"{whole.name}_campaign" if whole.is_dir() else whole.stem
+    name = f"{whole.name}_campaign" if whole.is_dir() or not whole.suffix else whole.stem
     return Path(re.sub(r"[^\w.-]+", "_", name).strip("._") or "campaign")
 
 
@@ -137,28 +122,23 @@ def _typed_so_far(
     name: Sequence[str], runs: Path | None, state: Path | None, force: bool, words: Path | None,
 ) -> list[str]:  # fmt: skip
     """The words of the command as they were typed, without what was left open."""
-    from coeflab.tables.form import quoted
+    from coeflab.api.importing import quoted
 
     typed = [quoted(path)]
-    for flag, phrases in (
-        ("--as", as_),
-        ("--words", words),
-        ("--runs", runs),
-        ("--state", state),
-        ("--mapping", mapping),
-    ):
-        typed += [f"{flag} {quoted(str(phrases))}"] if phrases else []
+    alone = {"--as": as_, "--words": words, "--runs": runs, "--state": state, "--mapping": mapping}
+    typed += [f"{flag} {quoted(str(phrases))}" for flag, phrases in alone.items() if phrases]
     typed += [f"--name {quoted(text)}" for text in name]
     for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
         typed += [f"{flag} {quoted(text)}" for text in many if "?" not in text.partition("=")[2]]
     return [*typed, *["--force"] * force, f"--out {quoted(str(out))}"]
 
 
-def _written(out: Path, filled: Sequence[Filled], tables: Sequence[ForceTable]) -> None:
+def _written(out: Path, campaign: Campaign) -> None:
     """What was written, which rows of the file were not, and what of it no fit uses."""
+    from coeflab.api.importing import without_a_setting
     from coeflab.report.tables.results import unused
-    from coeflab.tables.mapping import without_a_setting
 
+    filled, tables = campaign.filled, campaign.tables
     several = len(tables) > 1
     files = [t.file for t in filled]
     sizes = [f"{file} ({len(table)} rows)" for file, table in zip(files, tables, strict=True)]
@@ -187,63 +167,54 @@ def _brief(note: str) -> str:
 def _first_slopes(folder: Path) -> bool:
     """The main table of derivatives that the campaign gives, or in one line why it gives none, and the command for more.
 
-    Where no setting is swept while the others rest, the rows are fitted as one model. Below it what the checks find, as
-    `coeflab fit` says it; true where one fails.
+    Below it what the checks find, as `coeflab fit` says it; true where one fails.
     """
-    from coeflab.cli.fit import DEFAULT, MAIN
+    from coeflab import Status
+    from coeflab.api.campaigns import first_fit
+    from coeflab.api.importing import FILE
     from coeflab.core.finding import Severity
-    from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
-    from coeflab.study.plan import DEFAULT_FITS
-    from coeflab.study.run import run
-    from coeflab.study.study import Plan
-    from coeflab.tables.campaign import FILE
-    from coeflab.tables.reading import suited_fit, table_at
 
-    suited = suited_fit(folder)
-    study, why, failed = None, "", False
-    for fit in dict.fromkeys([suited, MODEL] if suited == DEFAULT else [suited]):
-        plan = Plan(
-            name=folder.name, title=folder.name, tables=(table_at(folder, (fit,), {fit: {}}),), wanted=MAIN if fit == DEFAULT else ()
-        )  # fmt: skip
-        try:
-            with show.progress(False) as say:
-                study = run(plan, say)
-            break
-        except InputError as refused:
-            why = why or str(refused)
-    typed = f"coeflab fit {shlex.quote(str(folder))}" + f" --fit {fit}" * (study is not None and fit != suited)
+    failed = False
+    with show.progress(False) as say:
+        first = first_fit(folder, say)
+    study, by = first.study, "" if first.suited else first.by
+    typed = f"coeflab fit {shlex.quote(str(folder))}" + f" --fit {by}" * (study is not None and not first.suited)
     if study is None:
-        show.sentence(f"No slopes: {why}")
+        show.sentence(f"No slopes: {first.why}")
     else:
         found = tables.coefficients_in(study, show.width())
         selected = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
         without = Status.NOT_DETERMINED.replace("_", " ")
-        lacking = [row[0] for row in found.rows if row[1] == without] if fit == MODEL else []
+        lacking = [row[0] for row in found.rows if row[1] == without] if first.by == MODEL else []
         notes = [
             _brief(note)
             for note in found.notes
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        notes += [*tables.resistances(study), tables.primed_about(study), *tables.lost_by_move(study)]
-        first = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
+        notes += [
+            *tables.resistances(study),
+            tables.primed_about(study),
+            *tables.lost_by_move(study),
+            *tables.answers(study),
+        ]
+        heading = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(
-            found, title=f"{first}, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in selected),
+            found, title=f"{heading}, primed" + f", by {by}" * bool(by), headers=tuple(found.headers[i] for i in selected),
             notes=tuple(notes), rows=tuple(tuple(row[i] for i in selected) for row in found.rows if row[0] not in lacking),
             left=frozenset({0}),
         ))  # fmt: skip
-        checks = [c for c in study.checks if c.name != "law at points"]  # as in `coeflab fit`
-        for c in checks:  # the one hint at a wrong sign of a moment; a hull with large fins has it too
+        for c in study.checks:  # the one hint at a wrong sign of a moment; a hull with large fins has it too
             if c.name == "centre_of_pressure" and " behind " in c.statistic:
                 show.marked(str(c.severity), f"centre of pressure, {c.subject}: {c.statistic}. {c.comment}")
-        show.findings(checks, most=FINDINGS)
-        failed = any(c.severity is Severity.FAIL for c in checks)
+        show.findings(study.checks, most=FINDINGS)
+        failed = any(c.severity is Severity.FAIL for c in study.checks)
         if failed:
             show.sentence(
                 f"The campaign is written, and a check fails. Correct its {FILE}, or import again with --force."
             )
-    if study is not None and fit in DEFAULT_FITS:
+    if first.planned:
         show.command_line("Report", f"coeflab run {shlex.quote(str(folder))}")
     show.command_line("Next", typed)
     return failed

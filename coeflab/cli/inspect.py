@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
-    from coeflab.bodies.body import Body
-    from coeflab.tables.force_table import ForceTable
+    from coeflab import Body, ForceTable
+    from coeflab.api.inspecting import Run
 
 
 EXAMPLE = "coeflab inspect suboff_cfd_barehull"
@@ -27,41 +27,23 @@ def command(
         autocompletion=complete.inspected,
         help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file.",
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     density: float = typer.Option(
         show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
     ),
-    name: list[str] = typer.Option(
-        [],
-        "--name",
-        metavar="PATTERN",
-        help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each.",
-    ),
-    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    name: list[str] = options.PATTERN,
+    runs: Path = options.RUNS,
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
-    option: list[str] = typer.Option(
-        [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
-    ),
-    words: Path = typer.Option(
-        None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
-    ),
+    option: list[str] = options.OF_IMPORTER,
+    words: Path = options.WORDS,
     rows: int = typer.Option(
         60, "--rows", metavar="COUNT", min=0, help="Most rows of a table that are shown; 0 shows all."
     ),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Show a table in SI and FRD, a mesh, or a body.
@@ -73,22 +55,23 @@ def command(
     Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
-    from coeflab.bodies.simplify.source import mesh_body, names_body
-    from coeflab.cli.draft import of_runs
-    from coeflab.tables.vocabulary import words_of
+    from coeflab.api.importing import of_runs, words_of
+    from coeflab.api.inspecting import is_mendable, is_raw, lacks_unit_or_axes, names_body
 
     ctx.with_resource(words_of(words))
     if not 0.0 < density < float("inf"):
         raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
     if names_body(table):
-        if _unstated(table, unit, axes):
+        if lacks_unit_or_axes(table, unit, axes):
             _proposal(table, unit, axes, json)
             return
         try:
+            from coeflab.api.body import typed_body
+
             with show.narrated():
-                body = mesh_body(table, unit, axes, repair, fill, sheets)
+                body = typed_body(table, unit, axes, repair, fill, sheets)
         except InputError:
-            if unit or axes or repair or fill or sheets or not _repairs(table):
+            if unit or axes or repair or fill or sheets or not is_mendable(table):
                 raise
             _proposal(table, unit, axes, json)  # of a URDF, which states its unit and axes
             return
@@ -101,51 +84,21 @@ def command(
             advice="A campaign.toml says these itself.",
         )
     every = [*option, *of_runs(name, runs)]
-    if as_ or every or _is_raw(table):
-        given = [
-            ("--as", as_),
-            *(("--name", n) for n in name),
-            ("--runs", str(runs or "")),
-            *(("--option", o) for o in option),
-            ("--words", str(words or "")),
-        ]
+    if as_ or every or is_raw(table):
+        given = [("--as", as_), *(("--name", n) for n in name), ("--runs", str(runs or ""))]
+        given += [*(("--option", o) for o in option), ("--words", str(words or ""))]
         _raw(table, as_, every, json, [(flag, phrases) for flag, phrases in given if phrases])
         return
     _tables(table, json, strict, rows)
-
-
-def _unstated(table: str, unit: str, axes: str) -> bool:
-    """Whether a mesh file is meant whose unit or axes nobody states."""
-    from coeflab.bodies.mesh.file import SELF_DESCRIBED
-    from coeflab.core.files import located
-
-    path = located(table, "geometry")
-    if path.is_dir() or path.suffix.lower() == ".toml":
-        return False
-    own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
-    return not ((unit or own_unit) and (axes or own_axes))
-
-
-def _repairs(table: str) -> bool:
-    """Whether a mesh file is meant that is sound once repaired."""
-    from coeflab.bodies.mesh.file import SELF_DESCRIBED
-    from coeflab.bodies.proposed_mesh import proposed
-    from coeflab.core.files import located
-
-    path = located(table, "geometry")
-    if path.suffix.lower().lstrip(".") not in SELF_DESCRIBED:
-        return False
-    found = proposed(path)
-    return found.closed and found.repair
 
 
 def _proposal(table: str, unit: str, axes: str, json: bool) -> None:
     """Unit and axes that size and outline propose, and the command that takes them."""
     import shlex
 
-    from coeflab.bodies.proposed_mesh import proposed
-    from coeflab.cli.as_json import finding_as_data
+    from coeflab.api.inspecting import proposed
     from coeflab.core.files import located
+    from coeflab.report.as_json.findings import finding_as_data
 
     with show.narrated():
         found = proposed(located(table, "geometry"), unit, axes)
@@ -161,20 +114,6 @@ def _proposal(table: str, unit: str, axes: str, json: bool) -> None:
         show.command_line("Next", following)
 
 
-def _is_raw(table: str) -> bool:
-    """Whether a file or folder is meant that is part of no campaign."""
-    from coeflab.core.files import located
-    from coeflab.tables.campaign import FILE, read_campaign
-
-    path = located(table, "cfd_data")
-    if path.is_dir() or path.suffix == ".toml":
-        return path.is_dir() and not (path / FILE).exists()
-    declaration = path.parent / FILE
-    return not declaration.exists() or path.name not in {
-        t.file.split("/")[-1] for t in read_campaign(declaration).tables
-    }
-
-
 def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Sequence[tuple[str, str]]) -> None:
     """What a file is before anybody said what it means, and what is missing to read it as a campaign.
 
@@ -182,27 +121,26 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     """
     import shlex
 
-    from coeflab.cli.draft import described, options_of, print_list
+    from coeflab.api.importing import Draft, Stated, open_lines, options_of, screen
+    from coeflab.api.inspecting import single_run
+    from coeflab.cli.draft import MOST, described, print_list
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.form import open_lines, screen
-    from coeflab.tables.parts import read_parts, stated_together, with_shared_words
-    from coeflab.tables.several_tables import form_together, interpreted_together
+    from coeflab.report.tables.raw_tables import by_format
 
     path = located(table, "cfd_data")
-    options = options_of(option)
+    given_it = options_of(option)
+    draft = Draft(path, Stated(importer=importer, options=dict(given_it)))
     try:
         with show.narrated(), show.progress(json) as say:
-            parts, chosen = read_parts(path, importer, options, say)
+            draft.read(say)
     except InputError as why:
-        if known := _run_importer(path, importer):
-            _run(path, known, options, json, why)
+        if run := single_run(path, importer, given_it):
+            _run(path, *run, json, why)
             return
         raise
-    parts = with_shared_words(parts)
-    settings = stated_together(parts)
-    founds = interpreted_together(parts, {}, settings)
-    lines = form_together(parts, founds, settings, [one.line for one in chosen], whole=path.resolve().name)
+    draft.understand()
+    parts, founds, lines = draft.parts, draft.founds, draft.lines()
     out = f"cfd_data/{identifier(path.resolve().stem)}"
     words = ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(phrases)}" for flag, phrases in given)]
     still = [one.argument for one in open_lines(lines)]
@@ -216,44 +154,30 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
             for part, found in zip(parts, founds, strict=True)
         ]
         told = every[0] if len(every) == 1 else {"path": str(path), "tables": every}
-        proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in chosen]
+        proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in draft.chosen]
         show.json_object(told | {"proposed": proposed, "missing": missing, "next": following})
         return
+    brief = path.is_dir() and not show.whole()
     for part, found in zip(parts, founds, strict=True):
-        described(part, found)
-    print_list("Not taken", [text for one in chosen for text in one.left])
-    for line in screen(lines, (), min(show.width(), 100)):
+        described(part, found, whole=not brief, most=1 if brief else MOST)
+    print_list("Not taken", draft.left)
+    selected = [one for one in lines if one.pending or not brief]
+    for line in screen(selected, (), min(show.width(), 100), 4 if brief else 99):
         show.lines(line)
+    if brief:
+        for part, found in zip(parts, founds, strict=True):
+            show.sentence(by_format(part.raw, found.proposals))
+        show.sentence("--wide: every column and key, and what is left out or mended.")
     show.text()
     show.command_line("Next", following)
     if still:
         show.sentence(f"{len(still)} open: replace each ? by its value. --accept takes the proposals shown.")
 
 
-def _run_importer(path: Path, importer: str) -> str:
-    """The importer of runs that a path is a run of; empty where it is none."""
-    from coeflab.tables.importers import IMPORTERS
-    from coeflab.tables.reading import importer_of
-
-    try:
-        name = importer_of(path, importer)
-    except InputError:
-        return ""
-    plugin = IMPORTERS.load(name)
-    return name if plugin.run is not None and plugin.recognises(path) else ""
-
-
-def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, missing: InputError) -> None:
+def _run(path: Path, importer: str, run: Run, json: bool, missing: InputError) -> None:
     """What a single run holds that is no row of a table yet, and what is missing for it to be one."""
     from coeflab.report.tables import raw_tables
-    from coeflab.tables.importers import IMPORTERS
-    from coeflab.tables.reading import OF_RUNS
 
-    read = IMPORTERS.load(importer).run
-    if read is None:
-        raise missing
-    with IMPORTERS.guarded(importer):
-        run = read(path, {name: value for name, value in options.items() if name not in OF_RUNS})
     tables = raw_tables.of_run(run)
     if json:
         words = {t.title: [dict(zip(t.headers, row, strict=True)) for row in t.rows] for t in tables}
@@ -270,61 +194,29 @@ def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, miss
 
 
 def _body(body: Body, density: float, json: bool) -> None:
-    from coeflab.bodies.mesh.mesh import TriangleMesh
-    from coeflab.bodies.outlining import fins_along
-    from coeflab.cli.as_json import body_json
+    from coeflab.report.as_json.shapes import body as as_json
     from coeflab.report.tables import added_mass as added_mass_tables
 
     if json:
-        show.json_object(body_json(body, density))
+        show.json_object(as_json(body, density))
         return
     show.table(added_mass_tables.particulars(body))
     show.table(added_mass_tables.displaced(body, density))
-    if isinstance(body.shape, TriangleMesh) and body.shape.remade is None:
-        show.text(f"  {added_mass_tables.sound(body.shape)}")
-    standing = fins_along(body.outline) if body.outline is not None else None
-    if standing is not None:
-        show.text(f"  {standing.words}")
+    for line in added_mass_tables.seen(body):
+        show.text(f"  {line}")
     show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
 
 
 def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
-    from coeflab.cli.as_json import finding
+    from coeflab.api.inspecting import campaign_tables
     from coeflab.core.files import located
     from coeflab.core.finding import Severity
-    from coeflab.study.checks import data_gate
-    from coeflab.tables.importers import PlannedTable
-    from coeflab.tables.reading import read_tables
+    from coeflab.report.as_json.findings import finding
+    from coeflab.report.as_json.studies import table as as_json
 
-    path = located(table, "cfd_data")
-    only = path.name if path.is_file() and path.suffix != ".toml" else None
-    read = read_tables(PlannedTable(path, (), {}, only))
-    found = data_gate.findings(read, read[0].scaling.length)
+    read, found = campaign_tables(located(table, "cfd_data"))
     if json:
-        show.json_object(
-            {
-                "tables": [
-                    {
-                        "name": t.name,
-                        "body": t.body,
-                        "rows": len(t),
-                        "varies": list(t.varies),
-                        "components": list(t.forces),
-                        "reference_point": [float(x) for x in t.reference_point],
-                        "datum": t.datum.id,
-                        "scaling": str(t.scaling),
-                        "density": t.conditions.density,
-                        "density_of_rows": None if t.density is None else [float(x) for x in t.density],
-                        "excluded": [
-                            {"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions
-                        ],
-                        "notes": list(t.notes),
-                    }
-                    for t in read
-                ],
-                "checks": [finding(c) for c in found],
-            }
-        )
+        show.json_object({"tables": [as_json(t) for t in read], "checks": [finding(c) for c in found]})
     else:
         _print(read, rows)
         show.findings(found)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +11,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
-    from coeflab.vehicle.own_numbers import OwnNumber
-    from coeflab.vehicle.parameter_file import ParameterFile
+    from coeflab.api.merging import Merge
 
 EXAMPLE = "coeflab merge reports/hull/hull.parameters.json my_study/campaign --out reports/hull_merged"
 
@@ -43,9 +40,10 @@ def command(
     What the other file does not give stays. Prints what was replaced, and what the estimates that remain contribute to the
     uncertainty of the turn; writes the merged parameter file and a report.
     """
+    from coeflab.api.merging import merge, own_numbers
+    from coeflab.api.parameters import read_parameters
     from coeflab.core.errors import InputError
-    from coeflab.formats.model_files import read_vehicle_file
-    from coeflab.vehicle.own_numbers import own_numbers
+    from coeflab.core.files import write_all
 
     if bool(other) == bool(numbers):
         raise InputError(
@@ -55,119 +53,46 @@ def command(
     chosen = own_numbers(numbers)
     with show.progress(json) as say:
         say("reading both" if other else "reading the file")
-        first = read_vehicle_file(base)
-        done = carried_out(first, other or chosen, name, out if out is not None else base.parent, say)
+        done = merge(read_parameters(base), other or chosen, name, say)
+        folder, files = out if out is not None else base.parent, done.files()
+        write_all(folder, files)
+    paths = [folder / one for one in sorted(files)]
     if json:
-        show.json_object(done.as_json())
+        show.json_object(as_object(done, paths))
     else:
-        done.print()
-    if show.failed(done.found):
+        summarise(done, paths)
+    if show.failed(done.checks):
         raise typer.Exit(1)
 
 
-@dataclass(frozen=True)
-class Done:
-    """A merge, what its estimates do to the first manoeuvres, and the files that were written.
-
-    Attributes
-    ----------
-    made : Merged
-    carried : tuple of Carried
-    source : str
-        Name of what replaced estimates.
-    paths : tuple of Path
-    found : tuple of Check
-        What ``coeflab params check`` finds in the merged file.
-    """
-
-    made: Any
-    carried: Any
-    source: str
-    paths: tuple[Path, ...]
-    found: tuple[Check, ...]
-
-    def as_json(self) -> dict[str, Any]:
-        """What was replaced, what is left, and the files."""
-        from coeflab.cli.as_json import findings
-
-        found = findings(self.found)
-        return {**as_json(self.made, self.carried), "findings": found, "files": [str(p) for p in self.paths]}
-
-    def print(self) -> None:
-        """Print it."""
-        from coeflab.report.sections import estimates as tables
-
-        result, carried = self.made, self.carried
-        words = tables.interval_in_words(carried, result.parameters.conditions.speed).removesuffix(", estimate")
-        many = sum(r.after is not None for r in result.replaced)
-        left = len(result.estimates)
-        show.sentence(
-            f"{result.parameters.name}: {many} number{'s' * (many != 1)} from {self.source}, {left} estimate{'s' * (left != 1)} left"
-            f"{f'; {words}' if words else ''}."
-        )
-        show.text()
-        if result.lengths:
-            show.marked("warn", f"{result.lengths}.")
-            show.text()
-        show.table(tables.merged_table(result))
-        show.table(tables.estimates_table(result.parameters, carried))
-        for path in self.paths:
-            show.path(path)
-        show.file_findings(result.parameters.name, self.found)
-
-
-def carried_out(
-    first: ParameterFile, other: str | Sequence[OwnNumber], name: str, folder: Path, say: Callable[[str], None]
-) -> Done:
-    """Merge a file, a campaign or numbers into a parameter file, and write what comes out.
-
-    Parameters
-    ----------
-    first : ParameterFile
-    other : str or sequence of OwnNumber
-        A parameter file, a campaign, or numbers one by one.
-    name : str
-        Of the merged file; empty: that of the first with ``_merged``.
-    folder : Path
-    say : callable
-        Takes what is being done, in words.
-
-    Raises
-    ------
-    InputError, ScalingMismatchError
-        As of `coeflab.study.estimated_vehicle.replaced`.
-    """
-    from coeflab.core.files import write_all
-    from coeflab.report.rendered import replaced_files
-    from coeflab.study.estimated_vehicle import given_by, replaced
-    from coeflab.study.run import run
-    from coeflab.vehicle.own_numbers import stated_beside
-    from coeflab.vehicle.plausibility import plausibility
-
-    by_hand = not isinstance(other, str)
-    second, own = (
-        given_by(other, first, run) if isinstance(other, str) else (stated_beside(first, other), first.scaling)
-    )
-    say("merging, and moving what came out")
-    result, moves, carried = replaced(first, second, name or f"{first.name}_merged", own, alone=by_hand)
-    files = replaced_files(result, moves, carried)
-    write_all(folder, files)
-    # a tow bears the name of its body, as the estimates do
-    source = second.name if by_hand or second.name != first.name else str(other)
-    return Done(result, carried, source, tuple(folder / n for n in sorted(files)), plausibility(result.parameters))
-
-
-def as_json(made: Any, carried: Any) -> dict[str, Any]:
-    """What was replaced, what is left, and the uncertainty of the first manoeuvre."""
-    from coeflab.cli.uncertainty import as_json as carried_json
-
-    def one(c: Any) -> dict[str, Any] | None:
-        return None if c is None else {"value": c.value, "u95": c.u95, "status": str(c.status), "campaign": c.campaign}
+def as_object(done: Merge, paths: Sequence[Path]) -> dict[str, Any]:
+    """What was replaced, what is left, and the files, for machines."""
+    from coeflab.report.as_json.findings import findings
+    from coeflab.report.as_json.motions import merged
 
     return {
-        "name": made.parameters.name,
-        "replaced": [{"symbol": r.symbol, "before": one(r.before), "after": one(r.after)} for r in made.replaced],
-        "estimates": [c.symbol for c in made.estimates],
-        "lengths": made.lengths or None,
-        "uncertainty": [carried_json(c) for c in carried],
-    }
+        **merged(done.merged, done.carried), "findings": findings(done.checks), "files": [str(p) for p in paths],
+    }  # fmt: skip
+
+
+def summarise(done: Merge, paths: Sequence[Path]) -> None:
+    """What was replaced, what is left, and the files."""
+    from coeflab.report.sections import estimates as tables
+
+    result, carried = done.merged, done.carried
+    words = tables.interval_in_words(carried, result.parameters.conditions.speed).removesuffix(", estimate")
+    many = sum(r.after is not None for r in result.replaced)
+    left = len(result.estimates)
+    show.sentence(
+        f"{result.parameters.name}: {many} number{'s' * (many != 1)} from {done.source}, {left} estimate{'s' * (left != 1)} left"
+        f"{f'; {words}' if words else ''}."
+    )
+    show.text()
+    if result.lengths:
+        show.marked("warn", f"{result.lengths}.")
+        show.text()
+    show.table(tables.merged_table(result))
+    show.table(tables.estimates_table(result.parameters, carried))
+    for path in paths:
+        show.path(path)
+    show.file_findings(result.parameters.name, done.checks)

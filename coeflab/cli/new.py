@@ -16,7 +16,7 @@ def command(folder: Path = typer.Argument(..., metavar="FOLDER", help="A folder 
     """Write a commented study with synthetic numbers to start from."""
     from importlib.resources import files
 
-    from coeflab.cli.schema import schema
+    from coeflab.api.schemas import schema
     from coeflab.core.errors import OutputError
     from coeflab.core.files import names_in, typed, write_all
     from coeflab.core.text.bounded import own_bytes

@@ -31,8 +31,8 @@ def check(
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
+    from coeflab.api.parameters import read_model_file
     from coeflab.core.errors import InputError
-    from coeflab.formats.model_files import read_model_file
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -40,7 +40,7 @@ def check(
     found = read_model_file(file, density)
     p = found.parameters
     if json:
-        from coeflab.cli.as_json import findings as findings_json
+        from coeflab.report.as_json.findings import findings as findings_json
 
         show.json_object({
             "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
@@ -76,10 +76,10 @@ def convert(
     """
     import shlex
 
+    from coeflab.api.parameters import OWN, read_model_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
-    from coeflab.formats.model_files import OWN, read_model_file
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -95,7 +95,7 @@ def convert(
         raise OutputError(f"{path} exists. Give --name or --out.")
     write_all(path.parent, {path.name: p.to_json()})
     if json:
-        from coeflab.cli.as_json import findings as findings_json
+        from coeflab.report.as_json.findings import findings as findings_json
 
         show.json_object({
             "format": found.format, "name": p.name, "coefficients": [c.symbol for c in p.coefficients],
@@ -172,12 +172,11 @@ def new(
     """
     import shlex
 
+    from coeflab.api.parameters import plausibility, typed_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.model_file import contents
-    from coeflab.vehicle.own_numbers import typed_file
-    from coeflab.vehicle.plausibility import plausibility
 
     result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
@@ -191,7 +190,7 @@ def new(
     write_all(path.parent, {path.name: result.to_json()})
     found = plausibility(result)
     if json:
-        from coeflab.cli.as_json import findings
+        from coeflab.report.as_json.findings import findings
 
         show.json_object({
             "name": result.name, "coefficients": [c.symbol for c in result.coefficients], "findings": findings(found), "files": [str(path)],
@@ -208,10 +207,10 @@ def new(
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means."""
+    from coeflab.api.schemas import schema as of_kind
     from coeflab.report.tables.schema_page import schema_page
-    from coeflab.vehicle import parameter_file
 
-    show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))
+    show.lines((of_kind("parameters") if json else schema_page()).decode().removesuffix("\n"))
 
 
 @app.command(cls=Command, epilog='Example: coeflab params conform "python3 docs/reference/reader.py"')
@@ -230,11 +229,11 @@ def conform(
     """
     import shlex
 
+    from coeflab.api.parameters import conform as run
     from coeflab.core.errors import InputError
     from coeflab.core.files import typed
     from coeflab.core.finding import Severity, worst
     from coeflab.core.table import as_check
-    from coeflab.vehicle.conform import conform as run
 
     try:
         words = shlex.split(program)
@@ -244,7 +243,7 @@ def conform(
         raise InputError("no command", "a program with its arguments", column="COMMAND")
     found = run(words, folder=None if write is None else typed(write))
     if json:
-        from coeflab.cli.as_json import findings
+        from coeflab.report.as_json.findings import findings
 
         show.json_object({"findings": findings([as_check("conform", f) for f in found])})
     else:

@@ -31,6 +31,11 @@ def command(
     ),
     full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),
     summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
+    for_review: bool = typer.Option(
+        False,
+        "--for-review",
+        help="For a reviewer: from files to points, all checks, every derivative's curve, two a page.",
+    ),
     style: str = typer.Option(
         "",
         metavar="FILE.mplstyle",
@@ -44,7 +49,8 @@ def command(
 
     Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
     """
-    from coeflab.api.studies import report_files, require_formats, studied
+    from coeflab.api.documents import studied
+    from coeflab.api.studies import report_files, require_formats
     from coeflab.cli.run import REPORTS
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
@@ -54,13 +60,15 @@ def command(
         raise InputError("--summary with --section", "one of them: a summary has one page")
     if summary and full:
         raise InputError("--summary with --full", "one of them: a summary has one page")
+    if for_review and (summary or full):
+        raise InputError(f"--for-review with {'--summary' if summary else '--full'}", "one of them")
     require_formats(formats)
     with show.progress(json) as say:
         found = studied(study, say)
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the figures", json)
     document, files, failed = report_files(
-        found, formats, full=full, short=summary, sections=section, style=style or None
+        found, formats, full=full, short=summary, review=for_review, sections=section, style=style or None
     )
     folder = out if out is not None else Path(REPORTS) / document.name
     write_all(folder, files)
@@ -77,7 +85,7 @@ def command(
         show.text(document.title)
         for path, content in zip(paths, files.values(), strict=True):
             show.text(f"  {path}  {len(content) / 1e6:.2f} MB")
-        if not (full or summary or section):
+        if not (full or summary or for_review or section):
             show.command_line("Appendix", f"coeflab report {shlex.quote(study)} --full")
     if open_:
         show.in_browser(paths[0].resolve().as_uri())

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
-    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.api.motion import Simulation
+    from coeflab.api.studies import Plan, Study
     from coeflab.report.document import Answer
-    from coeflab.study.study import Plan, Study
 
 
 EXAMPLE = "coeflab run my_study/plan.toml"
@@ -30,57 +30,46 @@ def command(
         help="The plan.toml, its folder, the folder of a campaign, or a shipped study.",
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Carry out a plan: fits, checks, report, parameter files.
 
     Prints the answer first; --wide prints every table.
     """
-    from coeflab.core.errors import InputError
     from coeflab.core.files import typed
-    from coeflab.study.plan import plan_at, read_plan
 
     plan = typed(plan)
-    file = plan_at(plan)
-    try:
-        carry_out(read_plan(file), out, json, strict, str(plan))
-    except InputError as why:
-        if why.file is None:  # an option of a fit, which knows nothing of files
-            why.file = file
-        raise
+    carry_out(plan, out, json, strict, str(plan))
 
 
 REPORTS = "reports"
 FIRST_FIGURES = 3
 
 
-def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False, typed_as: str = "") -> None:
+def carry_out(plan: Plan | Path, out: Path | None, as_json: bool, strict: bool = False, typed_as: str = "") -> None:
     """Run, render everything, then write; exit code 1 when a check or a comparison fails, or an export is refused.
 
     ``strict``: for a warning, too. ``typed_as``: the plan as it was typed, for the next command.
     """
+    from coeflab.api.studies import run
     from coeflab.cli.vehicle import for_simulators
     from coeflab.core.files import write_all
     from coeflab.report.rendered import rendered
-    from coeflab.study.run import run
 
-    folder = out if out is not None else Path(REPORTS) / plan.name
     with show.progress(as_json) as say:
         study = run(plan, say)
+    folder = out if out is not None else Path(REPORTS) / study.plan.name
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the report", as_json)
     files = rendered(study)
     changed = sum(write_all(folder, files).values())
     paths = [str(folder / name) for name in sorted(files)]
     if as_json:
-        from coeflab.cli.as_json import study as study_json
+        from coeflab.report.as_json.shapes import from_shape
+        from coeflab.report.as_json.studies import study as study_json
 
-        more = {}
-        if study.shape is not None:
-            from coeflab.cli.vehicle import as_json as of_shape
-
-            more["vehicle"] = of_shape(study)
+        more = {} if study.shape is None else {"vehicle": from_shape(study)}
         show.json_object(study_json(study, paths) | more)
     else:
         summarise(study, folder)
@@ -98,6 +87,7 @@ def summarise(study: Study, folder: Path) -> None:
     from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import sources as source_tables
+    from coeflab.report.tables.results import answers
 
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
@@ -106,6 +96,8 @@ def summarise(study: Study, folder: Path) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
+    for line in answers(study):
+        show.sentence(line)
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)
@@ -174,28 +166,25 @@ def _tows(study: Study) -> None:
     """Of every body that was towed the coefficients, and its comparison error; of the others that they were not."""
     from coeflab.core.wording import listed
     from coeflab.report.tables import own_cfd
-    from coeflab.study.towed import towed
 
-    found = [tow for tow in towed(study) if tow.tow.campaign]
+    found = [tow for tow in study.tows if tow.tow.campaign]
     for tow in found if show.whole() else ():
         show.table(own_cfd.own_tow(tow))
         show.table(own_cfd.tow_against(tow))
     if found and not show.whole():
         show.marked("note", f"Own CFD of {'; '.join(t.tow.name for t in found)}: values and E = S - D by --wide")
-    absent = [f"{t.tow.name} ({listed(t.tow.absent)})" for t in towed(study) if not t.tow.campaign]
+    absent = [f"{t.tow.name} ({listed(t.tow.absent)})" for t in study.tows if not t.tow.campaign]
     if absent:
         show.sentence(f"Not towed yet: {listed(absent)}.")
 
 
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
-    from coeflab.formats.loss_tables import at_points
     from coeflab.report.acceptance import headline_of_study
+    from coeflab.report.tables import model_file as law_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
-    from coeflab.vehicle.force_law import points_of
-    from coeflab.vehicle.stability import stability
 
     show.sentence(tables.headline(study))
     show.text()
@@ -210,11 +199,9 @@ def _every_table(study: Study) -> None:
     for each in model_tables.qualities(models):
         show.table(each)
     show.table(model_tables.campaigns(study.fits))
-    for name, parameters in study.parameter_files.items():
-        show.table(at_points(points_of(parameters), f"Force law of {name}"))
-    decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
-    for c in study.checks:
-        if c.name == "stability" and c.subject in decided:
-            show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
+    for law in law_tables.laws(study):
+        show.table(law)
+    for line in law_tables.decided(study):
+        show.text(line)
     for line in headline_of_study(study) if any(c.passed is not None for c in study.comparisons) else ():
         show.text(line)

@@ -13,24 +13,20 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.law.water import FRESH_DENSITY
+from coeflab.api.names import FRESH_DENSITY
 from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from coeflab.api.parameters import ParameterFile
     from coeflab.core.finding import Finding
     from coeflab.core.table import Check, Line, Table
-    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 SLOW = 2.0
 MOST_WARNINGS, MOST_FILES = 8, 4  # before they are named in short
-ACCELERATIONS = (
-    "Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed "
-    "throughout."
-)
 COLOURS = {
     "pass": "green", "holds": "green", "within": "green", "written": "green", "fail": "bold red", "apart": "bold red",
     "warn": "yellow", "beyond": "yellow", "no verdict": "dim", "no table": "dim", "no data": "dim",
@@ -389,7 +385,7 @@ def file_findings(name: str, found: Sequence[Check]) -> None:
 
 def not_used(parameters: ParameterFile, tables: bool = False) -> None:
     """First lines of a command: what of the file's sources of force it does not use; nothing where it uses all."""
-    from coeflab.vehicle.force_law import not_used as by_law
+    from coeflab.api.parameters import not_used as by_law
 
     found(by_law(parameters, tables))
 

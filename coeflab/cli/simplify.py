@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 EXAMPLE = "coeflab simplify huuv_mesh"
 
@@ -19,22 +19,10 @@ def command(
         autocompletion=complete.bodies,
         help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file.",
     ),
-    unit: str = typer.Option(
-        "",
-        "--unit",
-        metavar="UNIT",
-        autocompletion=complete.units,
-        help="Of a mesh file: m, mm, in ... Required with one.",
-    ),
-    axes: str = typer.Option(
-        "",
-        "--axes",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
     sheets: bool = typer.Option(
         False, "--sheets", help="As of other commands; a mesh with open surfaces has no parts, and is refused."
     ),
@@ -67,37 +55,22 @@ def command(
     A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, appendages of a round hull, and
     bodies along their seams. Exit code 1 where a projected area is off by more than 20 %.
     """
-    from coeflab.bodies.added_masses import against_mesh
-    from coeflab.bodies.simplify.simplified import MESH
-    from coeflab.bodies.simplify.simplify import parse_box, read_boxes, simplify
-    from coeflab.bodies.simplify.source import mesh_body
-    from coeflab.core.errors import InputError, OutputError, shown
-    from coeflab.core.files import write_all
-    from coeflab.core.text.bounded import holds
-    from coeflab.core.wording import Verbatim
-    from coeflab.report.figures.body import body_figure
-    from coeflab.report.figures.body_scene import body_scene
+    from coeflab.api.body import typed_body
+    from coeflab.api.simplifying import MESH, parse_box, read_boxes, simplify
+    from coeflab.api.simplifying import files as files_of
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.files import refuse_others, write_all
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
     with show.narrated():
-        result = simplify(mesh_body(mesh, unit, axes, repair, fill, sheets), named, parts, split == "convex")
-        found = against_mesh(result, panels=panels)
-    name = found.body.name
-    folder = out if out is not None else Path(name)
-    figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")
-    files = {
-        "body.toml": found.part_file(),
-        MESH: found.mesh_file(),
-        **found.mesh_parts(),
-        "overlay.svg": figure.svg.encode(),
-        "overlay.glb": body_scene(name, found.shape, found.mesh),
-    }
-    for file, content in files.items():
-        path = folder / file
-        if not force and path.exists() and not holds(path, content):
-            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+        given = typed_body(mesh, unit, axes, repair, fill, sheets)
+        found = simplify(given, named, parts, convex=split == "convex", panels=panels)
+    folder = out if out is not None else Path(found.body.name)
+    files = files_of(found)
+    if not force:
+        refuse_others(folder, files)
     changed = write_all(folder, files)
     if json:
         show.json_object(found.as_json())

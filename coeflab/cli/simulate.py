@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
 from coeflab.core.registry import of_application
 
 if TYPE_CHECKING:
-    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.api.motion import Simulation
 
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
-PLUGIN = {"registry": "motion.manoeuvres.MANOEUVRES", "parameter": "manoeuvre"}  # whose options it takes as well
+PLUGIN = {"registry": "manoeuvres", "parameter": "manoeuvre"}  # whose options it takes as well
 TABLES = ("csv", "parquet")
 
 
@@ -31,14 +32,10 @@ def command(
         autocompletion=complete.parameters,
         help="A parameter file, or a shipped vehicle; the body.toml of a vehicle with an arm, or a shipped one: urv_puma.",
     ),
-    manoeuvre: str = typer.Option(
-        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
-    ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
-    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
-    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    manoeuvre: str = options.MANOEUVRE,
+    free: str = options.FREE,
+    hold: str = options.HOLD,
+    current: str = options.CURRENT,
     simulator: str = typer.Option(
         "rigid_body", metavar="NAME", autocompletion=complete.simulators, help="See coeflab formats simulators."
     ),
@@ -49,10 +46,8 @@ def command(
     record: float = typer.Option(
         0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     to: str = typer.Option(
         "csv", metavar="FORMAT", autocompletion=complete.tables, help="Format of the motion: csv or parquet."
     ),
@@ -70,18 +65,16 @@ def command(
     was computed until then is written. Exit code 1 too where the file determines nothing of it; then nothing is written. Exit code 1
     too where not one figure was reached, and where a finding of `coeflab params check` on the file fails, such as a wrong sign.
     """
+    from coeflab.api.motion import carried_out
+    from coeflab.api.parameters import plausibility, read_parameters
     from coeflab.cli.fit import further
-    from coeflab.formats.model_files import read_vehicle_file
-    from coeflab.motion.simulation import simulate
-    from coeflab.vehicle.plausibility import plausibility
 
     theirs = next(((one, place) for one in _others() if (place := one.place(file)) is not None), None)
     if help_options:
         from coeflab.cli.formats import explain
-        from coeflab.motion.manoeuvres import MANOEUVRES
 
         if theirs is None:
-            explain(MANOEUVRES, manoeuvre)
+            explain("manoeuvres", manoeuvre)
         else:
             theirs[0].explain_options()
         return
@@ -91,19 +84,20 @@ def command(
         asked = {name: ctx.params[name] for name in _typed(ctx)}
         theirs[0].simulate(theirs[1], asked, current_of(current) | dict(further(ctx.args)), to, out, json)
         return
-    parameters = read_vehicle_file(file)
+    parameters = read_parameters(file)
     if not json:
         show.not_used(parameters, tables)
     given = {"integrator": integrator, "step": step, "record": record}
     how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
-    result = simulate(
+    result = carried_out(
         parameters, manoeuvre, of_manoeuvre(manoeuvre, ctx.args), how, listed(free), listed(hold),
         simulator=simulator, tables=tables, accelerations=accelerations,
     )  # fmt: skip
     written = [] if out is None or result.undetermined else _write(result, out, to)
     found = plausibility(parameters)
     if json:
-        from coeflab.cli.as_json import findings, simulation
+        from coeflab.report.as_json.findings import findings
+        from coeflab.report.as_json.motions import simulation
 
         show.json_object({**simulation(result), "findings": findings(found), "files": [str(p) for p in written]})
     elif result.undetermined:
@@ -114,6 +108,10 @@ def command(
         show.text(result.undetermined)
     else:
         _print(result, written)
+        if any(c.u95 for c in parameters.coefficients):
+            kept = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
+            words = [str(file), "--manoeuvre", manoeuvre, *kept, *ctx.args]
+            show.command_line("How sure, and why", f"coeflab uncertainty {shlex.join(words)}")
         show.text()
     if not json:
         show.file_findings(parameters.name, found)
@@ -147,9 +145,9 @@ def of_manoeuvre(name: str, words: list[str]) -> dict[str, Any]:
     """
     from coeflab.cli.fit import further
     from coeflab.core.options import in_degrees
-    from coeflab.motion.manoeuvres import MANOEUVRES
+    from coeflab.core.registry import registry_of
 
-    kind = MANOEUVRES.load(name).Options
+    kind = registry_of("manoeuvres").load(name).Options
     given = in_degrees(kind, further(words), name)
     for f in fields(kind):
         if f.metadata.get("orders") and isinstance(given.get(f.name), str):
@@ -162,8 +160,8 @@ def _in_radians(word: str, column: str) -> str:
     """``rotor1.tilt=90``, ``dr=10deg`` in rad; an order that is no angle as it is."""
     from math import radians
 
+    from coeflab.api.names import CONTROLS
     from coeflab.core.options import RAD_AT_MOST
-    from coeflab.law.symbols import CONTROLS
 
     name, equals, text = word.partition("=")
     if not equals or not (name in CONTROLS or name.endswith(".tilt")):
@@ -204,9 +202,9 @@ def current_of(text: str) -> dict[str, float]:
 
 
 def _print(made: Simulation, written: list[Path]) -> None:
+    from coeflab.api.parameters import EDGE
     from coeflab.core.texts import remark
     from coeflab.report.tables.motion import figure_table
-    from coeflab.vehicle.force_law import EDGE
 
     name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
     show.table(figure_table(made.figures, name, made.vehicle.length))

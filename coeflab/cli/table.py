@@ -19,12 +19,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from coeflab.vehicle.parameter_model import ParameterModel
+    from coeflab.api.tabulating import ParameterModel
 
 
 EXAMPLE = "coeflab table reports/huuv/huuv.parameters.json --alpha=-20:20:1 --beta=0"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
-CHUNK = 65_536
 VALUES = "low:high:step, a number, or numbers with commas"
 
 
@@ -44,15 +43,15 @@ def command(
     --alpha also serve tables over v' = sin(beta) and w' = sin(alpha) cos(beta). The column "inside" is 1 within the
     convex hull of the data; cells that the file's rule refuses stay blank.
     """
+    from coeflab.api.names import FLOW_ANGLES
+    from coeflab.api.parameters import read_parameters
+    from coeflab.api.tabulating import chosen
     from coeflab.core.files import write_atomically
-    from coeflab.formats.model_files import read_vehicle_file
-    from coeflab.law.symbols import FLOW_ANGLES
-    from coeflab.vehicle.parameter_model import chosen
 
     if str(params).startswith("--"):
         raise InputError(shown(params), "the parameter file first, then --NAME=VALUES")
     given = wanted(ctx.args)
-    models = chosen(read_vehicle_file(params).models, response, tuple(given))
+    models = chosen(read_parameters(params).models, response, tuple(given))
     tally = Tally()
     lines = _lines(models, given, tally)
     if out is not None:
@@ -163,30 +162,17 @@ def _header(name: str, unit: str) -> str:
 
 def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float64]], tally: Tally) -> Iterator[str]:
     """The CSV in pieces: header, then rows, the last variable fastest."""
-    import numpy as np
-
+    from coeflab.api.tabulating import tabulated, units_of
     from coeflab.core.text.csv_rows import csv_text
-    from coeflab.vehicle.parameter_model import ANGLE_OF, from_angles
 
-    units = dict.fromkeys(ANGLE_OF, "rad") | {v.name: v.unit for m in models for v in m.variables}
+    units = units_of(models)
     heads = [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
     yield csv_text([[*(_header(v, units[v]) for v in given), *heads, "inside"]])
-    shape = tuple(len(x) for x in given.values())
-    total = math.prod(shape)
-    for start in range(0, total, CHUNK):
-        index = np.unravel_index(np.arange(start, min(start + CHUNK, total)), shape)
-        typed = {v: x[i] for (v, x), i in zip(given.items(), index, strict=True)}
-        columns = {v: np.radians(x) if units[v] == "rad" else x for v, x in typed.items()}
-        inside = np.ones(len(index[0]), dtype=bool)
-        cells = [_text(x) for x in typed.values()]
-        for m in models:
-            values, half, within = m.evaluate(from_angles(m, columns))
-            cells += [_text(values), _text(half)]
-            inside &= within
-        tally.points += len(inside)
-        tally.outside += int(np.sum(np.logical_not(inside)))
-        cells.append(["1" if w else "0" for w in inside])
-        yield csv_text(zip(*cells, strict=True))
+    for points in tabulated(models, given):
+        tally.points += len(points.inside)
+        tally.outside += len(points.inside) - int(points.inside.sum())
+        columns = [*points.settings.values(), *(one for pair in points.values for one in pair)]
+        yield csv_text(zip(*map(_text, columns), ["1" if w else "0" for w in points.inside], strict=True))
 
 
 def _text(values: NDArray[np.float64]) -> list[str]:

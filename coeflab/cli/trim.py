@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.api.trimming import Trim
@@ -18,9 +18,7 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 
 def command(
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
+    file: Path = options.PARAMS,
     speed: str = typer.Option(
         "", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn"; with --linear several: 1,1.5,2.'
     ),
@@ -38,9 +36,7 @@ def command(
     near: list[str] = typer.Option(
         [], "--near", metavar="NAME=VALUE", help="Among several solutions the one nearest to this; angles in deg."
     ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
+    free: str = options.FREE,
     plane: str = typer.Option(
         "",
         metavar="PLANE",
@@ -48,10 +44,8 @@ def command(
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
     seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
     linear: bool = typer.Option(
@@ -80,11 +74,10 @@ def command(
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
     import coeflab as cf
-    from coeflab.api.trimming import linear_model, trim
+    from coeflab.api.trimming import linear_as_json, linear_model, trim
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.core.options import named_numbers
-    from coeflab.motion.trim.linear_files import as_json as linear_as_json
     from coeflab.report.tables.linear_model import files, matrix_tables, mode_table, schedule_files, schedule_table
 
     speeds = [_measured("speed", text, "--speed") for text in speed.split(",")] if speed else []
@@ -190,8 +183,8 @@ def _si(name: str, value: float, option: str) -> float:
 
 def as_json(found: Trim) -> dict[str, Any]:
     """The trim as one JSON object, SI and rad."""
-    from coeflab.cli.as_json import accelerations
     from coeflab.core.wording import finite
+    from coeflab.report.as_json.motions import accelerations
 
     point, f = found.point, found.point.found
     return {

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
-    from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.api.uncertainty import Carried
 
 
 EXAMPLE = "coeflab uncertainty reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag --sobol"
@@ -19,12 +19,8 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-    ),
-    manoeuvre: str = typer.Option(
-        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
-    ),
+    file: Path = options.PARAMS,
+    manoeuvre: str = options.MANOEUVRE,
     members: int = typer.Option(
         1000, metavar="COUNT", help="Draws of the coefficients, each of which makes the manoeuvre."
     ),
@@ -39,21 +35,17 @@ def command(
         metavar="FOLDER",
         help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches.",
     ),
-    free: str = typer.Option(
-        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
-    ),
-    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
-    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    free: str = options.FREE,
+    hold: str = options.HOLD,
+    current: str = options.CURRENT,
     kernel: str = typer.Option(
         "auto",
         metavar="NAME",
         autocompletion=complete.kernels,
         help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
     ),
-    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    tables: bool = options.TABLES,
+    accelerations: str = options.ACCELERATIONS,
     out: Path | None = typer.Option(
         None, metavar="FOLDER", help="Folder for members and figure; nothing is written without it."
     ),
@@ -62,20 +54,19 @@ def command(
 ) -> None:
     """Give intervals for the quantities of a manoeuvre, such as advance.
 
-    Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which coefficient is worth another
-    test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
+    Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which test takes most off
+    the variance. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
     depend on cores, scheduler, or on having been stopped and started again. Exit code 1 where the file
     determines no quantity of the manoeuvre.
     """
+    from coeflab.api.parameters import read_parameters
+    from coeflab.api.uncertainty import Question, uncertainty
     from coeflab.cli.simulate import current_of, listed, of_manoeuvre
-    from coeflab.formats.model_files import read_vehicle_file
-    from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
 
     if help_options:
         from coeflab.cli.formats import explain
-        from coeflab.motion.manoeuvres import MANOEUVRES
 
-        explain(MANOEUVRES, manoeuvre)
+        explain("manoeuvres", manoeuvre)
         return
     water = current_of(current)
     question = Question(
@@ -83,14 +74,16 @@ def command(
         (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
     )  # fmt: skip
     folder = state if state is not None else out / "batches" if out is not None else None
-    parameters = read_vehicle_file(file)
+    parameters = read_parameters(file)
     if not json:
         show.not_used(parameters, tables)
     with show.narrated():
         result = uncertainty(parameters, question, cores, scheduler, folder)
     written = [] if out is None or result.undetermined else _write(result, out)
     if json:
-        show.json_object({**as_json(result), "files": [str(p) for p in written]})
+        from coeflab.report.as_json.motions import carried
+
+        show.json_object({**carried(result), "files": [str(p) for p in written]})
     else:
         _print(result, written)
     if result.undetermined:
@@ -109,6 +102,7 @@ def _print(made: Carried, written: list[Path]) -> None:
     for found in made.importances:
         show.table(uncertainty_tables.share_table(found))
     show.table(uncertainty_tables.known_table(made))
+    show.table(uncertainty_tables.tests_table(made))
     for line in (*uncertainty_tables.ranking(made), *made.statements):
         show.text(f"  {line}")
     for path in written:
@@ -128,48 +122,3 @@ def _write(made: Carried, folder: Path) -> list[Path]:
         content[f"{name}_uncertainty.svg"] = sheet(figures, made.water.source)
     write_all(folder, content)
     return [folder / file for file in content]
-
-
-def as_json(made: Carried) -> dict[str, Any]:
-    """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
-    from coeflab.cli.as_json import accelerations
-    from coeflab.report.tables.uncertainty import ranking
-
-    q = made.question
-    return {
-        "vehicle": made.vehicle,
-        "manoeuvre": q.manoeuvre,
-        "members": q.members,
-        "seed": q.seed,
-        "accelerations": accelerations(made.water),
-        "motions": made.runs,
-        "undetermined": made.undetermined or None,
-        "figures": [
-            {
-                "name": s.figure.name, "unit": s.figure.unit, "value": s.figure.value, "status": s.figure.status,
-                "median": s.median, "low": s.low, "high": s.high, "low_error": s.low_error, "high_error": s.high_error,
-                "members_with_it": s.having, "members_beyond_the_data": s.extrapolated, "interval": s.status, "why": s.why or None,
-                "definition": s.figure.definition,
-            }
-            for s in made.spreads
-        ],
-        "shares": {
-            i.figure: {
-                "rows": i.rows,
-                "why": i.why or None,
-                "if_known": dict(i.known),
-                "groups": [
-                    {
-                        "symbols": list(s.symbols), "source": s.source, "first": s.first, "first_bounds": list(s.first_bounds),
-                        "total": s.total, "total_bounds": list(s.total_bounds),
-                    }
-                    for s in i.shares
-                ],
-            }
-            for i in made.importances
-        },
-        "varied": {s: float(d) for s, d in zip(made.varied.symbols, made.varied.deviation, strict=True)},
-        "held": list(made.varied.held),
-        "ranking": list(ranking(made)),
-        "statements": list(made.statements),
-    }  # fmt: skip

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.report.acceptance import Acceptance
@@ -25,7 +25,7 @@ def command(
         autocompletion=complete.validations,
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),
-    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Compare shipped data with their publication.
@@ -47,19 +47,14 @@ def command(
 
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
-    from coeflab.api.documents import report_of
-    from coeflab.api.documents import written as rendered
+    from coeflab.api.documents import acceptance_files
     from coeflab.core.files import write_all
-    from coeflab.formats.exporting import parameter_files_rendered
-    from coeflab.report import acceptance as acceptance_tables
 
-    files = parameter_files_rendered(found.parameter_files) | dict(rendered(report_of(found).document, ["html"]))
-    files |= {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
-    files |= {f"{name}.svg": figure.svg.encode() for name, figure in found.figures} | dict(found.pages)
+    files = acceptance_files(found)
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
     if json:
-        from coeflab.cli.as_json import acceptance
+        from coeflab.report.as_json.studies import acceptance
 
         show.json_object({**acceptance(found), "files": [str(p) for p in paths]})
     else:

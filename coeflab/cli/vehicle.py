@@ -6,20 +6,18 @@ import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
-    from coeflab.study.study import Study
+    from coeflab.api.shaping import Study
 
 
 LOSS = ".loss.txt"
 EXAMPLE = 'coeflab vehicle hull.stl --unit mm --axes FLU --mass "46 kg" --to xdyn --accept-loss'
-
-MERGED = "merged"  # the folder of what a campaign replaces
 
 
 def command(
@@ -38,20 +36,11 @@ def command(
     inertia: str = typer.Option(
         "", metavar="IX,IY,IZ", help="About the centre of gravity, kg m^2.", show_default=False
     ),
-    unit: str = typer.Option(
-        "", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-    ),
-    axes: str = typer.Option(
-        "",
-        metavar="AXES",
-        autocompletion=complete.axes,
-        help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-    ),
-    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
-    sheets: bool = typer.Option(
-        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-    ),
+    unit: str = options.UNIT,
+    axes: str = options.AXES,
+    repair: bool = options.REPAIR,
+    fill: bool = options.FILL,
+    sheets: bool = options.SHEETS,
     speed: str = typer.Option("", metavar="SPEED", help='Of reference, "1.5 m/s"; default 2 m/s.', show_default=False),
     density: str = typer.Option(
         "", metavar="DENSITY", help="Of the water; default fresh, 998.2 kg/m^3.", show_default=False
@@ -88,51 +77,45 @@ def command(
     Writes a parameter file, exports and a report: added mass, estimates with U95, a first turn and zigzag where its body.toml
     gives [[control]] or [[thruster]], else a coast-down and what is missing. Exit code 1 when an export is refused.
     """
+    from coeflab.api.body import typed_body
+    from coeflab.api.shaping import MERGED, asked, completed_by_hand, shaped
+    from coeflab.cli import merge
     from coeflab.cli.added_mass import distances_of
     from coeflab.cli.export import named
-    from coeflab.cli.merge import carried_out
     from coeflab.core.files import located, write_all
-    from coeflab.formats.exporting import exports_of, placed, refuse_unknown
-    from coeflab.report.rendered import rendered
-    from coeflab.study.checking import checked
-    from coeflab.study.estimated_vehicle import asked, completed_by_hand, from_shape, subject
 
     if campaign:
         located(campaign, "cfd_data")  # before minutes of added mass
     distances = distances_of(wall, distance, "panel") if wall or distance else []
     with show.progress(json) as say:
         say("reading the body")
-        found = subject(body, unit, axes, repair, fill, sheets)
+        found = typed_body(body, unit, axes, repair, fill, sheets, centred=True)
         plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, named(to), accept_loss)
         plan = replace(plan, command=typed(body, {
             "unit": unit, "axes": axes, "mass": mass, "cg": cg, "inertia": inertia, "speed": speed, "density": density, "length": length,
             "method": method if method != "all" else "", "wall": wall, "distance": distance,
         }, {"repair": repair, "fill": fill, "sheets": sheets, "accept-loss": accept_loss}, named(to)))  # fmt: skip
-        refuse_unknown(plan.exports)
-        of_estimates = replace(plan, exports=()) if campaign else plan  # what a campaign replaces goes to no simulator
-        study = checked(from_shape(of_estimates, found, stated, say, wall, distances), say)
+        result = shaped(plan, found, stated, campaign=campaign, wall=wall, distances=distances, progress=say)
+    study, merged = result.study, result.merge
     folder = out if out is not None else Path("reports") / plan.name
-    merged, exported = None, {}
-    if campaign:
-        with show.progress(json) as say:
-            say(f"fitting {campaign}")
-            merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / MERGED, say)
-            exports, not_made = exports_of(plan.exports, [merged.made.parameters], say)
-            exported = {f"{MERGED}/{place}": content for place, content in placed(exports).items()}
     show.step("drawing the report", json)
     draft, selected = completed_by_hand(found, body, folder, unit, axes, repair, fill, sheets)
-    files = rendered(study) | exported | draft
-    if merged is not None:
-        study = replace(study, exports=exports, refused=not_made)
+    files = result.files() | draft
+    replacing = {} if merged is None else merged.files()
+    if replacing:
+        write_all(folder / MERGED, replacing)
     changed = sum(write_all(folder, files).values())
-    paths = [folder / name for name in sorted(files)]
+    paths, others = [folder / name for name in sorted(files)], [folder / MERGED / name for name in sorted(replacing)]
     if json:
-        more = {} if merged is None else {"merged": merged.as_json()}
-        show.json_object({**as_json(study), **more, "files": [str(p) for p in paths]})
+        from coeflab.report.as_json.shapes import from_shape
+
+        more = {} if merged is None else {"merged": merge.as_object(merged, others)}
+        show.json_object({**from_shape(study), **more, "files": [str(p) for p in paths]})
     else:
-        _print(study, folder, sorted(files), changed, merged is None, _on_draft(folder, draft, selected))
+        home = f"{MERGED}/" * (merged is not None)
+        _print(study, folder, sorted(files), changed, home, _on_draft(folder, draft, selected))
         if merged is not None:
-            merged.print()
+            merge.summarise(merged, others)
             _exported(study, folder / MERGED)
     for refused in study.refused:
         why = (
@@ -164,16 +147,15 @@ def typed(body: str, options: Mapping[str, str], flags: Mapping[str, bool], to: 
     return " ".join([*words, *(f"--to {shlex.quote(target)}" for target in to)])
 
 
-def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool, on_draft: str) -> None:
+def _print(study: Study, folder: Path, names: list[str], changed: int, home: str, on_draft: str) -> None:
     from coeflab.core.wording import file_stem
 
     summarise(study, folder)
     if on_draft:
         show.marked("draft", on_draft)
     show.findings(study.checks)
-    place = "" if alone else f"{MERGED}/"
-    show.written(folder, names, changed, [f"{place}{name}" for name in for_simulators(study)])
-    if not alone:
+    show.written(folder, names, changed, [f"{home}{name}" for name in for_simulators(study)])
+    if home:
         return
     name = next(iter(study.parameter_files))
     place = shlex.quote(str(folder / f"{file_stem(name)}.parameters.json"))
@@ -224,8 +206,8 @@ def for_simulators(study: Study) -> list[str]:
 
 def _exported(study: Study, folder: Path) -> None:
     """What each export does not hold, in short; its loss report has all of it."""
+    from coeflab.api.exporting import loss_tables
     from coeflab.core.wording import file_stem
-    from coeflab.formats.loss_tables import in_short
 
     for result in study.exports:
         if result.loss is None:
@@ -235,77 +217,7 @@ def _exported(study: Study, folder: Path) -> None:
             continue
         report = folder / result.folder / f"{file_stem(result.parameters)}.{result.target}{LOSS}"
         show.text(
-            f"{result.target} does not hold all of {result.parameters}: {in_short(result.loss)}. All of it: {report}"
+            f"{result.target} does not hold all of {result.parameters}: {loss_tables.in_short(result.loss)}. All of it: {report}"
         )
     if study.exports:
         show.text()
-
-
-def as_json(study: Study) -> dict[str, Any]:
-    """Particulars, estimates with what they are made of, manoeuvres, what is assumed and what is missing; SI and radians."""
-    from coeflab.bodies.mesh.particulars import mesh_statements
-    from coeflab.cli.uncertainty import as_json as carried_json
-    from coeflab.formats.loss_tables import in_short
-
-    shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
-    if shape is None:
-        return {}
-    c = shape.weighed.configuration
-    hull, rest = parameters.added_mass, shape.weighed.at_rest
-    return {
-        "name": name,
-        "displacement": shape.conditions.density * (c.volume or 0.0),
-        "volume": c.volume,
-        "mass": None if c.mass is None else c.mass.mass,
-        "centre_of_buoyancy": None if c.centre_of_buoyancy is None else c.centre_of_buoyancy.tolist(),
-        "centre_of_gravity": None
-        if c.mass is None
-        else (c.mass.centre_of_gravity + shape.weighed.body.reference_point).tolist(),
-        "inertia_matrix": None if c.mass is None or c.mass.inertia_matrix is None else c.mass.inertia_matrix.tolist(),
-        "wetted_surface": c.wetted_surface,
-        "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
-        "reference_point": shape.weighed.body.reference_point.tolist(),
-        "added_mass": None if hull is None else {
-            "method": hull.method, "matrix": hull.matrix.tolist(),
-            "walls": [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in hull.walls],
-        },
-        "at_rest": None if rest is None else {"pitch": rest[0], "roll": rest[1]},
-        "mesh": list(mesh_statements(shape.weighed.body)),
-        "assumed": list(shape.weighed.assumed),
-        "said": list(shape.said),
-        "missing": list(shape.missing),
-        "estimates": [
-            {
-                "symbol": k.symbol, "value": k.value, "u95": k.u95, "value_si": k.value_si, "unit_si": k.unit_si,
-                "status": str(k.status), "estimator": k.estimator,
-                "made_of": dict(shape.estimates.shares.get(k.symbol.removesuffix("'"), {})),
-            }
-            for k in parameters.coefficients
-        ],
-        "contributions": [
-            {
-                "part": k.part, "kind": k.kind, "method": k.method, "share": k.share, "citation": k.citation,
-                "place": k.place, "outside": k.outside or None,
-            }
-            for k in shape.estimates.contributions
-        ],
-        "notes": list(shape.estimates.notes),
-        "manoeuvres": [
-            {
-                "name": m.manoeuvre.name,
-                "figures": [{"name": f.name, "value": f.value, "unit": f.unit, "status": f.status} for f in m.figures],
-                "statements": list(m.statements),
-            }
-            for m in study.manoeuvres
-        ],
-        "uncertainty": [carried_json(k) for k in shape.carried],
-        "exports": [
-            {
-                "target": e.target, "parameters": e.parameters, "lossless": e.lossless,
-                "loss": None if e.loss is None or e.lossless else in_short(e.loss),
-                "worse_than_nothing": [] if e.loss is None else list(e.loss.worse_than_nothing),
-            }
-            for e in study.exports
-        ],
-        "refused": [str(r.why) for r in study.refused],
-    }  # fmt: skip

@@ -8,14 +8,15 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.declarations import Declaration, Takes, Text, Words
-from coeflab.core.errors import AxesError, shown
+from coeflab.core.declarations import Declaration, Takes, Words, text_of
+from coeflab.core.errors import AxesError, InputError, shown
 
 DIRECTIONS = {
     "forward": (1.0, 0.0, 0.0),
@@ -257,6 +258,41 @@ def point_in_words(point: Sequence[float] | NDArray[np.float64], datum: Datum) -
     return f"x = {x:g} m from {datum.id}" if x else f"{datum.id} (0, 0, 0)"
 
 
+POINTS = (
+    "nose", "bow", "stem", "stern", "tail", "fp", "ap", "cb", "cob", "cg", "cog", "midship", "midships", "amidships", "mid-length",
+    "midlength", "centre", "center", "origin",
+)  # fmt: skip
+
+
+def datum_name(text: str) -> str:
+    """The id of a datum as it was typed, refused where it is nearly that of a usual point.
+
+    Raises
+    ------
+    InputError
+        ``noze``, which is nearly nose, would be a point of its own, from which nothing else counts.
+
+    Examples
+    --------
+    >>> datum_name("CB"), datum_name("tow_point")
+    ('CB', 'tow_point')
+    """
+    word = text.strip().casefold()
+    near = get_close_matches(word, POINTS, 1, 0.74) if re.fullmatch(r"[a-z-]{3,}", word) and word not in POINTS else []
+    if near:
+        raise InputError(
+            shown(text),
+            f"{near[0]}, or a name that is not nearly one of a usual point",
+            advice=f"Did you mean {near[0]}?",
+        )
+    return text
+
+
+DatumName = Annotated[
+    str, Takes("a text", lambda v, file: datum_name(text_of(v, file)), {"type": "string", "pattern": r"\S"})
+]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DatumKeys(Declaration):
     """Where points count from.
@@ -269,7 +305,7 @@ class DatumKeys(Declaration):
         Where it is, in free words.
     """
 
-    datum: Text
+    datum: DatumName
     datum_note: Words = ""
 
     @property

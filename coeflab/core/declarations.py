@@ -27,7 +27,7 @@ from coeflab.core.files import located
 from coeflab.core.limits import positive_number
 from coeflab.core.text.toml import TomlFile, dotted
 from coeflab.core.types import Array
-from coeflab.core.units import SI, with_unit
+from coeflab.core.units import SI, quantity, with_unit
 from coeflab.core.wording import Verbatim
 
 if TYPE_CHECKING:
@@ -214,6 +214,8 @@ def number_in(dimension: str) -> Takes:
     if dimension == "angle":
         schema |= {"minimum": 0, "maximum": 0}
     words = "a number" if dimension == "none" else f"an {dimension}" if dimension[0] in "aei" else f"a {dimension}"
+    if dimension == "density":  # JSON is written by programs, in SI, and may be of air
+        return Takes(words, lambda v, file: (quantity if file.suffix == ".json" else with_unit)(v, dimension), schema)
     return Takes(words, lambda v, _: with_unit(v, dimension), schema)
 
 

@@ -45,6 +45,8 @@ def typed(name: str | Path) -> Path:
         No file or folder can have that name: 5,000 characters, a NUL, the home of nobody; it is shut, or a link that
         leads to itself.
     """
+    if not isinstance(name, str | Path):
+        raise InputError(f"a {type(name).__name__}", "the path of a file or folder")
     if "\0" in str(name):
         raise InputError(f"{shown(name)}, which is no usable path (a NUL in it)", "the path of a file or folder")
     try:
@@ -170,6 +172,19 @@ def names_in(folder: Path) -> list[str]:
     """What a folder holds, in order; what a killed process left of our temporary files is removed, and counts for nothing."""
     _sweep([folder])
     return sorted(p.name for p in folder.iterdir() if not _LITTER.fullmatch(p.name))
+
+
+def refuse_others(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Refuse to write where a file of that name differs.
+
+    Raises
+    ------
+    OutputError
+        Names it.
+    """
+    for name, content in contents.items():
+        if (folder / name).exists() and not holds(folder / name, content):
+            raise OutputError(f"{folder / name} exists and differs. Name another --out, or replace it with --force.")
 
 
 def write_all(

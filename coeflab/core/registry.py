@@ -18,6 +18,7 @@ from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 from coeflab.core.applications import declared
 from coeflab.core.errors import CoeflabError, PluginError, shown
 from coeflab.core.options import NoOptions
+from coeflab.core.text.bounded import own_text
 from coeflab.core.version import VERSION
 
 Port = TypeVar("Port")
@@ -208,6 +209,27 @@ def _members(port: type) -> list[str]:
 def _optional(port: type) -> dict[str, Any]:
     """Members that a plugin may leave out, with what they are then: those to which the port gives a value."""
     return {n: vars(c)[n] for c in reversed(_protocols(port)) for n in inspect.get_annotations(c) if n in vars(c)}
+
+
+def registry_of(kind: str) -> Registry[Any]:
+    """The registry of a kind of plugins; no package without it is imported.
+
+    Parameters
+    ----------
+    kind : str
+        What people type: fits, importers, exporters ...
+
+    Examples
+    --------
+    >>> "polynomial" in registry_of("fits").names()
+    True
+    """
+    home, package = Path(__file__).parents[1], f"coeflab.{kind}"
+    for file in sorted(home.rglob("__init__.py")):
+        if re.search(rf'Registry\(\s*"{package}"', own_text(file)):
+            found = vars(importlib.import_module(".".join(file.parent.relative_to(home.parent).parts)))
+            return next(r for r in found.values() if isinstance(r, Registry) and r.package == package)
+    raise KeyError(kind)
 
 
 def registries() -> tuple[Registry[Any], ...]:

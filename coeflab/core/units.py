@@ -100,6 +100,8 @@ _HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
 _COMMA = re.compile(r",\s*\d")
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
+GRAMS = (0.9, 1.1)  # kg/m^3 of hot or high air, and g/cm^3 of water
+
 
 @dataclass(frozen=True, slots=True)
 class Header:
@@ -237,11 +239,18 @@ def factor(unit: str, dimension: str) -> float:
 def with_unit(value: Any, dimension: str) -> float:
     """A number of a file in SI, `quantity`, where a bare number stands for SI but for angles: these need their unit, or are 0.
 
+    So do densities about 1, which are thin air in kg/m^3 and water in g/cm^3.
+
     Raises
     ------
     InputError
-        Not a finite number, an angle without a unit, or a unit that does not fit.
+        Not a finite number, an angle or a density about 1 without a unit, or a unit that does not fit.
     """
+    if dimension == "density" and isinstance(value, (int, float)) and GRAMS[0] <= value <= GRAMS[1]:
+        raise InputError(
+            f"{value:g} kg/m^3, which is thin air", "a density of water, or one with its unit",
+            advice=f'Is it g/cm^3? Then write "{value:g} g/cm^3"; of air "{value:g} kg/m^3".',
+        )  # fmt: skip
     if dimension == "angle" and isinstance(value, (int, float)) and value and not isinstance(value, bool):
         raise InputError(
             f"{value!r}, an angle without a unit", 'a text with its unit, such as "20 deg"',

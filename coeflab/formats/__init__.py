@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from coeflab.bodies.shape import Shape
     from coeflab.core.table import Check
     from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -129,6 +130,25 @@ class BuiltExporter(Exporter, Protocol):
         ----------
         files : mapping of str to bytes
             What `render` made.
+        """
+        ...
+
+
+@runtime_checkable
+class DressedExporter(Exporter, Protocol):
+    """An exporter whose target shows the body, where its shape is known beside the parameter file."""
+
+    def dressed(self, files: Mapping[str, bytes], shape: Shape, point: NDArray[np.float64]) -> Mapping[str, bytes]:
+        """The files with a mesh.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        shape : Shape
+            m, FRD, from its datum.
+        point : (3,) array
+            The file's reference point from that datum.
         """
         ...
 

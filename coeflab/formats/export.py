@@ -102,6 +102,8 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
         out.append(
             f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"
         )
+    elif "rates" not in holds and (turning := [s.control for s in parameters.surfaces if s.rate is not None]):
+        out.append(f"rates of {', '.join(turning)}: angles are taken at once")
     return out
 
 
@@ -459,10 +461,12 @@ def loss_of(
 def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:
     """Controls (n, 3) for every state with none deflected, then with each alone to either side; and that in words.
 
-    A control goes as far as the file's data do, else to `DEFLECTED`.
+    A control goes as far as the file's data do, else to `DEFLECTED`; not beyond its limit.
     """
+    most: dict[str, float] = {s.control: s.limit for s in parameters.surfaces}
     reach = {n: max([abs(x) for c in parameters.offered if c.variable == n for x in (c.low, c.high)], default=0.0) or DEFLECTED
              for n in names}  # fmt: skip
+    reach = {n: min(x, most.get(n, x)) for n, x in reach.items()}
     rows = [np.zeros(3)]
     rows += [np.where(np.array(CONTROLS) == n, way * reach[n], 0.0) for n in names for way in (-1.0, 1.0)]
     words = f"controls: each state also with {', '.join(f'{n} -{x:.3g} and {x:.3g} rad' for n, x in reach.items())}, one at a time"

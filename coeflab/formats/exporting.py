@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
@@ -11,6 +15,7 @@ from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import (
     EXPORTERS,
     BuiltExporter,
+    DressedExporter,
     InertialExporter,
     PartialExporter,
     SimulatorExporter,
@@ -22,6 +27,7 @@ from coeflab.formats.loss_tables import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
 if TYPE_CHECKING:
+    from coeflab.bodies.shape import Shape
     from coeflab.formats.export import PlannedExport
     from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -168,7 +174,10 @@ def placed(exports: Iterable[Export]) -> dict[str, bytes]:
 
 
 def exports_of(
-    planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
+    planned: Sequence[PlannedExport],
+    files: Iterable[ParameterFile],
+    progress: Callable[[str], None],
+    shapes: Mapping[str, Shape] = MappingProxyType({}),
 ) -> tuple[tuple[Export, ...], tuple[Refused, ...]]:
     """Every parameter file of a study for every target of its plan; what is refused does not keep the rest from being made.
 
@@ -178,6 +187,8 @@ def exports_of(
     files : iterable of ParameterFile
     progress : callable
         Takes what is being done, in words.
+    shapes : mapping of str to Shape, optional
+        By the name of the parameter file: what a target shows, where the added mass is that of the file's own body.
 
     Returns
     -------
@@ -189,13 +200,21 @@ def exports_of(
     refused: list[Refused] = []
     for p, parameters in ((p, parameters) for p in planned for parameters in files):
         try:
-            out.append(_accepted(p, parameters))
+            out.append(_dressed(_accepted(p, parameters), parameters, shapes))
         except InputError as why:
             refused.append(Refused(parameters.name, p.to, why))
             progress(f"refused {parameters.name} for {p.to}")
         else:
             progress(f"exported {parameters.name} for {p.to}")
     return tuple(out), tuple(refused)
+
+
+def _dressed(made: Export, parameters: ParameterFile, shapes: Mapping[str, Shape]) -> Export:
+    """With what the target shows of the body, where its shape is known and the file's."""
+    plugin, shape, hull = EXPORTERS.load(made.target), shapes.get(parameters.name), parameters.added_mass
+    if not isinstance(plugin, DressedExporter) or shape is None or hull is None or hull.body != parameters.body:
+        return made
+    return replace(made, files=plugin.dressed(made.files, shape, np.array(parameters.reference_point.point)))
 
 
 def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:

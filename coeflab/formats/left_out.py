@@ -9,7 +9,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.wording import one_line
 
 MOST, LONGEST = 40, 80  # names in a finding, letters in a name
-FORCES = ("strips", "terms", "equations", "forces", "surfaces")  # on the hull
+FORCES = ("strips", "terms", "equations", "forces", "surfaces", "macros")  # on the hull
 
 
 def left_out(subject: str, kind: str, names: Iterable[str]) -> tuple[Finding, ...]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -337,34 +338,145 @@ class CoefficientSet:
         derivatives through its force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`;
         so do higher-order rate terms, whose transfer needs terms that steady sweeps do not give.
         """
-        shift = np.asarray(point, dtype=float) - self.reference_point
-        if not np.any(shift):
+        if not np.any(np.asarray(point, dtype=float) - self.reference_point):
             return self
-        unit = self.scaling.length if self.conditions is None else 1.0
-        matrix, known = transfer_matrix(self.symbols, self.available, shift / unit)
-        values = np.array([c.value if c.value is not None else 0.0 for c in self.coefficients])
-        moved = matrix @ values
-        covariance = matrix @ np.nan_to_num(self.covariance) @ matrix.T
-        covariance = 0.5 * (covariance + covariance.T)
-        lost = (matrix != 0.0) @ np.isnan(np.diag(self.covariance)) | ~known
-        covariance[lost, :] = covariance[:, lost] = np.nan
-        changed = []
-        for i, c in enumerate(self.coefficients):
-            alone = np.count_nonzero(matrix[i]) == 1
-            if not known[i]:
-                status = Status.NOT_DETERMINED if c.value is not None else c.status
-                changed.append(replace(c, value=None, u95=None, parts=Parts(), status=status))
-            elif alone:
-                changed.append(c)
-            else:
-                u95 = None if lost[i] else float(2.0 * np.sqrt(covariance[i, i]))
-                changed.append(replace(c, value=float(moved[i]), u95=u95, parts=Parts()))
-        return replace(self, coefficients=tuple(changed), covariance=covariance, reference_point=point)
+        return moved_together((self,), self.covariance, point).sets[0]
+
+    @property
+    def unit_of_length(self) -> float:
+        """m: what a shift is divided by, the length of a primed set and one metre of one in SI."""
+        return self.scaling.length if self.conditions is None else 1.0
 
     @property
     def available(self) -> frozenset[str]:
         """Symbols with a value."""
         return frozenset(c.symbol for c in self.coefficients if c.value is not None)
+
+
+class Lacking(NamedTuple):
+    """A coefficient that was not moved: ``symbol`` of the set ``of``, ``needs`` what nobody gives; empty where nothing would do."""
+
+    of: int
+    symbol: str
+    needs: tuple[str, ...]
+
+
+class MovedSets(NamedTuple):
+    """Several sets about one point, the covariance of all their coefficients one after the other, and what was not moved.
+
+    ``lent`` are pairs: which set was moved by numbers of which other.
+    """
+
+    sets: tuple[CoefficientSet, ...]
+    covariance: Array
+    lacking: tuple[Lacking, ...]
+    lent: frozenset[tuple[int, int]]
+
+
+def moved_together(sets: Sequence[CoefficientSet], covariance: Array, point: Array) -> MovedSets:
+    """Sets of one body about one point: what a move of one needs and it has not, the others lend, about its own point.
+
+    A yaw sweep knows no Yv', which the move of its Yr' takes: that of a drift sweep serves. The first that has it lends.
+
+    Parameters
+    ----------
+    sets : sequence of CoefficientSet
+        Of one datum and one length, about any points.
+    covariance : (n, n) array
+        Of all their coefficients one after the other; NaN rows where a U95 is not known.
+    point : (3,) array
+        m, FRD, from the datum.
+
+    Examples
+    --------
+    >>> from coeflab.core.axes import Datum
+    >>> body = (Scaling(2.0, "LOA"), np.zeros(3), Datum("nose"), "auv")
+    >>> drift = CoefficientSet((Coefficient("Yv", -0.03, 0.002, Status.OK, "auv"),), np.array([[1e-6]]), *body)
+    >>> yaw = CoefficientSet((Coefficient("Yr", 0.005, 0.001, Status.OK, "auv"),), np.array([[2.5e-7]]), *body)
+    >>> moved = moved_together((drift, yaw), np.diag([1e-6, 2.5e-7]), np.array([-1.0, 0.0, 0.0]))
+    >>> round(moved.sets[1]["Yr"].value, 6)  # 0.005 - dx' Yv', dx' = -1.0 / 2.0
+    -0.01
+    """
+    ends = np.cumsum([0, *(len(s.coefficients) for s in sets)])
+    moves = np.zeros((ends[-1], ends[-1]))
+    known = np.ones(ends[-1], dtype=bool)
+    lacking: list[Lacking] = []
+    lent: set[tuple[int, int]] = set()
+    for i, s in enumerate(sets):
+        left, right = derivative_transfer((np.asarray(point, dtype=float) - s.reference_point) / s.unit_of_length)
+        own = {c.symbol: k for k, c in enumerate(s.coefficients, ends[i]) if c.value is not None}
+        loans: dict[str, tuple[int, Array]] = {}
+        for k, c in enumerate(s.coefficients, ends[i]):
+            needs = []
+            for name, weight in _transferred(c.symbol, left, right).items():
+                if name in own:
+                    moves[k, own[name]] += weight
+                elif c.value is not None and not _vanishes(name):
+                    if name not in loans and (loan := _loan(sets, i, name)) is not None:
+                        row = np.zeros(ends[-1])
+                        row[ends[loan[0]] : ends[loan[0] + 1]] = loan[1]
+                        loans[name] = loan[0], row
+                    if name in loans:
+                        moves[k] += weight * loans[name][1]
+                        lent.add((i, loans[name][0]))
+                    else:
+                        needs.append(name)
+            known[k] = c.value is not None and not needs
+            if needs:
+                lacking.append(Lacking(i, c.symbol, tuple(n for n in needs if n)))
+    values = np.array([0.0 if c.value is None else c.value for s in sets for c in s.coefficients])
+    moved, void = moves @ values, np.isnan(np.diag(covariance))
+    spread = moves @ np.nan_to_num(covariance) @ moves.T
+    spread = 0.5 * (spread + spread.T)
+    lost = (moves != 0.0) @ void | ~known
+    spread[lost, :] = spread[:, lost] = np.nan
+    out = []
+    for s, start, end in zip(sets, ends[:-1], ends[1:], strict=True):
+        changed = []
+        for k, c in enumerate(s.coefficients, start):
+            if not known[k]:
+                status = Status.NOT_DETERMINED if c.value is not None else c.status
+                changed.append(replace(c, value=None, u95=None, parts=Parts(), status=status))
+            elif np.count_nonzero(moves[k]) == 1:
+                changed.append(c)
+            else:
+                u95 = None if lost[k] else float(2.0 * np.sqrt(spread[k, k]))
+                changed.append(replace(c, value=float(moved[k]), u95=u95, parts=Parts()))
+        out.append(replace(
+            s, coefficients=tuple(changed), covariance=spread[start:end, start:end], reference_point=np.asarray(point, dtype=float)
+        ))  # fmt: skip
+    return MovedSets(tuple(out), spread, tuple(lacking), frozenset(lent))
+
+
+def _loan(sets: Sequence[CoefficientSet], to: int, name: str) -> tuple[int, Array] | None:
+    """Which other set gives a derivative about the point of set ``to``, and its row over that set's coefficients."""
+    for j, s in enumerate(sets):
+        if j == to or name not in s.available:
+            continue
+        matrix, known = transfer_matrix(
+            s.symbols, s.available, (sets[to].reference_point - s.reference_point) / s.unit_of_length
+        )
+        k = s.symbols.index(name)
+        if known[k]:
+            return j, matrix[k]
+    return None
+
+
+def _transferred(symbol: str, left: Array, right: Array) -> dict[str, float]:
+    """Which derivatives about the old point make one about the new, with their weights; "" for what no sweep gives."""
+    d = derivative(symbol)
+    row = COMPONENTS.index(d.component)
+    if len(d.factors) == 1 and (motion := d.factors[0].removesuffix("dot")) in MOTIONS:
+        column, dot = MOTIONS.index(motion), d.factors[0].removeprefix(motion)
+        return {
+            component + variable + dot: float(weight)
+            for k, component in enumerate(COMPONENTS)
+            for j, variable in enumerate(MOTIONS)
+            if (weight := left[row, k] * right[j, column]) != 0.0
+        }
+    if all(f not in ("p", "q", "r") and not f.endswith("dot") for f in d.factors):
+        return {c + symbol[1:]: float(left[row, k]) for k, c in enumerate(COMPONENTS) if left[row, k] != 0.0}
+    return {symbol: 1.0} if np.array_equal(left, np.eye(6)) else {symbol: 1.0, "": 1.0}
 
 
 def transfer_matrix(
@@ -376,22 +488,7 @@ def transfer_matrix(
     matrix = np.zeros((len(symbols), len(symbols)))
     known = np.ones(len(symbols), dtype=bool)
     for i, symbol in enumerate(symbols):
-        d = derivative(symbol)
-        row = COMPONENTS.index(d.component)
-        terms: dict[str, float] = {}
-        if len(d.factors) == 1 and (motion := d.factors[0].removesuffix("dot")) in MOTIONS:
-            column, dot = MOTIONS.index(motion), d.factors[0].removeprefix(motion)
-            for k, component in enumerate(COMPONENTS):
-                for j, variable in enumerate(MOTIONS):
-                    if (weight := left[row, k] * right[j, column]) != 0.0:
-                        terms[component + variable + dot] = float(weight)
-        elif all(f not in ("p", "q", "r") and not f.endswith("dot") for f in d.factors):
-            for k, component in enumerate(COMPONENTS):
-                if left[row, k] != 0.0:
-                    terms[component + symbol[1:]] = float(left[row, k])
-        else:
-            terms = {symbol: 1.0, "": 1.0}
-        for name, weight in terms.items():
+        for name, weight in _transferred(symbol, left, right).items():
             if name in index and name in available:
                 matrix[i, index[name]] = weight
             elif not _vanishes(name):

@@ -156,7 +156,8 @@ for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 def momentum_force(momentum: Array, nu: Array) -> Array:
     """-C(nu) nu, shape (n, 6): what momenta (n, 6) that move with the body at ``nu`` (n, 6) exert on it (Kirchhoff)."""
     v, w, p, h = nu[:, :3], nu[:, 3:], momentum[:, :3], momentum[:, 3:]
-    return np.hstack([-np.cross(w, p), -np.cross(w, h) - np.cross(v, p)])
+    turned = np.cross(np.stack([w, w, v]), np.stack([p, h, p]))  # one call: many are of a single row
+    return np.hstack([-turned[0], -turned[1] - turned[2]])
 
 
 def rigid_body_force(mass: float, centre: Array, inertia: Array, nu: Array) -> Array:

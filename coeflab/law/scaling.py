@@ -14,6 +14,7 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.stored import Means
 from coeflab.core.types import Array
+from coeflab.core.units import GRAMS
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS, derivative
 
 
@@ -50,7 +51,6 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
     **dict.fromkeys(["I", "Ix", "Iy", "Iz", "Ixy", "Iyz", "Izx"], (0, 5, 1)),
 }
 
-GRAMS = (0.9, 1.1)  # kg/m^3 of hot or high air, and g/cm^3 of water
 LENGTHS = (0.05, 400.0)  # m, of models and ships
 WATERS = (950.0, 1060.0)  # kg/m^3, hot and fresh to cold and salt
 NU_OF_WATER = (0.7e-6, 2e-6)  # m^2/s: 37 deg C fresh to 0 deg C at sea (ITTC 7.5-02-01-03)

@@ -1,27 +1,14 @@
-"""What a report says about a study, in order; formats render it.
-
-Independent parts of a report, drawn on other cores while this one goes on.
-"""
+"""What a report says about a study, in order; formats render it."""
 
 from __future__ import annotations
 
-import gc
 import re
 import shlex
-import sys
-import threading
-import warnings
-from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from multiprocessing import current_process, get_all_start_methods, get_context
-from typing import TypeVar
 
 from coeflab.core.finding import Severity
-from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.core.wording import THREE_LINES, Verbatim, in_sentences, listed
@@ -48,85 +35,29 @@ from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.estimates import estimates_sections
 from coeflab.report.sections.parameter_file import export_sections, manoeuvre_sections, stability_sections
+from coeflab.report.sections.review import review_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
+from coeflab.report.workers import begun
 from coeflab.study.study import Study
 from coeflab.study.validation import validations
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.law_at_points import LawAtPoints
 
-Part = TypeVar("Part")
-MOST = 4
 NAMED_BODIES = 2  # in the line under the title, which is one line on a wide screen
 SETTINGS: dict[tuple[str, object], str] = {
     ("at_rest", "law"): "the force law contains the fitted Z0 and M0",
     ("at_rest", "apart"): "the force law does not contain the fitted Z0 and M0",
 }
-_JOBS: list[Callable[[], object]] = []
-
-
-@contextmanager
-def begun(jobs: Sequence[Callable[[], Part]], sizes: Sequence[int] = ()) -> Iterator[Callable[[], list[Part]]]:
-    """Start jobs; the yielded function waits for what they return, in their own order.
-
-    Copies of this process do the work, so that a job may hold anything; what it returns is pickled. Where copying is not
-    to be had or not safe (a second Python thread might hold a lock), the jobs are done here, with the same result.
-
-    Parameters
-    ----------
-    jobs : sequence of callable
-        Pure, and of numpy and matplotlib alone: libraries with threads of their own do not survive the copying.
-    sizes : sequence of int, optional
-        How much each has to do; the largest begins.
-    """
-    workers = min(MOST, len(jobs), cores())
-    if workers < 2 or _JOBS or not _safe():
-        yield lambda: [job() for job in jobs]
-        return
-    _JOBS.extend(jobs)
-    try:
-        with ProcessPoolExecutor(workers, get_context("fork"), initializer=_prepare) as pool:
-            with warnings.catch_warnings():
-                warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
-                order = sorted(range(len(jobs)), key=lambda i: -sizes[i] if sizes else i)
-                waiting = {i: pool.submit(_done, i) for i in order}
-
-            def results() -> list[Part]:
-                try:
-                    return [waiting[i].result() for i in range(len(jobs))]  # type: ignore[misc]
-                except BrokenProcessPool:
-                    return [job() for job in jobs]
-
-            yield results
-    finally:
-        _JOBS.clear()
-
-
-def _prepare() -> None:
-    """What a copy does first."""
-    end_with_parent()
-    # What was there before the copying is not searched for garbage again and again.
-    gc.freeze()
-
-
-def _done(index: int) -> object:
-    return _JOBS[index]()
-
-
-def _safe() -> bool:
-    forks = "fork" in get_all_start_methods() and sys.platform != "darwin"  # whose system libraries do not survive it
-    return forks and not current_process().daemon and threading.active_count() == 1
-
-
 FEW = 8
 MANY = 20  # input files, whose list is in the appendix alone
 
 
-def document(study: Study, *, full: bool = True) -> Document:
+def document(study: Study, *, full: bool = True, review: bool = False) -> Document:
     """The report of a study: the core, and after it the appendix.
 
     Parameters
@@ -134,13 +65,18 @@ def document(study: Study, *, full: bool = True) -> Document:
     study : Study
     full : bool
         With the appendix, whose figures take most of the time.
+    review : bool
+        Without the appendix, but with what a reviewer asks for: from files to points, all checks, every derivative's curve.
     """
     verbatim = users_texts(study)
     with keeping(verbatim):
-        result = _document(study, full)
-        return replace(
-            result if full else core(result, tables.sources_of_numbers(study)), verbatim=verbatim, bench=bench_of(study)
-        )
+        result = _document(study, full and not review)
+        if review:
+            kept = core(result)
+            result = replace(kept, sections=(*kept.sections, *review_sections(study)))
+        elif not full:
+            result = core(result, tables.sources_of_numbers(study))
+        return replace(result, verbatim=verbatim, bench=bench_of(study))
 
 
 def core(document: Document, sources: Collection[str] | None = None) -> Document:

@@ -334,6 +334,8 @@ class Section:
     appendix : bool
         Only in the whole report.
     topics : tuple of Topic
+    plates : bool
+        Figures as large as half a page, two a page on paper.
     """
 
     anchor: str
@@ -345,6 +347,7 @@ class Section:
     code: tuple[str, ...] = ()
     appendix: bool = False
     topics: tuple[Topic, ...] = ()
+    plates: bool = False
 
     @property
     def texts(self) -> tuple[str, ...]:

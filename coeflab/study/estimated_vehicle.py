@@ -18,7 +18,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outlining import fins_along
-from coeflab.bodies.simplify.source import BODY, mesh_body
+from coeflab.bodies.simplify.source import BODY
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
@@ -26,6 +26,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
+from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.formats.export import PlannedExport
 from coeflab.formats.exporting import exports_of
 from coeflab.law.added_mass import NearWall
@@ -55,7 +56,6 @@ STRAIGHT = ("u",)
 # Sway and yaw accelerations of a straight course, of U^2/L and (U/L)^2, that are rounding of a body alike to both sides.
 ASIDE = 1e-6
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
-ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
 STATES = 200  # of each manoeuvre, at which law and force model are compared
 REMAINING = 0.2  # of the speed, of a coast-down
@@ -102,7 +102,12 @@ def from_shape(
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
     files = {name: compared(p, shape.estimates, moves) for name, p in files.items()}
     vehicle = next(iter(files.values()))
-    exports, refused = exports_of(plan.exports, files.values(), progress)
+    exports, refused = exports_of(
+        plan.exports,
+        files.values(),
+        progress,
+        {n: h.body.shape for n, h in study.hulls.items() if h.body.shape is not None},
+    )
     carried, why = _carried(vehicle, moves, progress)
     missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
     shape = replace(shape, said=tuple(words), missing=missing, carried=carried)
@@ -358,34 +363,6 @@ def replaced(
     return result, moves, carried
 
 
-def subject(
-    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
-) -> Body:
-    """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
-
-    Parameters
-    ----------
-    name : str
-        A mesh file, a body.toml, its folder or a shipped body.
-    unit, axes : str
-        Of a mesh file.
-    repair, fill, sheets : bool
-        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
-
-    Raises
-    ------
-    InputError
-        As of `coeflab.bodies.simplify.source.mesh_body`.
-    """
-    body = mesh_body(name, unit, axes, repair, fill, sheets)
-    middle = body.configurations[0].centre_of_buoyancy
-    bare = body.datum.id.startswith("origin of ") and not body.lengths
-    if not bare or middle is None:
-        return body
-    size = body.require_shape().length
-    return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
-
-
 def completed_by_hand(
     body: Body, name: str, folder: Path, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False,
 ) -> tuple[dict[str, bytes], bool]:  # fmt: skip
@@ -454,11 +431,14 @@ def asked(
 
 
 def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:
-    """A parameter file, or what the default fits make of a campaign about the base's reference point; and its own length.
+    """A parameter file, or what the default fits make of campaigns about the base's reference point; and its own length.
+
+    What no campaign among them can move there is left about its own point: fitted numbers of the base may move it.
 
     Parameters
     ----------
     name : str
+        Of a file or a campaign; several campaigns with commas between.
     base : ParameterFile
     run : callable
         `coeflab.study.run.run`.
@@ -472,10 +452,29 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
     if path.suffix.lower() == ".json":
         found = read_parameter_file(path)
         return found, found.scaling
-    campaign = table_at(located(name, "cfd_data"), DEFAULT_FITS)
+    campaigns = tuple(table_at(p, DEFAULT_FITS) for p in campaigns_named(name))
     plan = Plan(
-        stem(path.name), path.name, (campaign,), np.array(base.reference_point.point), base.reference_point.origin,
+        stem(path.name), path.name, campaigns, np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,
     )  # fmt: skip
     study = run(plan)
+    if any(f.code == LEFT_OUT for fit in study.fits for f in fit.findings):
+        own = run(replace(plan, reference_point=None, datum=None)) if len(campaigns) == 1 else study
+        study = replace(own, tables=study.tables)
     return next(iter(study.parameter_files.values())), study.tables[0].scaling
+
+
+def campaigns_named(name: str) -> list[Path]:
+    """Where the campaigns are that a person names with commas between, or one whose own name holds a comma.
+
+    Parameters
+    ----------
+    name : str
+
+    Raises
+    ------
+    InputError
+        One is not there.
+    """
+    names = [name] if Path(name).exists() else [n.strip() for n in name.split(",")]
+    return [located(n, "cfd_data") for n in names if n]

@@ -10,9 +10,12 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS, CompletingFit
+from coeflab.fits.joint.moving import fits_about
 from coeflab.fits.joint.rows import joint_name
+from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.fits.uncertainty.budget import as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
+from coeflab.law.coefficient import Status
 from coeflab.law.symbols import MOTIONS
 from coeflab.tables.assumptions import carried
 from coeflab.tables.force_table import AT_REST
@@ -71,6 +74,48 @@ def fitted(
     if all(t.source.kind == "estimate" for t in tables):
         return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)
+
+
+def rejoined(
+    fits: Sequence[FitResult], asked: Sequence[tuple[str, Sequence[ForceTable], Scaling, Mapping[str, Any]]]
+) -> tuple[FitResult, ...]:
+    """Fits that lost slopes on their way to their point, brought there by what the other fits of the body measured.
+
+    Rotating runs are fitted about the point where nothing drifts; alone, a fit takes to its point what its own campaign can move.
+
+    Parameters
+    ----------
+    fits : sequence of FitResult
+    asked : sequence of (str, sequence of ForceTable, Scaling, mapping)
+        Of each: name of the fit, tables, scaling and options.
+    """
+    out = list(fits)
+    for i, f in enumerate(fits):
+        if not _lost(f):
+            continue
+        name, tables, scaling, options = asked[i]
+        point, first = f.coefficients.reference_point, tables[0]
+        at = first.point if isinstance(first, PlanarMotionTable) else point + np.array([arm_shift(tables), 0.0, 0.0])
+        beside = [
+            k for k, g in enumerate(fits)
+            if k != i and (g.body, g.coefficients.datum) == (f.body, f.coefficients.datum)
+            and g.coefficients.scaling == f.coefficients.scaling
+        ]  # fmt: skip
+        own, _ = fitted(name, [t.about(at) for t in tables], scaling, options)
+        here = fits_about([own, *(fits[k] for k in beside)], point)
+        out[i] = here[0]
+        for k, g in zip(beside, here[1:], strict=True):
+            if np.allclose(fits[k].coefficients.reference_point, point):
+                kept = tuple(s for s in out[k].shared if (s.fit, s.campaign) != (f.fit, f.campaign))
+                mine = tuple(s for s in g.shared if (s.fit, s.campaign) == (f.fit, f.campaign))
+                out[k] = replace(out[k], shared=(*kept, *mine))
+    return tuple(out)
+
+
+def _lost(f: FitResult) -> list[str]:
+    """Slopes that a fit has about its own point and not about its tables'."""
+    own = [*(s.symbol for s in f.sweeps if s.value is not None), *(o.symbol for o in f.oscillations)]
+    return [s for s in own if s in f.coefficients and f.coefficients[s].status is Status.NOT_DETERMINED]
 
 
 def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:

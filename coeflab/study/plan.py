@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from coeflab.core import declarations as takes
-from coeflab.core.axes import Datum
+from coeflab.core.axes import Datum, DatumName
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located, named, shipped, stem, typed
 from coeflab.core.provenance import InputFile, sha256_of
@@ -90,7 +90,7 @@ class StudyKeys(takes.Declaration):
     name: FileName
     title: takes.Words | None = None
     reference_point: takes.Point | None = None
-    datum: takes.Text | None = None
+    datum: DatumName | None = None
     datum_note: takes.Words | None = None
     wanted: Annotated[tuple[str, ...], takes.Takes("a list of texts", _derivatives, takes.TEXTS.schema)] = ()
     include_uncertain: takes.Flag = False
@@ -456,13 +456,13 @@ def _of_campaign(path: Path) -> Plan:
     )
 
 
-def read_plan(path: Path) -> Plan:
+def read_plan(path: str | Path) -> Plan:
     """Read a plan.
 
     Parameters
     ----------
-    path : Path
-        Paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, by the fit that suits it.
+    path : str or Path
+        The file itself, or the name of a shipped one; paths inside resolve from its folder. A campaign.toml stands for a plan of that campaign alone, by the fit that suits it.
 
     Raises
     ------

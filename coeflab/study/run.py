@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
-from coeflab.study.fitting import FEWEST, fitted
+from coeflab.study.fitting import FEWEST, fitted, rejoined
 from coeflab.study.study import Conversion, Plan, Study
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.uncertainty.budget import Budget
     from coeflab.formats.export import Export, Refused
+    from coeflab.law.scaling import Scaling
     from coeflab.motion.manoeuvre import Simulation
     from coeflab.study.study import PlannedConversion, PlannedJoint
     from coeflab.tables.force_table import ForceTable
@@ -127,37 +128,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
         return checked(_of_shape(plan, progress), progress)
-    tables: list[ForceTable] = []
-    fits: list[FitResult] = []
-    budgets: list[Budget] = []
-    unfitted: dict[str, str] = {}
-    ours = [t.added for t in plan.tows if t.added is not None]
-    for planned in plan.tables:
-        read = [settled(t, plan) for t in read_tables(planned)]
-        progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
-        scaling = plan.scaling or read[0].scaling
-        is_ours = planned.campaign in ours
-        enough = [t for t in read if _has_points(t)] if is_ours else read
-        for name in planned.fits if enough else ():
-            try:
-                result, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
-            except InputError as why:
-                if not is_ours:
-                    raise
-                unfitted.setdefault(read[0].campaign, why.found)
-                continue
-            budgets += found
-            fits.append(result)
-            progress(f"fitted {read[0].campaign} by {name}")
-        tables += read
-    for joint in plan.joint:
-        read = together(joint, plan)
-        progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
-        result, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
-        budgets += found
-        fits.append(result)
-        progress(f"fitted {result.campaign} by {joint.fit}")
-        tables += [t for t in read if t.name not in {known.name for known in tables}]
+    tables, fits, budgets, unfitted = _fits(plan, progress)
     body = _body(plan)
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits, plan)
@@ -176,7 +147,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
                 from coeflab.vehicle.merge import merged
 
                 files[g.name] = merged(read_parameter_file(g.base), files[g.name], g.name).parameters
-    exports, refused, manoeuvres = _used(plan, files, progress)
+    exports, refused, manoeuvres = _used(plan, files, hulls, progress)
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -197,6 +168,45 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         conversions=tuple(c for planned in plan.conversions for c in conversions(planned, plan, tables)),
     )
     return checked(study, progress)
+
+
+def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitResult], list[Budget], dict[str, str]]:
+    """Tables, fits and budgets of a plan, and the own tows that have too few points for a fit, with why."""
+    tables: list[ForceTable] = []
+    fits: list[FitResult] = []
+    of_fits: list[tuple[str, list[ForceTable], Scaling, Mapping[str, Any]]] = []
+    budgets: list[Budget] = []
+    unfitted: dict[str, str] = {}
+    ours = [t.added for t in plan.tows if t.added is not None]
+    for planned in plan.tables:
+        read = [settled(t, plan) for t in read_tables(planned)]
+        progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
+        scaling = plan.scaling or read[0].scaling
+        is_ours = planned.campaign in ours
+        enough = [t for t in read if _has_points(t)] if is_ours else read
+        for name in planned.fits if enough else ():
+            try:
+                result, found = fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+            except InputError as why:
+                if not is_ours:
+                    raise
+                unfitted.setdefault(read[0].campaign, why.found)
+                continue
+            budgets += found
+            fits.append(result)
+            of_fits.append((name, enough, scaling, planned.options.get(name, {})))
+            progress(f"fitted {read[0].campaign} by {name}")
+        tables += read
+    for joint in plan.joint:
+        read = together(joint, plan)
+        progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
+        result, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        budgets += found
+        fits.append(result)
+        of_fits.append((joint.fit, read, plan.scaling or one_length(read), joint.options))
+        progress(f"fitted {result.campaign} by {joint.fit}")
+        tables += [t for t in read if t.name not in {known.name for known in tables}]
+    return tables, list(rejoined(fits, of_fits)), budgets, unfitted
 
 
 def _hulls(
@@ -232,7 +242,7 @@ def _hulls(
 
 
 def _used(
-    plan: Plan, files: Mapping[str, ParameterFile], progress: Progress
+    plan: Plan, files: Mapping[str, ParameterFile], hulls: Mapping[str, Triangulation], progress: Progress
 ) -> tuple[tuple[Export, ...], tuple[Refused, ...], tuple[Simulation, ...]]:
     """What a plan does with its parameter files; what it does not ask for is not imported."""
     exports: tuple[Export, ...] = ()
@@ -241,7 +251,12 @@ def _used(
     if plan.exports:
         from coeflab.formats.exporting import exports_of
 
-        exports, refused = exports_of(plan.exports, files.values(), progress)
+        exports, refused = exports_of(
+            plan.exports,
+            files.values(),
+            progress,
+            {n: h.body.shape for n, h in hulls.items() if h.body.shape is not None},
+        )
     if plan.manoeuvres:
         from coeflab.motion.simulation import manoeuvres_of
 

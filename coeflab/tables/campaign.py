@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Axes, Datum, DatumKeys, Frame
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import named
 from coeflab.core.provenance import TABLE_KINDS, Source
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
@@ -253,7 +254,7 @@ class TableDeclaration(takes.Declaration):
     select : mapping of str to str
         Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
-        Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
+        Column with the cells of the grid that computed each row, or empty. Of rows at one condition that on the grid which most share enters fits.
     variant : str
         Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
         in a row of none. Rows of studies do not enter fits; how far they differ enters U95, but of turbulence models, whose spread stands beside it.
@@ -276,6 +277,8 @@ class TableDeclaration(takes.Declaration):
     assumed : tuple of str
         Keys that an import accepted although no source states them, such as table.arm_point: every coefficient that hangs on one says
         so. Delete a key here once the source states it.
+    contains_thrust : bool or None
+        Whether X holds the thrust of a propeller that runs, columns rps, J or thrust: unless false, X of such rows enters no fit.
     constant : mapping of str to float
         Columns of the source with one number throughout that are none of the table, such as rps: what was held while speeds varied.
     source_sha256 : str
@@ -297,6 +300,7 @@ class TableDeclaration(takes.Declaration):
     by_symmetry: takes.Words = ""
     forces_density: takes.Density | None = None
     assumed: takes.Texts = ()
+    contains_thrust: takes.Flag | None = None
     constant: Annotated[Mapping[str, Any], takes.TABLE] = field(default_factory=dict)
     source_sha256: takes.Anything = None
 
@@ -534,19 +538,20 @@ class Campaign:
         return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
 
 
-def read_campaign(path: Path) -> Campaign:
+def read_campaign(path: str | Path) -> Campaign:
     """Read and check a campaign.toml.
 
     Parameters
     ----------
-    path : Path
-        The file itself.
+    path : str or Path
+        The file itself, or the name of a shipped campaign.
 
     Raises
     ------
     InputError
         Everything missing, unknown or inconsistent, by file, line and key.
     """
+    path = named(path, FILE)
     toml = read_toml(path)
     file = takes.declared(CampaignFile, toml)
     return campaign_of(file, path, tuple(toml.line(("table", i)) for i in range(len(file.table))))

@@ -117,6 +117,8 @@ def _declared(settings: Settings, t: Filled) -> dict[str, Any]:
     own = {"file": t.file.removesuffix(".csv"), **sections.pop("table")}
     if t.settings[POINT_OF].value != settings[POINT_OF].value:
         own["reference_point"] = t.settings[POINT_OF].value
+    if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
+        own["assumed"] = flagged
     if HALF_MODEL in t.settings:
         own["half_model"] = t.settings[HALF_MODEL].value
     made_with = t.raw.stated.get("conditions.density")

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, Axes, angle_sign, datum_name, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml, typed_value
-from coeflab.core.units import quantity
+from coeflab.core.units import quantity, with_unit
 from coeflab.law.scaling import Scaling
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
@@ -150,7 +150,7 @@ def _listed(said: Any) -> Any:
 
 def _measured(dimension: str) -> Callable[[Any], Any]:
     def read(said: Any) -> Any:
-        if not quantity(said, dimension) > 0.0:
+        if not with_unit(said, dimension) > 0.0:
             raise InputError(shown(said), f"a {dimension} above zero")
         return said
 
@@ -192,8 +192,9 @@ READERS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys((HALF_MODEL, "table.half_model"), _half),
     SYMMETRY: lambda said: list(campaign.SYMMETRY_WORDS.read(_listed(said), Path())),
     "source.kind": _one_of(*TABLE_KINDS),
+    "axes.datum": lambda said: datum_name(str(text_of(said, Path()))),
     **dict.fromkeys(
-        ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
+        ("axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
         lambda said: str(text_of(said if isinstance(said, str) else json.dumps(said), Path())),
     ),
 }  # fmt: skip
@@ -212,7 +213,11 @@ def read_setting(key: str, text: Any) -> Any:
         known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
         expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
         raise InputError(f"the key {shown(key)}", expected)
-    typed = typed_value(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
+    typed = (
+        typed_value(text)
+        if isinstance(text, str) and READERS.get(key) not in (READERS["axes.datum"], READERS["axes.datum_note"])
+        else text
+    )
     try:
         return READERS.get(key, lambda said: said)(typed)
     except OverflowError:

@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.api.body import Body
 from coeflab.bodies import body as plain
 from coeflab.core.errors import InputError
-from coeflab.core.files import located
+from coeflab.core.files import located, typed
 from coeflab.core.types import in_angles
 from coeflab.tank import tow as tank_room
 from coeflab.tank.tank import Tank
@@ -123,5 +123,5 @@ def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solv
         place = located(body, "geometry")
     else:
         raise InputError(f"a {type(body).__name__}", "a body, a path, or the name of a shipped body", column="body")
-    file = None if matrix is None else located(matrix, "cfd_data")
+    file = None if matrix is None else typed(matrix)
     return Tow(*tank_room.read(place, file, solver, runner), file)

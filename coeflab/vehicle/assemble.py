@@ -20,6 +20,7 @@ from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
+from coeflab.fits.results.fit_result import covariance_of
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties
@@ -155,15 +156,11 @@ def gathered(
     coefficients = [c for c, _, _ in entries.values()]
     coefficients += [c for s, c in extra.items() if s not in entries]
     coefficients += [c for c in absent if c.symbol not in entries and c.symbol not in extra]
-    covariance = np.zeros((len(coefficients), len(coefficients)))
-    for i, c in enumerate(coefficients):
-        if c.symbol in entries:
-            _, k, row = entries[c.symbol]
-            for j, d in enumerate(coefficients):
-                if d.symbol in entries:
-                    covariance[i, j] = _between(chosen[k], row, chosen[entries[d.symbol][1]], entries[d.symbol][2])
-        elif c.u95 is not None:
-            covariance[i, i] = (c.u95 / 2.0) ** 2
+    covariance = np.diag([0.0 if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients])
+    fitted = [i for i, c in enumerate(coefficients) if c.symbol in entries]
+    starts = np.cumsum([0, *(len(s.coefficients) for s in sets)])
+    rows = [int(starts[entries[coefficients[i].symbol][1]]) + entries[coefficients[i].symbol][2] for i in fitted]
+    covariance[np.ix_(fitted, fitted)] = covariance_of(chosen)[np.ix_(rows, rows)]
     void = np.array([c.u95 is None for c in coefficients], dtype=bool)
     covariance[void, :] = covariance[:, void] = np.nan
     return coefficients, covariance, notes
@@ -176,16 +173,6 @@ def _tied_to(f: FitResult, row: int) -> list[str]:
     motions = set(derivative(f.coefficients.coefficients[row].symbol).factors)
     held = zip(f.tied.symbols, f.tied.moves[row], strict=True)
     return [s for s, move in held if move and motions & set(derivative(s).factors)]
-
-
-def _between(a: FitResult, i: int, b: FitResult, j: int) -> float:
-    """Covariance of two coefficients of one fit, or of two of which one is tied to the fit of the other; else zero."""
-    if a is b:
-        return float(a.coefficients.covariance[i, j])
-    for (f, row), (other, column) in (((a, i), (b, j)), ((b, j), (a, i))):
-        if f.tied is not None and (f.tied.fit, f.campaign) == (other.fit, other.campaign):
-            return float(f.tied.moves[row] @ np.nan_to_num(other.coefficients.covariance[:, column]))
-    return 0.0
 
 
 ANGLES = ("alpha", "beta")
@@ -427,6 +414,7 @@ def assemble(
                 [
                     *(f for fit in chosen for f in fit.findings),
                     *(() if found is None else found.findings),
+                    *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),
                 ]
             )

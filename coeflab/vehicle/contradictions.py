@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.vehicle.inertia import stated_accelerations
+from coeflab.vehicle.matching import one_slope
 from coeflab.vehicle.parameter_file import ParameterFile
 
 NAME = "plausibility"
@@ -17,7 +18,21 @@ ALIKE = 1e-3  # relative: what four printed digits leave
 
 def twice_findings(p: ParameterFile) -> tuple[Check, ...]:
     """Notes about numbers that stand in two places and differ, with the one that is used."""
-    return (*_added_mass(p), *_inertia(p), *_intervals(p))
+    return (*_slopes(p), *_added_mass(p), *_inertia(p), *_intervals(p))
+
+
+def _slopes(p: ParameterFile) -> tuple[Check, ...]:
+    """Slopes under two names, which both act: an equal number is the same one twice."""
+    values = {c.symbol: c.value for c in p.coefficients if c.value and c.law != "rest"}
+    out = []
+    for slope, names in one_slope(values).items():
+        each = [float(values[n] or 0.0) for n in names]
+        equal = max(each) - min(each) <= ALIKE * max(map(abs, each))
+        out.append(as_check(NAME, Finding.of(
+            "parameter_file.slope_twice", p.name, Severity.FAIL if equal else Severity.WARN, statistic=sum(each), slope=slope,
+            names=tuple(names), values=tuple(each), advice=names[0], by="equal" if equal else "sum",
+        )))  # fmt: skip
+    return tuple(out)
 
 
 def _added_mass(p: ParameterFile) -> tuple[Check, ...]:

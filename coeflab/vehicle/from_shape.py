@@ -313,20 +313,25 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
 
 def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
     """A thruster of a body about a point of its datum; straight lines between its points, or squares of the command."""
-    segments = []
-    for (low, start), (high, end) in () if t.squares else pairwise(t.thrusts(at.speed, at.density)):
-        slope = (end - start) / (high - low)
-        segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
-    curve = curve_of(t.squares, t.command, t.unit) or ParameterCurve(
-        command=t.command, unit=t.unit, segments=tuple(segments)
-    )
+    curve = curve_of(t.squares, t.command, t.unit) or _lines(t, t.thrusts(at.speed, at.density))
+    torques = t.torques(at.speed, at.density)
+    torque = curve_of(t.torque, t.command, t.unit) if torques is None else _lines(t, torques)
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
     tilting = None if t.tilt_axis is None else tuple(float(v) for v in t.tilt_axis)
     low, high = t.tilt if tilting is not None else (0.0, 0.0)
     return ParameterThruster(
-        name=t.name, position=place, direction=axis, curve=curve, torque_curve=curve_of(t.torque, t.command, t.unit),
+        name=t.name, position=place, direction=axis, curve=curve, torque_curve=torque,
         handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high,
     )  # fmt: skip
+
+
+def _lines(t: Thruster, points: Array) -> ParameterCurve:
+    """Straight lines between points of commands and values."""
+    segments = []
+    for (low, start), (high, end) in pairwise(points):
+        slope = (end - start) / (high - low)
+        segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
+    return ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
 
 
 def by_series(body: Body, speed: float) -> tuple[str, ...]:
@@ -339,10 +344,15 @@ def by_series(body: Body, speed: float) -> tuple[str, ...]:
         m/s.
     """
     return tuple(
-        f"thrust of {t.name}: estimate, Wageningen B-series at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
+        f"thrust of {t.name}: {_water_of(t)} at {speed:g} m/s; no wake, no thrust deduction; slower it thrusts more"
         for t in body.thrusters
         if t.curve is None and not t.squares
     )
+
+
+def _water_of(t: Thruster) -> str:
+    own = t.screw is not None and t.screw.measured is not None
+    return "its own open water" if own else "estimate, Wageningen B-series"
 
 
 def _surfaces(controls: Sequence[Control]) -> tuple[ParameterSurface, ...]:

@@ -78,14 +78,26 @@ def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str
 
 def sums_in_words(found: CoefficientSet, name: str, among: Container[str]) -> list[str]:
     """Which plain names of a file's set, before it is brought to these, are sums of several; one statement each."""
-    parts: dict[str, list[str]] = {}
-    for plain, symbol in zip(_plain_names(found), found.symbols, strict=True):
-        parts.setdefault(plain, []).append(primed(symbol))
+    own = [c.symbol for c in found.coefficients if c.law != "rest"]
     return [
-        f"{primed(plain)} of {name} is the sum of its {listed(of)}"
-        for plain, of in parts.items()
-        if len(of) > 1 and plain in among
+        f"{plain} of {name} is the sum of its {listed(of)}"
+        for plain, of in one_slope(own).items()
+        if plain[:-1] in among
     ]
+
+
+def one_slope(symbols: Iterable[str]) -> dict[str, list[str]]:
+    """Slopes that stand under several names, by their plain name; all with prime.
+
+    Examples
+    --------
+    >>> one_slope(["Yuv'", "Nr'", "Yv'", "Yvv'"])
+    {"Yv'": ["Yuv'", "Yv'"]}
+    """
+    parts: dict[str, list[str]] = {}
+    for symbol in dict.fromkeys(primed(s.removesuffix("'")) for s in symbols):
+        parts.setdefault(primed(plain_name(symbol)), []).append(symbol)
+    return {plain: of for plain, of in parts.items() if len(of) > 1}
 
 
 def _plain_names(found: CoefficientSet) -> list[str]:

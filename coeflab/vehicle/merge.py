@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import words
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed
+from coeflab.fits.joint.moving import LEFT_OUT, left_out
 from coeflab.law.added_mass import potential_part
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, moved_together
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import points_of
@@ -23,7 +25,6 @@ from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
 if TYPE_CHECKING:
-    from coeflab.law.coefficient import CoefficientSet
     from coeflab.law.scaling import Scaling
 
 SAME_LENGTH = 1e-3  # of the length
@@ -116,12 +117,20 @@ def merged(
     slopes_of_ours = [
         s for s in ours.symbols if plain_name(s) != "X0" and s not in resting
     ]  # u|u|: another law in drift
-    theirs = spelled_as(theirs.about(ours.reference_point), first, slopes_of_ours)
+    shift = ours.reference_point - theirs.reference_point
+    joint = moved_together((theirs, _lender(ours)), _blocks(theirs, ours), ours.reference_point)
+    many = len(theirs.coefficients)
+    covariance = _blocks(joint.sets[0], ours, joint.covariance[:many, many:])
+    theirs = spelled_as(joint.sets[0], first, slopes_of_ours)
+    lost = _stay(left_out(joint, (other.name, base.name), (shift, shift), Severity.FAIL)[0], other.findings, ours)
     taken = {
         c.symbol: i
         for i, c in enumerate(theirs.coefficients)
         if c.value is not None and c.status is not Status.ESTIMATE
     }
+    if not taken and lost:
+        told = words(lost[0])
+        raise InputError(told.statement.rstrip("."), "what the move takes, in the same fit", advice=told.advice)
     if not taken:
         has = "estimates only" if any(c.status is Status.ESTIMATE for c in theirs.coefficients) else _nothing(other)
         raise InputError(
@@ -145,16 +154,55 @@ def merged(
         if symbol not in ours:
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(symbol), None, theirs.coefficients[j]))
-    result = _joined(base, other, (ours, theirs), entries, replaced, name)
+    result = _joined(base, other, covariance, many, entries, replaced, name)
     for symbol in () if alone else _against_points(result):
         entries = [e for e in entries if e[0].symbol != symbol]
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
-        result = _joined(base, other, (ours, theirs), entries, replaced, name)
-    words = _lengths(base, other, own or other.scaling)
+        result = _joined(base, other, covariance, many, entries, replaced, name)
+    lengths = _lengths(base, other, own or other.scaling)
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
-    notes = (*result.provenance.notes, *sums, *([words] if words else []))
-    update = {"law_at_points": points_of(result), "provenance": result.provenance.model_copy(update={"notes": notes})}
-    return Merged(result.model_copy(update=update), tuple(replaced), words)
+    notes = (*result.provenance.notes, *sums, *([lengths] if lengths else []))
+    findings = (*(f for f in result.findings if f.code != LEFT_OUT), *lost)
+    update = {
+        "findings": findings,
+        "law_at_points": points_of(result),
+        "provenance": result.provenance.model_copy(update={"notes": notes}),
+    }
+    return Merged(result.model_copy(update=update), tuple(replaced), lengths)
+
+
+def _lender(ours: CoefficientSet) -> CoefficientSet:
+    """The base's fitted numbers under plain names, by which those of another file are moved; a slope of two names lends nothing."""
+    names = [plain_name(c.symbol) for c in ours.coefficients]
+    lends = [
+        c.status is not Status.ESTIMATE and c.law != "rest" and names.count(n) == 1
+        for n, c in zip(names, ours.coefficients, strict=True)
+    ]
+    rows = zip(names, lends, ours.coefficients, strict=True)
+    return replace(
+        ours,
+        coefficients=tuple(replace(c, symbol=n) if can else replace(c, value=None, u95=None) for n, can, c in rows),
+    )
+
+
+def _blocks(theirs: CoefficientSet, ours: CoefficientSet, between: np.ndarray | None = None) -> np.ndarray:
+    """Covariance of the coefficients of both, one after the other."""
+    cross = np.zeros((len(theirs.coefficients), len(ours.coefficients))) if between is None else np.nan_to_num(between)
+    return np.block([[theirs.covariance, cross], [cross.T, ours.covariance]])
+
+
+def _stay(lost: Sequence[Finding], before: Sequence[Finding], ours: CoefficientSet) -> list[Finding]:
+    """What was not moved, by this merge or by the fits before it, and what of the base stays in the place of it."""
+    out = []
+    for f in (*lost, *(f for f in before if f.code == LEFT_OUT)):
+        named = {s.removesuffix("'") for s in f["symbols"]}
+        stays = tuple(
+            primed(c.symbol) for c in ours.coefficients if plain_name(c.symbol) in named and c.value is not None
+        )
+        facts: dict[str, Any] = {fact.name: fact.value for fact in f.facts} | ({"stays": stays} if stays else {})
+        code = "move.stays" if stays else LEFT_OUT
+        out.append(Finding.of(code, f.subject, Severity.FAIL, statistic=f.statistic, **facts))
+    return out
 
 
 def _nothing(other: ParameterFile) -> str:
@@ -177,14 +225,11 @@ Entry = tuple[Coefficient, int, int]  # a coefficient, from which of both files,
 
 
 def _joined(
-    base: ParameterFile, other: ParameterFile, both: tuple[CoefficientSet, CoefficientSet], entries: Sequence[Entry],
+    base: ParameterFile, other: ParameterFile, both: np.ndarray, many: int, entries: Sequence[Entry],
     replaced: Sequence[Replaced], name: str,
 ) -> ParameterFile:  # fmt: skip
-    covariance = np.zeros((len(entries), len(entries)))
-    for a, (_, source, i) in enumerate(entries):
-        for b, (_, other_source, j) in enumerate(entries):
-            if source == other_source:
-                covariance[a, b] = both[source].covariance[i, j]
+    rows = [i if source else many + i for _, source, i in entries]
+    covariance = both[np.ix_(rows, rows)]
     void = np.isnan(np.diag(covariance))
     covariance[void, :] = covariance[:, void] = np.nan
     return _written(base, other, [e[0] for e in entries], covariance, replaced, name)

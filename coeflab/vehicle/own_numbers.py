@@ -13,18 +13,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.bodies.thrusters import ThrusterKeys
-from coeflab.core.axes import Datum
+from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.core.units import also_written, positive_typed, same_unit, three_typed
 from coeflab.core.version import VERSION
-from coeflab.core.wording import repeated
+from coeflab.core.wording import listed, repeated
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling, doubtful_size
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.from_shape import parameter_thruster
+from coeflab.vehicle.matching import one_slope
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import ParameterCovariance, ParameterHydrostatics, ParameterThruster
 
@@ -110,11 +111,16 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
     Raises
     ------
     InputError
-        As of `own_number`, or a symbol that stands twice.
+        As of `own_number`, or a symbol that stands twice, be it under two names.
     """
     out = tuple(map(own_number, typed))
     if twice := repeated(n.symbol for n in out):
         raise InputError(f"{', '.join(twice)} twice", "each symbol once", column="--set")
+    for slope, names in one_slope(n.symbol for n in out).items():
+        raise InputError(
+            f"{listed(names)}, which are one slope", f"one of them; {slope} is their sum", column="--set",
+            advice="Both act in the law, and a straight course feels their sum.",
+        )  # fmt: skip
     return out
 
 
@@ -272,7 +278,10 @@ def typed_file(
         afloat = ParameterHydrostatics(
             volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
         )
-    datum = Datum.named(about.strip())
+    try:
+        datum = Datum.named(datum_name(about.strip()))
+    except InputError as why:
+        raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):

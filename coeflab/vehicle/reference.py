@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core import declarations as takes
-from coeflab.core.axes import Datum
+from coeflab.core.axes import Datum, DatumName
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import in_digits_of
@@ -334,7 +334,7 @@ class ReferenceKeys(takes.Declaration):
     uncertainties: dict[str, Annotated[takes.Pure, takes.ABOVE_ZERO]] = field(default_factory=dict)
     reference_point: takes.Point | None = None
     indices: Printed = field(default_factory=dict)
-    datum: takes.Text | None = None
+    datum: DatumName | None = None
     datum_note: takes.Words | None = None
     inferred: dict[str, takes.Text] = field(default_factory=dict)
 

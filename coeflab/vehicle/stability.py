@@ -209,7 +209,7 @@ def centre_of_pressure(
 
         denominators = [(primed(force), f, 2.0 * float(cells[1, 1]) ** 0.5)]
         out.append(
-            _derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, (moment, force), draws, seed)
+            derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, (moment, force), draws, seed)
         )
     return tuple(out)
 
@@ -242,7 +242,7 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
         ]
         value = float(index(np.zeros((1, 4)))[0])
         wanted = [c.symbol for c in chosen]
-        found = _derived(name, parameters.name, value, index, gradient, whole, denominators, wanted, draws, seed)
+        found = derived(name, parameters.name, value, index, gradient, whole, denominators, wanted, draws, seed)
         out.append(replace(found, driven=next((label for label, size, _ in denominators if size >= 0.0), "")))
     return tuple(out)
 
@@ -252,7 +252,7 @@ def _apart(result: Propagated) -> float:
     return abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
 
 
-def _derived(
+def derived(
     name: str,
     subject: str,
     value: float,
@@ -264,6 +264,7 @@ def _derived(
     draws: int,
     seed: int,
 ) -> Derived:
+    """A quantity with both half-widths; none where a coefficient or a denominator allows none."""
     without = [s for s, half in zip(symbols, np.diag(cells), strict=True) if not np.isfinite(half)]
     if not np.all(np.isfinite(cells)):
         without = without or list(symbols)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +13,11 @@ import numpy as np
 import pytest
 
 import coeflab as cf
-from coeflab.report.figures import estimator, sweep
+from coeflab.report.document import AnswerRow
+from coeflab.report.figures import estimator, first_page, laws, model, motion, nouns, sweep, three_views
 from coeflab.report.figures.files import drawing, files_of, styled
 from coeflab.report.figures.palette import COLOURS
+from coeflab.report.plots.forest import plot_forest
 
 mpl.use("agg")
 
@@ -20,6 +25,20 @@ mpl.use("agg")
 @pytest.fixture(scope="module")
 def result() -> cf.Result:
     return cf.fit("suboff_roddy_2")
+
+
+@pytest.fixture(autouse=True)
+def _closed() -> Iterator[None]:
+    import matplotlib.pyplot as plt
+
+    yield
+    plt.close("all")
+
+
+def new_axes() -> Any:
+    import matplotlib.pyplot as plt
+
+    return plt.subplots()[1]
 
 
 def lines(axes: Any) -> dict[str, list[Any]]:
@@ -37,14 +56,10 @@ def lines(axes: Any) -> dict[str, list[Any]]:
 def test_a_plot_and_the_figure_of_the_report_are_one_drawing(
     result: cf.Result, module: Any, figure: str, kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import matplotlib.pyplot as plt
-
-    made: list[Any] = []
-    panel = module.panel
-    monkeypatch.setattr(module, "panel", lambda *a, **k: made.append(panel(*a, **k)) or made[-1])
+    made = captured(monkeypatch, module)
     s = result.fits[0].sweep("Yv")
     getattr(module, figure)(s, *(((),) if kind else ()), "a")
-    ours, theirs = lines(result.plot("Yv'", ax=plt.subplots()[1], kind=kind)), lines(made[0])
+    ours, theirs = lines(result.plot("Yv'", ax=new_axes(), kind=kind)), lines(made[0])
     assert len(ours) > 1
     assert ours.keys() == theirs.keys()
     factor = 1000.0
@@ -52,22 +67,136 @@ def test_a_plot_and_the_figure_of_the_report_are_one_drawing(
         assert len(drawn) == len(theirs[key])
         for a, b in zip(drawn, theirs[key], strict=True):
             np.testing.assert_allclose(a * [1.0, factor], b, rtol=1e-9, atol=1e-9, equal_nan=True)
-    plt.close("all")
+
+
+def captured(monkeypatch: pytest.MonkeyPatch, module: Any, name: str = "panel") -> list[Any]:
+    """The axes of a report's figures, as they are made."""
+    made: list[Any] = []
+    make = getattr(module, name)
+
+    def kept(*given: Any, **named: Any) -> Any:
+        found = make(*given, **named)
+        made.append(found[1] if isinstance(found, tuple) else found)
+        return found
+
+    monkeypatch.setattr(module, name, kept)
+    return made
+
+
+def scaled(points: Any) -> Any:
+    """Points with the first corner of their box at 0 and the other at 1."""
+    at = np.asarray(points, dtype=float)
+    if not np.isfinite(at).all(axis=1).any():
+        return at * np.nan
+    low, size = np.nanmin(at, axis=0), np.nanmax(at, axis=0) - np.nanmin(at, axis=0)
+    return (at - low) / np.where(size > 0.0, size, 1.0)
+
+
+def assert_one_drawing(ours: Any, theirs: Any) -> None:
+    """The same series with the same points, but for the units of the axes; the look too, but for colours."""
+    a, b = lines(ours), lines(theirs)
+    assert a
+    assert a.keys() == b.keys()
+    for key, drawn in a.items():
+        for one, other in zip(drawn, b[key], strict=True):
+            np.testing.assert_allclose(scaled(one), scaled(other), rtol=1e-9, atol=1e-9, equal_nan=True)
+    looks = [[(one.get_linestyle(), one.get_marker(), one.get_linewidth()) for one in axes.get_lines() if one.get_gid()]
+             for axes in (ours, theirs)]  # fmt: skip
+    assert looks[0] == looks[1]
+
+
+@pytest.fixture(scope="module")
+def run() -> cf.Motion:
+    return cf.simulate("remus100", "zigzag", rudder="20 deg")
+
+
+def test_a_track_is_drawn_once(run: cf.Motion, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = captured(monkeypatch, motion)
+    motion.track_figure(run.trajectory, "t", 0.0, False)
+    assert_one_drawing(run.plot(ax=new_axes()), made[0])
+
+
+@pytest.mark.parametrize(("what", "group"), [("depth", "depth"), ("speed", None)])
+def test_a_quantity_over_time_is_drawn_once(
+    run: cf.Motion, what: str, group: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = captured(monkeypatch, motion)
+    values = {"depth": run.trajectory.position[:, 2], "speed": run.trajectory.speed}[what]
+    motion._history(run.trajectory.time, {what: values}, "h", f"{what}  [m]", group or what)
+    assert_one_drawing(run.plot(what, ax=new_axes()), made[0])
+
+
+def test_points_of_a_table_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    v = np.linspace(-0.3, 0.3, 9)
+    table = cf.read_table({"v [m/s]": v, "Y [N]": -120.0 * v, "N [N m]": np.where(v > 0.2, np.nan, -60.0 * v)}, name="drift",
+                          frame="FRD", length=2.0, density=1000, speed=2.0, about="nose, 1.0 m aft")  # fmt: skip
+    usable = {**table.usable, "Y": np.arange(9) != 4}
+    table = replace(table, usable=usable)
+    made = captured(monkeypatch, laws)
+    nouns.table_figure(table, "t")
+    for component, theirs in zip("YN", made, strict=True):
+        ours = table.plot(component, ax=new_axes())
+        keys = {"data-series=law0": "data-series=filled", "data-series=law1": "data-series=hollow"}
+        for one in theirs.get_lines():
+            one.set_gid(keys.get(str(one.get_gid())))
+        assert_one_drawing(ours, theirs)
+
+
+def test_a_law_along_a_motion_is_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = cf.fit("suboff_cfd_barehull", "manoeuvring_model")
+    law = next(m for m in result.fits[0].models if "Yv" in [s.removesuffix("'") for s in m.symbols])
+    made = captured(monkeypatch, model)
+    model.along_figure(law, "m")
+    assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[model.along(law).index("v")])
+
+
+def test_coefficients_with_their_intervals_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The forest of the report's first page, of a result and of a comparison."""
+    rows = [("Yv'", 3.0, 0.6), ("Nv'", 2.0, 0.1), ("Zw'", 5.0, 2.0)]
+    made = captured(monkeypatch, first_page, "_drawing")
+    first_page.forest_figure([AnswerRow(s.removesuffix("'"), value, half) for s, value, half in rows], (), "")
+    ours = plot_forest([(s, [(value, half)]) for s, value, half in rows], (), new_axes())
+    for one in made[0].get_lines():
+        one.set_gid("data-series=s0" if one.get_gid() == "data-series=ours" else None)
+    assert_one_drawing(ours, made[0])
+
+
+@pytest.mark.parametrize("view", ["side", "top", "front"])
+def test_an_outline_is_drawn_once(view: str) -> None:
+    body = cf.read_body("huuv_mesh")
+    sheet = three_views._drawn(body).axes[0]
+    ours = body.plot(view, ax=new_axes())
+    signs = {"side": (1.0, -1.0), "top": (1.0, -1.0), "front": (-1.0, -1.0)}[view]
+    (mine, *_), theirs = ours.patches, sheet.patches
+    found = [p for p in theirs if len(p.get_path().vertices) == len(mine.get_path().vertices)]
+    shapes = [scaled(p.get_path().vertices) for p in found]
+    wanted = scaled(mine.get_path().vertices * signs)
+    assert any(np.allclose(wanted, one, atol=2e-4) for one in shapes)
+    assert [p.get_linewidth() for p in ours.patches[:2]] == [p.get_linewidth() for p in theirs[:2]]
+
+
+def test_every_picture_of_the_front_door_draws_with_a_figure_of_the_report() -> None:
+    """But the matrix of added mass, of which the report has numbers."""
+    plots = Path(str(cf.__file__)).parent / "report" / "plots"
+    for file in sorted(plots.glob("*.py")):
+        if file.stem in ("__init__", "axes", "matrix"):
+            continue
+        called = {n.func.attr for n in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(n, ast.Call)
+                  and isinstance(n.func, ast.Attribute) and isinstance(n.func.value, ast.Name) and n.func.value.id == "axes"}  # fmt: skip
+        assert not called & {"fill", "errorbar", "fill_between", "scatter", "imshow", "bar"}, file.stem
+        assert "draw_" in file.read_text("utf-8"), file.stem
 
 
 def test_a_plot_shows_the_readings_of_the_table(result: cf.Result) -> None:
     """Against Roddy's cells as the file has them, which no drawing knows: beta in degrees, Y' as printed."""
-    import matplotlib.pyplot as plt
-
     raw = np.genfromtxt(
         cf.shipped("cfd_data") / "suboff_roddy_2" / "table.csv", delimiter=",", skip_header=1, usecols=(1, 2, 4)
     )
     printed = {(round(-beta, 6), y) for delta, beta, y in raw if delta == 0.0}
-    drawn = [p for one in lines(result.plot("Yv'", ax=plt.subplots()[1]))["data-series=points"] for p in one]
+    drawn = [p for one in lines(result.plot("Yv'", ax=new_axes()))["data-series=points"] for p in one]
     assert len(drawn) >= 20
     for x, y in drawn:
         assert min(abs(y - b) for a, b in printed if abs(a - x) < 1e-3) < 1e-9, (x, y)
-    plt.close("all")
 
 
 def test_plots_take_the_axes_and_the_colours_of_the_user(result: cf.Result) -> None:
@@ -76,13 +205,12 @@ def test_plots_take_the_axes_and_the_colours_of_the_user(result: cf.Result) -> N
     with plt.style.context("ggplot"):
         cycle = [one["color"] for one in mpl.rcParams["axes.prop_cycle"]]
         before = dict(mpl.rcParams)
-        ax = plt.subplots()[1]
+        ax = new_axes()
         result.plot("Yv'", ax=ax)
         used = {mpl.colors.to_hex(line.get_color()) for line in ax.get_lines()}
         assert mpl.colors.to_hex(cycle[1]) in used
         assert not used & {COLOURS["a"], COLOURS["b"]}
         assert dict(mpl.rcParams) == before
-    plt.close("all")
 
 
 def test_a_figure_as_files(result: cf.Result, tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +13,10 @@ import trimesh
 
 from coeflab.bodies.mesh import gates as mesh_gates
 from coeflab.bodies.mesh.decimation import is_closed
-from coeflab.bodies.mesh.gates import examined, repaired, sound
+from coeflab.bodies.mesh.gates import SoundMesh, examined, repaired, sound
 from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
 from coeflab.bodies.mesh.solids import box, surface
+from coeflab.bodies.mesh.topology import shells
 from coeflab.core.errors import InputError
 from tests.bodies.test_surface_mesh import CUBE, CUBE_FACES
 
@@ -258,6 +261,21 @@ def test_a_fin_of_one_sheet_is_a_sheet_on_request() -> None:
     alone = sound(CUBE, CUBE_FACES[2:], FILE, open_sheets=True)
     assert (len(alone.faces), len(alone.sheets)) == (0, 10)
     assert TriangleMesh(alone.vertices, alone.faces, sheets=alone.sheets).volume == 0.0
+
+
+@pytest.mark.parametrize("read", [repaired, partial(sound, repair=True)])
+def test_a_shell_that_is_given_from_both_sides_stays_once(read: Callable[..., SoundMesh]) -> None:
+    """A pod of a thruster whose exporter wrote both sides of every face; walls between glued solids go all the same."""
+    vertices, faces = two(APART)
+    found = read(vertices, np.vstack([faces, faces[len(CUBE_FACES) :, ::-1]]), FILE)
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(
+        2.0 * mesh_integrals(CUBE, CUBE_FACES).volume
+    )
+    glued = two(CUBE + np.array([np.ptp(CUBE[:, 0]), 0.0, 0.0]))
+    assert mesh_integrals((one := read(*glued, FILE)).vertices, one.faces).volume == pytest.approx(
+        2.0 * mesh_integrals(CUBE, CUBE_FACES).volume
+    )
+    assert shells(one.faces)[0] == 1
 
 
 def test_solids_glued_on_a_face_are_one_after_repair() -> None:

@@ -11,11 +11,11 @@ import pytest
 
 from coeflab.bodies.orientation import doubt, require_orientation
 from coeflab.bodies.readers import read_body
-from coeflab.bodies.simplify.source import mesh_body
+from coeflab.bodies.simplify.source import mesh_body, subject
 from coeflab.core.axes import DIRECTIONS, Axes, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.estimates import Water, estimated
-from coeflab.study.estimated_vehicle import asked, from_shape, subject
+from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.tank.tank_file import read_tank
 from tests.bodies.four import FOUR
 from tests.bodies.twelve import TWELVE

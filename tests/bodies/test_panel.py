@@ -230,6 +230,17 @@ def test_one_mesh_has_no_error_estimate() -> None:
     assert found.statements[2] == "one mesh: its error is unknown"
 
 
+def test_panels_of_which_no_coarser_mesh_comes_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = panel.family
+    monkeypatch.setattr(panel, "family", lambda shape, count, most: whole(shape, count, 1 if count < 1500 else most))
+    found = solved(Ellipsoid(2.0, 1.0, 1.0), panels=1000)
+    assert found.error is not None
+    assert np.all(
+        np.abs(np.diag(found.matrix) - np.diag(ellipsoid_added_mass(np.array([2.0, 1.0, 1.0]), RHO)))
+        <= np.diag(found.error)
+    )
+
+
 def test_what_did_not_converge_is_a_rough_guide(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = panel.panel_added_mass
     monkeypatch.setattr(panel, "panel_added_mass", lambda *given: replace(whole(*given), converged=False))

@@ -95,6 +95,11 @@ def test_dimensional_mass(tmp_path: Path) -> None:
         ("inertia = 12.0", "mass_prime = 0.02", ['"prime.length"', "found nothing"]),
         ("[source]", "[sauce]", ['"source"', "found nothing"]),
         (
+            "[source]",
+            '[prime]\nlength = 2.0\nlength_name = "LOA"\n\n[source]',
+            ['"prime"', "mass_prime", "Delete [prime]."],
+        ),
+        (
             'citation = "synthetic"',
             'citation = "c"\nkind = "drawn"',
             ['"source.kind"', 'found "drawn"', '"cfd" or', '"computed"'],

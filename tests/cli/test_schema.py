@@ -12,7 +12,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from coeflab.cli.schema import KINDS, schema
+from coeflab.api.schemas import KINDS, schema
 from coeflab.core.declarations import number_in
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

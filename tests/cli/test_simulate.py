@@ -175,3 +175,33 @@ def test_a_steady_motion_finds_what_is_not_named_as_trim_does(coeflab: Run) -> N
     assert figures["departure of the velocity"] < 1e-3
     told = "sway, heave, roll, pitch found by the trim: at zero, where they stand unless named, no commands keep this motion"
     assert told in said["statements"]
+
+
+def test_a_file_with_u95_names_the_command_that_says_how_sure(coeflab: Run, tmp_path: Path) -> None:
+    file = tmp_path / "own.parameters.json"
+    new = (
+        "params",
+        "new",
+        "own",
+        "--about",
+        "cg",
+        "--length",
+        "2 m",
+        "--speed",
+        "1 m/s",
+        "--density",
+        "1000",
+        "--mass",
+        "40 kg",
+    )
+    values = ("X0'=-0.003", "Yv'=-0.03 +- 0.003", "Nv'=-0.007", "Yr'=0.005", "Nr'=-0.006", "Ydr'=0.01", "Ndr'=-0.005")
+    assert (
+        coeflab(*new, "--inertia", "12", "--out", file.parent, *(w for v in values for w in ("--set", v))).returncode
+        == 0
+    )
+    asked = (file, "--manoeuvre", "straight_run", "--free", "u,v,r", "--speed", "2 kn")
+    done = coeflab("simulate", *asked)
+    typed = flat(done.stdout.replace("\\\n", " ")).partition("How sure, and why: ")[2]
+    assert typed.startswith("coeflab uncertainty ")
+    assert "--manoeuvre straight_run --free u,v,r --speed '2 kn'" in typed
+    assert "How sure" not in coeflab("simulate", "remus100", "--manoeuvre", "straight_run").stdout

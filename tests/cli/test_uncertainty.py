@@ -80,7 +80,7 @@ def test_tables_files_and_a_second_run(coeflab: Run, torpedo: Path, tmp_path: Pa
     done = coeflab("uncertainty", torpedo, "--members", "64", "--sobol", "--out", "out", *ASKED[:-1])
     assert (done.returncode, done.stderr) == (0, "")
     for words in (
-        "first overshoot", "95 % interval", "where its variance comes from", "worth another test or CFD run", "G_h",
+        "first overshoot", "95 % interval", "where its variance comes from", "Which test takes most off", "G_h",
         "no uncertainty is stated", "distribution: normal",
     ):  # fmt: skip
         assert words in flat(done.stdout)

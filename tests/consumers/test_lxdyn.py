@@ -19,6 +19,8 @@ from tests.consumers.lxdyn_environment import PYTHON
 from tests.formats.files import at_rest, control_force, full
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
 from tests.formats.of_a_vehicle import floating, quaternion, restoring
+from tests.formats.test_coded_thrusters import COMMANDS, LIMIT, due
+from tests.formats.test_coded_thrusters import file as driven_file
 from tests.rigid_motion import Trajectory, motion, rotation
 
 RUN = Path(__file__).with_name("run_lxdyn.py")
@@ -147,7 +149,9 @@ def test_an_added_mass_of_the_wrong_sign_does_not_pass(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_without_inertia_xdyn_refuses_the_file(tmp_path: Path) -> None:
-    rows, said = in_xdyn(tmp_path, rendered(torpedo().model_copy(update={"mass": None})), 0.1)
+    """Which the exporter does first."""
+    head, _, rest = rendered(torpedo()).partition("        rigid body inertia")
+    rows, said = in_xdyn(tmp_path, head + "        added mass" + rest.partition("        added mass")[2], 0.1)
     assert len(rows) == 0
     assert "rigid body inertia matrix" in said
 
@@ -162,6 +166,33 @@ def test_what_xdyn_reads_of_an_expression(tmp_path: Path, expression: str, read:
     text = text.partition("    data: ")[0] + "    data: ['Fx(hydrodynamic_forces,body_of_tow,body_of_tow)', t]\n"
     rows, _ = in_xdyn(tmp_path, text, 0.02)
     assert rows[0, 0] == pytest.approx(read)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", [0, 1, 2, 5])
+def test_xdyn_pushes_with_thrusters_and_steers_within_limits(tmp_path: Path, row: int) -> None:
+    """Its own sums at the first step: of the model of thrusters, and that a rudder beyond its limit acts as one at it."""
+    file, (left, turning, _, tilt) = driven_file(), COMMANDS[row]
+    text = rendered(file.model_copy(update={"name": "file"}))
+    for name, value, unit in (
+        ("left", left, "1"),
+        ("turning", turning, "1"),
+        ("turning_tilt", tilt, "rad"),
+        ("dr", 1.0, "rad"),
+    ):
+        before = f"{name}: {{unit: {unit}, values: [0.0]}}"
+        assert text.count(before) == 1
+        text = text.replace(before, f"{name}: {{unit: {unit}, values: [{value}]}}")
+    axes = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+    sums = [f"{a}({m},body_of_tow,body_of_tow)" for m in ("thrusters", "hydrodynamic_forces") for a in axes]
+    head, _, _ = text.partition("    data: ")
+    rows, said = in_xdyn(tmp_path, f"{head}    data: [t, {', '.join(map(repr, sums))}]\n", 0.02)
+    assert said == ""
+    at_centre = force_transfer(CENTRE)
+    np.testing.assert_allclose(rows[0, 1:7], at_centre @ due(file)[row], rtol=2e-6, atol=1e-6)
+    nu = velocity_transfer(-CENTRE) @ np.array([file.conditions.speed, 0, 0, 0, 0, 0])
+    water = force_law(file).force(nu[None]) + control_force(file, nu[None], np.array([[LIMIT, 0.0, 0.0]]))
+    np.testing.assert_allclose(rows[0, 7:], at_centre @ water[0], rtol=2e-6, atol=1e-5)
 
 
 @pytest.mark.slow

@@ -12,8 +12,8 @@ from trimesh.transformations import rotation_matrix
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import mirror_planes
+from coeflab.bodies.simplify.source import subject
 from coeflab.estimates import Estimates, Water, estimated
-from coeflab.study.estimated_vehicle import subject
 from tests.bodies.twelve import Mesh, at, fin, hull, rounded
 
 WATER = Water(998.2, 1.0034e-6, 1.0)

@@ -8,13 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.bodies.body import Body
 from coeflab.bodies.outlining import with_propellers
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.thrusters import Screw, Thruster
 from coeflab.bodies.wageningen import open_water, thrust_over_speed
 from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
 from coeflab.estimates import estimated, propeller
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.vehicle.from_shape import parameter_thruster
 from tests.estimates.bodies import RING, SCREW, WATER, body_of, outline, tail
 
 PITCH, AREA, BLADES = 1.0, 0.5, 3
@@ -185,3 +188,50 @@ def test_a_propeller_that_makes_no_sense_is_refused(tmp_path: Path, old: str, ne
     with pytest.raises(InputError) as caught:
         read_body(file)
     assert words in str(caught.value)
+
+
+OPEN_WATER = "[[0.0, 0.40, 0.05], [0.5, 0.225, 0.035], [1.0, 0.05, 0.02]]"
+KEYS = """[[thruster]]
+name = "main"
+place = [0.0, 0.0, 0.0]
+axis = [1.0, 0.0, 0.0]
+handedness = -1
+[thruster.propeller]
+diameter = "0.2 m"
+blades = 3
+pitch_ratio = 1.0
+area_ratio = 0.6
+highest_rpm = 1200
+open_water = OPEN
+"""
+
+
+def _with(tmp_path: Path, rows: str) -> Body:
+    text = (shipped("geometry") / "finned_spheroid" / "body.toml").read_text(encoding="utf-8")
+    head = text.partition("[[thruster]]")[0]
+    (tmp_path / "body.toml").write_text(f"{head}\n{KEYS.replace('OPEN', rows)}")
+    return read_body(tmp_path / "body.toml")
+
+
+def test_open_water_of_ones_own_gives_thrust_and_torque(tmp_path: Path) -> None:
+    """n 20 /s, D .2 m, 2 m/s: J .5; .225 * 1000 * 400 * .0016 = 144 N, .035 * 1000 * 400 * .00032 = 4.48 N m against +x."""
+    (thruster,) = _with(tmp_path, OPEN_WATER).thrusters
+    made = parameter_thruster(thruster, np.zeros(3), Conditions(1000.0, 2.0))
+    assert made.curve.at(1200.0) == pytest.approx(144.0)
+    assert made.torque_curve is not None
+    assert made.torque_curve.at(1200.0) == pytest.approx(4.48)
+    assert made.handedness == -1
+    assert made.curve.at(599.0) == pytest.approx(0.0, abs=1e-9)  # J 1 at 600 rpm: nothing is known of what is slower
+    (short,) = _with(tmp_path, "[[0.0, 0.40], [1.0, 0.05]]").thrusters
+    assert parameter_thruster(short, np.zeros(3), Conditions(1000.0, 2.0)).torque_curve is None
+
+
+@pytest.mark.parametrize(
+    "rows",
+    ["[[0.0, 0.4]]", "[[0.1, 0.4], [0.5, 0.2]]", "[[0.0, 0.4], [0.5, 0.45]]", "[[0.0, 0.4], [0.5, 0.2, 0.03]]", "[[0.0, 0.4], [0.5, -0.1]]", '"x"'],
+)  # fmt: skip
+def test_what_is_no_open_water_is_refused(tmp_path: Path, rows: str) -> None:
+    with pytest.raises(InputError) as refused:
+        _with(tmp_path, rows)
+    assert (refused.value.column or "").endswith("open_water")
+    assert refused.value.line

@@ -35,11 +35,8 @@ OCTAVE = shutil.which("octave-cli")
 def of(name: str) -> tuple[ParameterFile, np.ndarray, np.ndarray, np.ndarray]:
     s = SETS[name]
     file = ParameterFile.model_validate_json(json.dumps(s.parameters)).model_copy(update={"name": f"v_{name}"})
-    limits = {x.control: x.limit for x in file.surfaces}
     nu = np.array([v["nu"] for v in s.vectors], dtype=float)
     delta = np.array([v.get("delta", [0.0] * 3) for v in s.vectors])
-    for k, c in enumerate(("dr", "ds", "db")):
-        delta[:, k] = np.clip(delta[:, k], -limits.get(c, np.inf), limits.get(c, np.inf))
     due = np.array([v["force"] if v["force"] is not None else [np.nan] * 6 for v in s.vectors])
     return file, nu, delta, due
 

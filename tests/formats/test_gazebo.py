@@ -250,9 +250,9 @@ def test_weight_buoyancy_and_righting_moment_are_those_of_simulate(suboff: Study
     files = (
         of_a_vehicle.floating(),
         second.golden(),
-        torpedo(),
-        huuv_file(read_huuv()),
         *suboff.parameter_files.values(),
+        huuv_file(read_huuv()),
+        torpedo(),
     )
     for file in files:
         moved = vehicle(file, free=("u", "v", "r")).restoring(attitudes())

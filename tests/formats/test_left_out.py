@@ -78,6 +78,15 @@ def test_an_sdf(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+def test_a_model_that_a_world_includes(tmp_path: Path) -> None:
+    """As gz-sim's own auv_controls.sdf: the plugin stands in the world, the vehicle in a model of elsewhere."""
+    kind = ("gz-sim-hydrodynamics-system", "gz::sim::systems::Hydrodynamics")
+    include = "<include><uri>https://fuel.gazebosim.org/1.0/a/models/MBARI%20Tethys%20LRAUV</uri></include>"
+    text = sdf(kind, "")
+    file = read(tmp_path, text.replace("</model>", f"{include}</model>", 1), "toy.sdf")
+    assert listed(file)["includes"] == {"MBARI%20Tethys%20LRAUV"}
+
+
 def test_a_urdf_of_uuv_simulator(tmp_path: Path) -> None:
     text = (DATA / "rexrov.urdf").read_text(encoding="utf-8")
     more = "<scaling_damping>2</scaling_damping><type>fossen</type>"
@@ -87,6 +96,30 @@ def test_a_urdf_of_uuv_simulator(tmp_path: Path) -> None:
     lauv = listed(read(tmp_path, (DATA / "lauv.urdf.xacro").read_text(encoding="utf-8"), "lauv.urdf.xacro"))
     assert "hydrostatics" not in lauv
     assert lauv["ignored"] >= {"<quadratic_damping> row 2 column 6"}
+
+
+def test_macros_and_includes_of_xacro(tmp_path: Path) -> None:
+    """As eca_a9_base.xacro has them: four fins and a thruster, of which nothing was said; sensors move nothing."""
+    text = (DATA / "lauv.urdf.xacro").read_text(encoding="utf-8")
+    calls = "".join(f'<xacro:fin_macro namespace="a" fin_id="{k}"/>' for k in range(4))
+    calls += '<xacro:thruster_module_first_order_basic_fcn_macro namespace="a"/><xacro:imu_plugin_macro namespace="a"/>'
+    calls += '<xacro:include filename="$(find lauv_description)/urdf/lauv_thrusters.xacro"/>'
+    file = read(tmp_path, text.replace("</robot>", f"{calls}</robot>"), "more.urdf.xacro")
+    assert listed(file)["macros"] == {"4 fin_macro", "thruster_module_first_order_basic_fcn_macro"}
+    assert "lauv_thrusters.xacro" in listed(file)["includes"]
+    assert [f.severity for f in file.findings if dict(f.facts).get("kind") == "macros"] == [Severity.WARN]
+
+
+def test_parts_of_a_stonefish_robot_beside_a_mesh(tmp_path: Path) -> None:
+    """Mass and volume are sums: where a mesh states neither, what the other parts state is left out as well, and named."""
+    frame = '<compound_transform rpy="0 0 0" xyz="0 0 0"/>'
+    text = f"""<scenario><robot name="auv"><base_link name="v" type="compound">
+      <external_part name="Hull" type="model" physics="submerged" buoyant="true"><physical><mesh filename="h.obj"/></physical>{frame}</external_part>
+      <internal_part name="Battery" type="cylinder" physics="submerged" buoyant="true"><dimensions radius="0.1" height="0.5"/>
+      <mass value="70.0"/>{frame}</internal_part></base_link></robot></scenario>"""
+    found = listed(read(tmp_path, text, "auv.scn"))
+    assert found["inertia"] == {"mass of Hull", "70 kg of Battery"}
+    assert found["hydrostatics"] == {"volume of Hull", "0.01571 m^3 of Battery"}
 
 
 def test_an_xdyn_body(tmp_path: Path) -> None:

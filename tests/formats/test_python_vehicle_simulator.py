@@ -91,7 +91,7 @@ def test_nothing_is_lost() -> None:
     assert loss.not_held == ()
     assert loss.relative.max() < 1e-9
     (said,) = loss.lost
-    assert str(said).startswith("missing: mass and moments of inertia: the file has none; dynamics() asks")
+    assert str(said).startswith("missing: mass and moments of inertia: the file has none; dynamics() asks for m")
     assert export(with_mass(made.full(3)), "python_vehicle_simulator").lossless
 
 
@@ -142,9 +142,16 @@ def test_the_inertia_of_the_file_is_used(tmp_path: Path) -> None:
     np.testing.assert_allclose(after[:6], before[:6] + step * rate, rtol=1e-9, atol=1e-12)
 
 
-def test_unknown_inertia_is_asked_for(tmp_path: Path) -> None:
+def test_a_mass_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
     out = alone(tmp_path, made.plain(), steps=1)
-    assert "m, Ix, Iy, Iz" in out["refused"]
+    assert "does not state m" in out["refused"]
+
+
+def test_a_rotation_of_unknown_inertia_is_held(tmp_path: Path) -> None:
+    out = alone(tmp_path, torpedo(), arguments={"Ix": None}, steps=6, step=0.02)
+    states = np.array(out["states"])
+    assert not states[:, 3].any()
+    assert np.abs(states[-1, 4:6]).min() > 0.0
 
 
 @pytest.mark.parametrize("name", made.HOSTILE)

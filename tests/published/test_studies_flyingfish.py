@@ -8,11 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from coeflab.cli import as_json, show
+from coeflab.cli import show
 from coeflab.core.provenance import WORKS
 from coeflab.motion.trim.operating_point import Outcome
 from coeflab.published.flyingfish.model import calibrated, read_flyingfish, trim
 from coeflab.report.acceptance import Acceptance, ComparedTable
+from coeflab.report.as_json import studies as as_json
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from coeflab.cli import as_json, show
+from coeflab.cli import show
 from coeflab.published.urv import acceptance as urv
 from coeflab.published.urv import tasks, theory
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.report.as_json import studies as as_json
 
 
 @pytest.fixture(scope="module")

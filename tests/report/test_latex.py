@@ -118,6 +118,29 @@ def test_symbols_numbers_and_letters(written: str, set_as: str) -> None:
     assert latex.tex(written) == set_as
 
 
+def test_numbers_and_units_are_those_of_siunitx() -> None:
+    rows = (
+        ("a 1", "-0.0147 +- 0.0019", "N*m/(rad/s)", "1.2e-05"),
+        ("012", "+3", "deg", "-"),
+        ("x", "3 of 5", "%", "1,2"),
+    )
+    text = of_one(Table("T", ("", "ours", "unit", "n"), rows, (), frozenset({0, 2})))
+    balanced(text)
+    assert r"\usepackage{siunitx}" in text
+    assert r"a 1 & \num{-0.0147 \pm 0.0019} & \unit{N.m/(rad/s)} & \num{1.2e-05} \\" in text
+    assert r"012 & \num{+3} & \unit{deg} & " in text
+    assert r"$x$ & 3 of 5 & \% & 1,2 \\" in text
+
+
+def test_works_are_bibtex_whatever_their_key() -> None:
+    works = (("roddy1990", "R. F. Roddy, 5 % & more, 1990."), ("A. B, {C}", "A. B, {C}"), ("A. B, C", "A. B, C"))
+    text = latex.render(replace(Document("Title", "", ()), works=works))["report.bib"].decode()
+    assert re.findall(r"@misc\{([\w-]+),", text) == ["roddy1990", "A-B-C", "A-B-C-2"]
+    assert "note = {R. F. Roddy, 5 \\% \\& more, 1990.}" in text
+    assert text.count("{") == text.count("}") == 9
+    assert list(latex.render(Document("Title", "", ()))) == ["report.tex"]
+
+
 def test_a_users_text_holds_no_symbol() -> None:
     with keeping(("Yv' of us",)):
         assert latex.tex("Yv' of us: Yv'") == "Yv' of us: $Y_{v}'$"
@@ -128,7 +151,7 @@ def test_a_long_table_goes_on_and_text_folds() -> None:
     text = of_one(Table("Long", ("n", "what"), rows, ("Note.",), frozenset({1})))
     balanced(text)
     assert r"\begin{longtable}{@{}r>{\raggedright\arraybackslash}p{" in text
-    assert text.index(r"\endfirsthead") < text.index(r"\endhead") < text.index("\n0 & ")
+    assert text.index(r"\endfirsthead") < text.index(r"\endhead") < text.index("\n\\num{0} & ")
     assert text.count("n & what") == 2
     assert text.count("Long") == 1
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.cli import as_json
 from coeflab.core.provenance import work
+from coeflab.report.as_json import studies as as_json
 from coeflab.report.content import core, document
 from coeflab.report.document import Document, Section
 from coeflab.report.first_page import answer

@@ -30,9 +30,9 @@ def test_stability_has_indices_roots_and_figures():
     (section,) = stability_sections(with_files(made()))
     indices, roots = section.tables
     made_of = section.subsections[0].tables[0]
-    assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
+    assert [row[1] for row in indices.rows] == ["G_h", "G_v", "r'/dr"]
     assert [row[:2] for row in made_of.rows] == [("synthetic", "G_h"), ("synthetic", "G_v")]
-    assert [row[4] for row in indices.rows] == ["stable, no U95", "stable at high speed, no U95"]
+    assert [row[4] for row in indices.rows[:2]] == ["stable, no U95", "stable at high speed, no U95"]
     assert all("no U95" in row[5] for row in indices.rows)
     assert [row[-1] for row in roots.rows] == ["none", "none"]
     assert len(section.figures) == 2
@@ -136,7 +136,7 @@ def test_derivatives_of_the_literature_are_named_beside_measured_ones():
 def test_a_missing_rate_derivative_is_named():
     few = {s: v for s, v in STABLE.items() if s not in ("Nr", "Zq", "Mq", "Zw", "Mw")}
     (section,) = stability_sections(with_files(made(few)))
-    assert [t.title for t in section.tables] == ["Stability indices"]
+    assert [t.title for t in section.tables] == ["Standard criteria"]
     assert [t.title for t in section.subsections[0].tables] == ["Mass and inertia used"]
     assert section.tables[0].rows == (("synthetic", "G_h", "-", "-", "no value", "missing: Nr'"),)
 
@@ -174,7 +174,7 @@ def test_an_index_stands_beside_the_one_that_the_same_source_prints():
     (section,) = stability_sections(replace(with_files(file, other), references=published))
     indices = section.tables[0]
     assert indices.headers[4] == "published"
-    assert [row[4] for row in indices.rows] == ["-0.443297", "-", "-", "-"]
+    assert [row[4] for row in indices.rows if row[1].startswith("G")] == ["-0.443297", "-", "-", "-"]
     assert (
         "published: G_h of synthetic: Roddy configuration 2 (Table 4, report p. 19, configuration 2)" in indices.notes
     )

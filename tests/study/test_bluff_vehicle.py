@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import trimesh
 
+from coeflab.bodies.simplify.source import subject
 from coeflab.core.finding import Severity
 from coeflab.study.checks import ideal_fluid
-from coeflab.study.estimated_vehicle import asked, from_shape, subject
+from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
 

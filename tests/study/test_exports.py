@@ -178,7 +178,7 @@ def test_a_plan_of_a_program_has_no_file_to_name(study: Study) -> None:
 
 
 def test_json_names_the_losses(study: Study) -> None:
-    from coeflab.cli.as_json import study as as_json
+    from coeflab.report.as_json.studies import study as as_json
 
     told = json.loads(json.dumps(as_json(study, [])))["exports"]
     assert [(t["parameter_file"], t["target"], t["lossless"]) for t in told] == [

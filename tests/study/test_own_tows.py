@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.cli import as_json, show
+from coeflab.cli import show
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.report.as_json import studies as as_json
 from coeflab.report.sections.campaign import tow_sections
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.report.tables.results import by_campaign

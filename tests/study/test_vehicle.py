@@ -17,6 +17,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mass_model import MassModel, MassPart
 from coeflab.bodies.pieces import Control
 from coeflab.bodies.readers import read_body
+from coeflab.bodies.simplify.source import subject
 from coeflab.bodies.thrusters import Thruster
 from coeflab.cli.vehicle import typed
 from coeflab.core.errors import InputError
@@ -42,7 +43,7 @@ from coeflab.report.sections.estimates import (
 )
 from coeflab.study import estimated_vehicle as workbench_vehicle
 from coeflab.study.checks import buoyancy, export_loss, longest_axis
-from coeflab.study.estimated_vehicle import asked, from_shape, subject
+from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
 from coeflab.study.study import Plan, Study

@@ -9,23 +9,27 @@ import numpy as np
 import pytest
 
 from coeflab.core.axes import Datum
-from coeflab.core.errors import ScalingMismatchError
+from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from coeflab.vehicle.comparison import coefficient_set, compare
 from coeflab.vehicle.matching import by_plain_names
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import typed_file
+from coeflab.vehicle.own_numbers import imported_file, own_number, own_numbers, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import plausibility
 
 DENSITY = 1000.0  # of the added mass; the files' is another
 
 
 def file(name: str, *numbers: str, about: str = "cg", **more: Any) -> ParameterFile:
-    """Two metres, 1.5 m/s; all made up."""
-    return typed_file(
-        name, numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, **more
+    """Two metres, 1.5 m/s; all made up, slopes under two names too, which nobody may type."""
+    one = typed_file(
+        name, numbers[:1], length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, **more
     )
+    origin, read = one.reference_point.origin, [own_number(n) for n in numbers]
+    every = imported_file(name, name, one.scaling, one.conditions, np.zeros(3), origin, read)
+    return one.model_copy(update={"coefficients": every.coefficients, "covariance": every.covariance})
 
 
 def at(made: ParameterFile, *point: float) -> ParameterFile:
@@ -174,3 +178,18 @@ def test_damping_about_rest_is_no_other_name_of_a_slope() -> None:
     done = merged(base.model_copy(update={"coefficients": rest}), file("other", "Yv'=-0.05"))
     assert numbers(done.parameters) == {"Yv'": -0.03, "Yuv'": -0.05}
     assert [(r.symbol, r.before and r.before.value) for r in done.replaced] == [("Yuv'", -0.02)]
+
+
+@pytest.mark.parametrize(
+    ("second", "severity"), [("Yuv'=-0.03", "fail"), ("Yv|u|'=-0.02", "warn"), ("Yvv'=-0.03", ""), ("Yrr'=-0.02", "")]
+)
+def test_a_slope_under_two_names_is_found_in_any_file(second: str, severity: str) -> None:
+    """An equal number is one slope written twice; another is a sum, as a straight course feels it."""
+    found = [c for c in plausibility(file("twice", "Yv'=-0.03", second)) if "one slope" in c.statistic]
+    assert [str(c.severity) for c in found] == [severity] * bool(severity)
+
+
+def test_a_slope_under_two_names_is_not_typed() -> None:
+    with pytest.raises(InputError, match="Yuv' and Yv', which are one slope"):
+        own_numbers(["Yuv=-65 N/(m/s)^2", "Nr'=-0.01", "Yv=-130 N/(m/s)"])
+    assert len(own_numbers(["Yuv=-65 N/(m/s)^2", "Yvv=-130 N/(m/s)^2"])) == 2

@@ -39,6 +39,25 @@ def test_equal_studies_give_equal_pages(bench):
     assert len(first["workbench.html"]) < 300_000
 
 
+def test_a_bar_goes_on_while_the_zigzag_is_computed(opened):
+    page = opened()
+    assert not page.locator("#bench progress").is_visible()
+    page.evaluate("""() => {
+      const bar = document.querySelector("#bench progress");
+      window.parts = [];
+      new MutationObserver(() => window.parts.push([bar.value, getComputedStyle(bar).visibility])).observe(bar, { attributes: true });
+    }""")
+    page.focus("#bench-limit")
+    page.keyboard.press("ArrowLeft")
+    settled(page)
+    parts = page.evaluate("window.parts")
+    values = [value for value, seen in parts if seen == "visible"]
+    assert values[0] == 0.0
+    assert values == sorted(values)
+    assert 0.5 < values[-1] <= 1.0
+    assert parts[-1][1] == "hidden"
+
+
 def test_keyboard_alone_changes_value_and_brings_it_back(opened):
     page = opened()
     before = page.evaluate(SHOWN)

@@ -22,7 +22,6 @@ def explain_options() -> None:
     from coeflab.core.declarations import meanings, taken
     from coeflab.core.options import described
     from coeflab.core.table import Table
-    from coeflab.motion.simulators import SIMULATORS
 
     named = tuple((f"--manoeuvre {name}", one.summary) for name, one in MANOEUVRES.items())
     notes = ("Without --manoeuvre: phases.",)
@@ -34,7 +33,7 @@ def explain_options() -> None:
         if own:
             heads = ("option", "takes", "default", "meaning")
             show.table(Table(f"Options of {name}", heads, own, (), frozenset({0, 1, 2, 3})))
-    explain(SIMULATORS, "arm")
+    explain("simulators", "arm")
     rows = [
         (f"{table}{key}", takes.words, meanings(kind)[key])
         for table, kind in (("[[phase]] ", ArmPhaseKeys), ("[start] ", StartKeys), ("[controller] ", ControllerKeys))

@@ -175,14 +175,17 @@ def _more(shape: Shape, panelled: _Panelled, factor: float, chosen: Options) -> 
 
 
 def _resolved(shape: Shape, chosen: Options) -> _Panelled:
-    """Panels as asked; more where the body is thinner than they are large on most of its surface, as a tube or a ring is."""
+    """Panels as asked; more where the body is thinner than they are large on most of its surface, as a tube or a ring is.
+
+    So too where no coarser mesh can be made of these, which alone would leave the error unknown.
+    """
     panelled = _panelled(shape, chosen.panels, chosen)
     most = THIN_SHARE
-    while _thin_share(panelled) > most:
+    while _thin_share(panelled) > most or (len(panelled.meshes) == 1 and chosen.extrapolate == "yes"):
         finer = _more(shape, panelled, RAISED, chosen)
         if finer is None:
             break
-        panelled, most = finer, RESOLVED
+        panelled, most = finer, RESOLVED if _thin_share(panelled) > most else most
     return panelled
 
 

@@ -238,14 +238,17 @@ def sound(
     unfilled = ""
     if fill or (repair and not open_sheets):
         vertices, faces = joined(vertices, faces, JOINED)
+        count = len(faces)
         if repair:
-            faces = faces[~repeated(faces)]
+            faces = _once(faces)
+        single = len(faces)
         turned = oriented(faces)
         done = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
         vertices, faces, unfilled = done.vertices, done.faces, _unfilled(done)
         many = f"{done.number} hole{'s' * (done.number != 1)} of up to {SMALL_HOLE:.0%} of the surface filled"
         words = (many,) if fill or done.number else ()
         words += (f"not filled: {unfilled}",) if unfilled else ()
+        words += (f"{count - single} duplicate faces dropped",) if count > single else ()
     thin = np.zeros((0, 3), dtype=np.int64)
     if open_sheets:
         vertices, faces = joined(vertices, faces, JOINED)
@@ -301,8 +304,7 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     vertices, faces = joined(vertices, faces, JOINED)
     _say(words, before - len(vertices), "vertices joined")
     if len(faces):
-        faces = faces[~_membranes(faces)]
-        faces = faces[~repeated(faces)]
+        faces = _once(faces)
     if not len(faces):
         raise InputError(
             "no face with an area", "triangles of a closed surface", file=file, advice="Is the file damaged?"
@@ -332,8 +334,31 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     )
 
 
-def _membranes(faces: Faces) -> NDArray[np.bool_]:
-    """Pairs of faces on the same corners that look at each other: walls between solids that were glued together."""
+def _once(faces: Faces) -> Faces:
+    """No face twice: of walls between solids that were glued together none is left, of a shell that is given from both sides one."""
+    paired = np.flatnonzero(_facing(faces))
+    if not len(paired):
+        return faces[~repeated(faces)]
+    single = paired[~repeated(faces[paired])]
+    count, shell = shells(faces[single])
+    ends = np.sort(faces[single][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, edge, number = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
+    rim = (number[edge.ravel()] == 1).reshape(-1, 3).any(axis=1)
+    is_open = np.bincount(shell, rim, count) > 0.0
+    wall = _same(faces, faces[single[is_open[shell]]])
+    return faces[~wall & ~repeated(faces)]
+
+
+def _same(faces: Faces, others: Faces) -> NDArray[np.bool_]:
+    """Faces on the same corners as one of the others, whichever way round."""
+    if not len(others):
+        return np.zeros(len(faces), dtype=bool)
+    key = np.unique(np.sort(np.concatenate([others, faces]), axis=1), axis=0, return_inverse=True)[1].ravel()
+    return np.isin(key[len(others) :], key[: len(others)])
+
+
+def _facing(faces: Faces) -> NDArray[np.bool_]:
+    """Pairs of faces on the same corners that look at each other."""
     turned = np.stack([np.roll(faces, -k, axis=1) for k in range(3)])[np.argmin(faces, axis=1), np.arange(len(faces))]
     count = int(faces.max()) + 1
     key = (turned[:, 0] * count + turned[:, 1]) * count + turned[:, 2]

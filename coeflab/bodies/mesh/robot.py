@@ -53,11 +53,16 @@ def _joined(pieces: list[Surface]) -> Surface:
     from manifold3d import Manifold, OpType
 
     from coeflab.bodies.mesh.solids import solid, surface
+    from coeflab.bodies.mesh.topology import repeated, welded
 
     try:
-        solids = [solid(*piece) for piece in pieces]
+        # A union would drop what is given from both sides.
+        solids = (
+            [] if any(repeated(welded(*piece)[1]).any() for piece in pieces) else [solid(*piece) for piece in pieces]
+        )
     except ValueError:
-        # Open pieces are left to the gates, which name what is wrong with them.
+        solids = []
+    if not solids:  # such pieces and open ones are left to the gates, which name what is wrong with them
         starts = np.cumsum([0, *(len(v) for v, _ in pieces[:-1])])
         return np.concatenate([v for v, _ in pieces]), np.concatenate(
             [f + s for (_, f), s in zip(pieces, starts, strict=True)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.units import factor
 
 BODY, CAMPAIGN = "body.toml", "campaign.toml"
+ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 AXES_TYPED = "FLU (x forward, y port, z up), FRD (x forward, y starboard, z down), CFD (x aft, y starboard, z up) or three directions like forward,port,up"
 
 
@@ -57,6 +59,34 @@ def mesh_body(
     unit, axes = unit or own_unit, axes or own_axes
     _require_stated(unit, axes, path)
     return _bare(path, _factor(unit, path), _axes(axes, path), repair, fill, sheets)
+
+
+def subject(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
+) -> Body:
+    """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
+
+    Parameters
+    ----------
+    name : str
+        A mesh file, a body.toml, its folder or a shipped body.
+    unit, axes : str
+        Of a mesh file.
+    repair, fill, sheets : bool
+        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
+
+    Raises
+    ------
+    InputError
+        As of `mesh_body`.
+    """
+    body = mesh_body(name, unit, axes, repair, fill, sheets)
+    middle = body.configurations[0].centre_of_buoyancy
+    bare = body.datum.id.startswith("origin of ") and not body.lengths
+    if not bare or middle is None:
+        return body
+    size = body.require_shape().length
+    return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
 
 
 def names_body(name: str) -> bool:

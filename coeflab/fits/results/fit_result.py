@@ -5,6 +5,7 @@ What every campaign adds to a joint fit, and whether one law serves them all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isinf, isnan
 
@@ -340,6 +341,27 @@ class Tied:
         object.__setattr__(self, "moves", locked(self.moves))
 
 
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Shared:
+    """What the coefficients of one fit have in common with those of another, whose numbers moved them to another point.
+
+    Attributes
+    ----------
+    fit, campaign : str
+        The other.
+    covariance : (n, m) array
+        Of this fit's coefficients with the other's.
+    """
+
+    fit: str
+    campaign: str
+    covariance: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "covariance", locked(self.covariance))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FitResult:
     """Coefficients of one campaign, or of several jointly, by one fit.
@@ -369,6 +391,8 @@ class FitResult:
         Of tables in which nothing varies but the speed.
     findings : tuple of Finding
         What is assumed, left out or not assessed; they travel with its numbers.
+    shared : tuple of Shared
+        Of fits that were moved to one point together.
     """
 
     fit: str
@@ -385,6 +409,7 @@ class FitResult:
     oscillations: tuple[Oscillation, ...] = ()
     straight: tuple[StraightRuns, ...] = ()
     findings: tuple[Finding, ...] = ()
+    shared: tuple[Shared, ...] = ()
 
     @property
     def law(self) -> str:
@@ -411,3 +436,32 @@ class FitResult:
             if s.symbol == symbol.removesuffix("'"):
                 return s
         raise KeyError(symbol)
+
+
+def covariance_of(fits: Sequence[FitResult]) -> Array:
+    """(k, k) covariance of all coefficients of some fits, one after the other; NaN where a U95 is not known.
+
+    Fits have a covariance where one is tied to the other, or where both were moved to a point together.
+    """
+    ends = np.cumsum([0, *(len(f.coefficients.coefficients) for f in fits)])
+    out = np.zeros((ends[-1], ends[-1]))
+    for i, a in enumerate(fits):
+        for j, b in enumerate(fits[: i + 1]):
+            block = _between(a, b)
+            out[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
+            out[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
+    void = np.isnan(np.diag(out))
+    out[void, :] = out[:, void] = np.nan
+    return out
+
+
+def _between(a: FitResult, b: FitResult) -> Array:
+    if a is b:
+        return a.coefficients.covariance
+    for f, other, turned in ((a, b, False), (b, a, True)):
+        found = next((s.covariance for s in f.shared if (s.fit, s.campaign) == (other.fit, other.campaign)), None)
+        if found is None and f.tied is not None and (f.tied.fit, f.campaign) == (other.fit, other.campaign):
+            found = f.tied.moves @ np.nan_to_num(other.coefficients.covariance)
+        if found is not None:
+            return found.T if turned else found
+    return np.zeros((len(a.coefficients.coefficients), len(b.coefficients.coefficients)))

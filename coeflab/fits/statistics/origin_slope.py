@@ -79,7 +79,7 @@ class OriginSlope:
         return self.u95 if np.isnan(self.with_all_u95) else self.with_all_u95
 
 
-@remembered(24)
+@remembered(64)
 def estimate(x: Array, y: Array, se: Array | None = None, *, odd: bool = False) -> OriginSlope:
     """Slope of one campaign at x = 0.
 

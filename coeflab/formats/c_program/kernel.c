@@ -31,7 +31,7 @@ static double held(int k, const double *x, double *near, int *inside)
     const int d = DIMENSION[k], m = SPACE_END[k] - SPACE_BEGIN[k];
     const double *space = SPACES + W * SPACE_BEGIN[k], *face = FACES + W * SPACE_BEGIN[k];
     const double *map = MAPS + W * D * MAP_BEGIN[k];
-    double scaled[D], best = -1.0, t = 0.0;
+    double scaled[D] = {0.0}, best = -1.0, t = 0.0;
     int i, j, r, apart = 0;
     *inside = 1;
     for (r = 0; r < m; r++) {
@@ -44,7 +44,7 @@ static double held(int k, const double *x, double *near, int *inside)
     if (BOXED[k] || *inside) return 0.0;
     for (i = 0; i < d; i++) scaled[i] = (x[i] - LOW[D * k + i]) / SIZE[D * k + i];
     for (r = MAP_BEGIN[k]; r < MAP_END[k]; r++, map += W * D) {
-        double foot[D], away = 0.0;
+        double foot[D] = {0.0}, away = 0.0;
         int in = 1;
         for (i = 0; i < d; i++) {
             foot[i] = map[W * i + D];

@@ -229,6 +229,6 @@ def in_words(parameters: ParameterFile) -> tuple[str, ...]:
         out += [f"fixed at no tilt: {', '.join(tilting)}"] if tilting else []
     if fins or thrusters:
         out.append(
-            f"links {STAND_IN}... weigh {SMALL_MASS:g} kg each, which is none of the vehicle's; what is seen is no mesh of the body"
+            f"links {STAND_IN}... weigh {SMALL_MASS:g} kg each, which is none of the vehicle's, and are seen as boxes"
         )
     return tuple(out)

@@ -29,6 +29,7 @@ from coeflab.vehicle.second_order import FLU, SecondOrder, slot
 INERTIA = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 AXES = "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not"
 DEFAULT_MASS = 1.0  # kg, of SDFormat
+ELLIPSOID = "The visual is an ellipsoid of that volume, no mesh of the body."
 SYSTEMS = {
     "Physics": "physics",
     "UserCommands": "user-commands",
@@ -82,7 +83,10 @@ def sdf(
         length.text = number(p.scaling.length)
         drive(model, p, LINK, at.length, at.radius)
     frame = f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3"
-    shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. The visual is an ellipsoid of that volume, no mesh of the body."
+    shape = (
+        "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. "
+        + ELLIPSOID
+    )
     inertia = f"Inertia of the water: {one_line(water_inertia(p).source)}"
     titled = f"{one_line(p.name)}, body: {one_line(p.body)}"
     water = "world" if name != "world" else "world_of_water"

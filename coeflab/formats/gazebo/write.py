@@ -23,6 +23,7 @@ from coeflab.formats.gazebo.sdf import (
     sdf_steered_force,
     tags,
 )
+from coeflab.formats.gazebo.seen import with_mesh
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU
@@ -30,10 +31,10 @@ from coeflab.vehicle.second_order import FLU
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
-holds = frozenset({"hydrostatics", "thrusters", "surfaces"})
+holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 added_mass = sdf_added_mass
-steered_force = sdf_steered_force
+steered_force, dressed = sdf_steered_force, with_mesh
 
 VERSION = "1.10"
 

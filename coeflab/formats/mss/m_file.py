@@ -36,7 +36,15 @@ _NAMED = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*", re.ASCII)
 _OPENING, _CLOSING = "([{", ")]}"
 
 
-TABLED = "\nfunction F = tabled("  # where an export writes tables as code
+TABLED, DRIVEN = (
+    "\nfunction F = tabled(",
+    "\nfunction F = driven(",
+)  # where an export writes tables and thrusters as code
+
+
+def own_part(text: str) -> str:
+    """A function file without the functions of tables and thrusters that an export writes behind it."""
+    return text.partition(TABLED)[0].partition(DRIVEN)[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +158,7 @@ class MFile:
         Calls of `imlay61` and `spheroid`, of which mass, inertia and added mass are computed.
     vectors : mapping of last name to three numbers
         Such as r_bG.
-    tabled : bool
+    tabled, driven : bool
         Whether look-up tables follow, which are not read.
     """
 
@@ -164,6 +172,7 @@ class MFile:
     calls: tuple[str, ...] = ()
     vectors: dict[str, tuple[float, ...]] = field(default_factory=dict)
     tabled: bool = False
+    driven: bool = False
 
     def needed(self, names: Iterable[str]) -> set[str]:
         """These names and all that their expressions name."""
@@ -193,10 +202,13 @@ def read_m_file(path: Path) -> MFile:
     InputError
         No derivative, or one that is no plain arithmetic or has two values; NaN or Inf in any place.
     """
-    text, tabled, _ = read_text(path, M_FILE_BYTES).partition(TABLED)
+    whole = read_text(path, M_FILE_BYTES)
+    text = own_part(whole)
     lines = assignments(text)
     adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines) or "imlay61" in text
-    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {}, tabled=bool(tabled))
+    out = MFile(
+        {}, {}, {}, adds, _CHANGED.search(text) is not None, {}, {}, tabled=TABLED in whole, driven=DRIVEN in whole
+    )
     names: dict[str, float] = {"pi": math.pi}
     for a in lines:
         group, _, last = a.target.rpartition(".")

@@ -34,10 +34,10 @@ from coeflab.formats.mss.m_file import (
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.law.symbols import COMPONENTS
+from coeflab.law.symbols import COMPONENTS, CONTROLS
 from coeflab.vehicle.imported_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterHydrostatics
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units recognised by rho or g"
 citations = ("sname1950", "fossen2011", "mss")
@@ -184,10 +184,16 @@ def _own(found: MFile, path: Path) -> Stated:
         matrix_body=found.texts.get("MA_body", ""),
         matrix_method=method or "stated",
         mass=_own_mass(n),
+        surfaces=tuple(
+            ParameterSurface(control=c, limit=n[f"limit_{c}"], rate=n.get(f"rate_{c}"))
+            for c in CONTROLS
+            if f"limit_{c}" in n
+        ),
         notes=doubts,
         findings=(
             *left_behind(found, path.stem, OWN_NUMBERS),
             *left_out(path.stem, "terms", ["look-up tables of the function tabled"] * found.tabled),
+            *left_out(path.stem, "actuators", ["thrusters of the function driven"] * found.driven),
         ),
     )
 
@@ -274,6 +280,7 @@ EQUATIONS = re.compile(r"tau\w*|D|Dmtrx|g|X_\w+|Y_\w+|Z_\w+|K_\w+|M_\w+|N_\w+")
 FORWARD, TRANSVERSE = ("xG", "x_G", "xg"), ("Iy", "Iyy", "Iz", "Izz")
 READ = (*DENSITIES, *GRAVITIES, *LENGTHS, "U0", "U", "r2", "r3", "r4", "r5")
 OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity", "mxG", "xG", "yG", "zG", "I_transverse",
+               *(f"{kind}_{c}" for kind in ("limit", "rate") for c in CONTROLS),
                *(f"I{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from coeflab.core.arithmetic import evaluate
 from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, matlab, one_line
 from coeflab.formats.coded_tables import KEYS, coded_tables, law_of_tables
+from coeflab.formats.coded_thrusters import coded_thrusters, command_names, held_in_words, limits, read_angle
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     COURSE,
@@ -34,7 +35,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header, unstated
-from coeflab.formats.mss.m_file import TABLED, assignments
+from coeflab.formats.mss.m_file import TABLED, assignments, own_part
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
@@ -44,11 +45,29 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
 citations = ("sname1950", "fossen2011", "mss")
 adds_coriolis = False
-holds = frozenset({"hydrostatics", "tables"})
+holds = frozenset({"hydrostatics", "tables", "thrusters", "surfaces"})
 not_held, missing = not_written, missing_water
 
 OWN = frozenset(
-    {"nu", "delta", "tau", "tabled", "held", "tables", "h", "MA", "U", "course", *MOTIONS, *COMPONENTS, *CONTROLS}
+    {
+        "nu",
+        "delta",
+        "command",
+        "tau",
+        "tabled",
+        "held",
+        "tables",
+        "driven",
+        "curve",
+        "thrusters",
+        "h",
+        "MA",
+        "U",
+        "course",
+        *MOTIONS,
+        *COMPONENTS,
+        *CONTROLS,
+    }
 )
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
@@ -80,7 +99,8 @@ def _place(group: str, name: str) -> str:
 
 
 def _head(function: str, parameters: ParameterFile) -> list[str]:
-    call = f"[tau, MA, h] = {function}(nu, delta)"
+    commands = command_names(parameters)
+    call = f"[tau, MA, h] = {function}(nu, delta{', command' if commands else ''})"
     return [
         f"function {call}",
         f"% {call} returns the force of the water on a body",
@@ -91,6 +111,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%   nu    = [ u v w p q r ]'  velocity through the water at the reference point (m/s, rad/s)",
         "%   delta = [ dr ds db ]'     rudder, stern plane, bow plane (rad), zero if not given",
         *(f"%                             {words}" for words in control_signs(parameters)),
+        *(f"%   command({k}) = {words}, zero if not given" for k, words in enumerate(commands, 1)),
         "%   tau   = [ X Y Z K M N ]'  force and moment about the reference point (N, N m)",
         "%   MA    = added mass matrix about the reference point, positive (kg, kg m, kg m^2)",
         "%   h     = struct of the coefficients",
@@ -98,7 +119,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "% Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:",
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
         "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
-        f"% {propulsion(parameters)}.",
+        *([] if commands else [f"% {propulsion(parameters)}."]),
         *(f"% {words}." for words in _lacking(parameters)),
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
@@ -106,6 +127,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "",
         "if nargin < 1, nu = zeros(6,1); end",
         "if nargin < 2, delta = zeros(3,1); end",
+        *(["if nargin < 3, command = zeros(0,1); end"] if commands else []),
         "",
     ]
 
@@ -138,6 +160,10 @@ def _facts(parameters: ParameterFile) -> list[str]:
         ]
         centre = zip("xyz", p.hydrostatics.centre_of_buoyancy, strict=True)
         facts += [(f"{axis}B", x, "centre of buoyancy (m)") for axis, x in centre]
+    for kind, unit, values in zip(
+        ("limit", "rate"), ("largest angle (rad)", "rad/s, to be kept by the loop"), limits(p), strict=True
+    ):
+        facts += [(f"{kind}_{c}", x, unit) for c, x in values.items()]
     if p.added_mass is not None:
         facts += [("MA_body", p.added_mass.body, ""), ("MA_method", p.added_mass.method, "")]
     return [
@@ -164,12 +190,11 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     lines += ["", f"% Primed acceleration derivatives, the negative of the added mass: {one_line(source)}"]
     lines += [f"h.{name} = {value!r};" for name, value in accelerations.items()]
     tables, wind = coded_tables(parameters)
-    force_lines = _force(terms, accelerations)
-    if tables:
-        force_lines[-1] = "tau = [X; Y; Z; K; M; N] + tabled([u v w p q r], delta(1:3));"
-    lines += ["", *force_lines, "", *_added_mass(accelerations), "end"]
+    lines += ["", *_force(parameters, terms, accelerations, bool(tables)), "", *_added_mass(accelerations), "end"]
     if tables:
         lines += [own_text(resources("coeflab.formats.mss") / "tables.m").rstrip(), "", *_tables(tables, wind)]
+    if parameters.thrusters:
+        lines += [own_text(resources("coeflab.formats.mss") / "driven.m").rstrip(), "", *_thrusters(parameters)]
     return {f"{function}.m": ("\n".join(lines) + "\n").encode()}
 
 
@@ -210,17 +235,40 @@ def _read_tables(text: str) -> ForceLaw:
     return law_of_tables([out[k] for k in sorted(out)], wind)
 
 
-def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
+def _thrusters(parameters: ParameterFile) -> list[str]:
+    """A function that gives the rows of every thruster."""
+    rows = (
+        f"[{'; '.join(' '.join(repr(float(x)) for x in r) for r in part)}];" for part in coded_thrusters(parameters)
+    )
+    return [
+        "function [T, S] = thrusters()",
+        "% T: position, direction, tilt axis (zeros: fixed), lowest and highest tilt, handedness; S: thruster, 0 thrust or 1 torque,",
+        "% lowest and highest command, then coefficients of the command's powers.",
+        *(f"{name} = {part}" for name, part in zip("TS", rows, strict=True)),
+        "end",
+    ]
+
+
+def _force(
+    parameters: ParameterFile, terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float], tabled: bool
+) -> list[str]:
+    largest = limits(parameters)[0]
     scales = {t.length_power for t in terms} | {powers_of(a)[1] for a in accelerations}
     lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
-    lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
+    lines += [
+        f"{c} = {read_angle(c, f'delta({k})', 'h.', c in largest)};"
+        for k, c in enumerate(CONTROLS, 1)
+        if c in written_controls(terms) or tabled
+    ]
     lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
     lines += [f"course = {COURSE};  % {COURSE_MEANS}"] * has_course(terms)
     lines += [f"r{k} = h.rho*h.L^{k}/2;" for k in sorted(scales) if k]
     for component in COMPONENTS:
         parts = [expression(t, _place, "^") for t in terms if t.component == component] or ["0"]
         lines += [f"{component} = " + " ...\n    + ".join(parts) + ";"]
-    return [*lines, "tau = [X; Y; Z; K; M; N];"]
+    more = " + tabled([u v w p q r], [dr ds db])" if tabled else ""
+    more += " + driven(command)" if parameters.thrusters else ""
+    return [*lines, f"tau = [X; Y; Z; K; M; N]{more};"]
 
 
 def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
@@ -243,7 +291,10 @@ def steered_force(
     names, _ = _evaluated(files, nu, controls)
     out = np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
     text = _text(files)
-    return out + _read_tables(text).force(nu, controls) if TABLED in text else out
+    if TABLED not in text:
+        return out
+    held = np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in CONTROLS])
+    return out + _read_tables(text).force(nu, held)
 
 
 def _text(files: Mapping[str, bytes]) -> str:
@@ -261,12 +312,13 @@ def _evaluated(
     files: Mapping[str, bytes], nu: NDArray[np.float64], controls: NDArray[np.float64]
 ) -> tuple[dict[str, Any], str]:
     """What the function's assignments give at velocities (n, 6) and controls (n, 3), and the text of that of MA."""
-    text = _text(files).partition(TABLED)[0]
+    text = own_part(_text(files))
     functions: dict[str, Callable[..., Any]] = {
         "nu": lambda k: nu[:, int(k) - 1],
         "delta": lambda k: controls[:, int(k) - 1],
         "sqrt": np.sqrt,
         "max": np.maximum,
+        "min": np.minimum,
         "abs": np.abs,
     }
     names: dict[str, Any] = {}
@@ -274,7 +326,7 @@ def _evaluated(
     for a in assignments(text):
         if a.target == "MA":
             matrix = a.expression
-        elif a.quoted is None and a.target not in ("nu", "delta", "tau"):
+        elif a.quoted is None and a.target not in ("nu", "delta", "command", "tau"):
             names[a.target] = evaluate(a.expression, names, functions)
     return names, matrix
 
@@ -285,7 +337,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     return (
         *written_changes(parameters, "the function", "h.ideal", "MA"),
         f"tau contains no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
-        propulsion(parameters),
+        *held_in_words(parameters, "command", rates="stand in h and are not kept: the function has no time"),
+        *(() if parameters.thrusters else (propulsion(parameters),)),
         *unstated(parameters, _NAMES),
         "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
     )

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, one_line, python
 from coeflab.formats.coded_tables import coded_tables, law_of_tables
+from coeflab.formats.coded_thrusters import coded_thrusters, command_names, held_in_words, limits, read_angle
 from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     COURSE,
@@ -42,10 +43,11 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in SNAME coefficients"
 citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
 adds_coriolis = False
-holds = frozenset({"hydrostatics", "tables"})
+holds = frozenset({"hydrostatics", "tables", "thrusters", "surfaces", "rates"})
 
 not_held = not_written
 
+UNLIMITED = 1e300
 GRAVITY = 9.81  # m/s^2, as in the simulator's own vehicles (vehicles/otter.py)
 _PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
 _HEADINGS = {
@@ -53,6 +55,15 @@ _HEADINGS = {
     "rest": "Damping about a state of rest, SI, not scaled with U",
     "potential": "Primed products of the ideal fluid, -C_A(nu) nu, that no coefficient above covers",
 }
+_VECTOR = ("rudder (rad)", "stern plane (rad)", "bow plane (rad)", "thrust (N)")
+_TURNED = '''
+    def turned(self, before, order, sampleTime):
+        """Control angles that go from those before to an order at their rates (rad/s), no further than their limits (rad)."""
+        out = np.array(order, float)
+        for k, (limit, rate) in enumerate({angles!r}):
+            out[k] = max(-limit, min(limit, max(before[k] - rate * sampleTime, min(before[k] + rate * sampleTime, out[k]))))
+        return out
+'''
 _HEAD = '''
 import math
 
@@ -69,12 +80,12 @@ class {name}:
     {name}('stepInput', r_z, r_psi, V_current, beta_current)
         current of V_current (m/s) towards beta_current (deg); r_z and r_psi are not used
 
-    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point; None is unknown, and dynamics()
-    asks for it. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
+    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point. Without m dynamics() does not run; a rotation
+    whose moment is None is held. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
     z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
     weight and buoyancy equal.
 
-    u_control = [ rudder (rad), stern plane (rad), bow plane (rad), thrust (N) ], followed without lag.{controls}
+    u_control = [ {vector} ], followed without lag{kept}.{controls}
     """
 
     def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
@@ -88,22 +99,24 @@ class {name}:
         self.r_bg = np.array(r_bg, float)
         self.r_bb = self.r_bg if r_bb is None else np.array(r_bb, float)
         self.volume = volume
-        self.controls = ["Rudder (deg)", "Stern plane (deg)", "Bow plane (deg)", "Thrust (N)"]
+        self.controls = ["Rudder (deg)", "Stern plane (deg)", "Bow plane (deg)", "Thrust (N)"{labels}]
         self.dimU = len(self.controls)
         self.u_actual = np.zeros(self.dimU)
 '''
 _TAIL = '''
     def dynamics(self, eta, nu, u_actual, u_control, sampleTime):
         """[nu, u_actual] = dynamics(eta, nu, u_actual, u_control, sampleTime): one step by Euler's method."""
-        missing = [n for n in ("m", "Ix", "Iy", "Iz") if getattr(self, n) is None]
-        if missing:
-            raise ValueError("the coefficient file does not state " + ", ".join(missing) + "; pass it to the constructor")
+        if self.m is None:
+            raise ValueError("the coefficient file does not state m; pass it to the constructor")
+        moments = [self.Ix, self.Iy, self.Iz]
+        free = [0, 1, 2] + [3 + k for k in range(3) if moments[k] is not None]
+        Ix, Iy, Iz = [x or 0.0 for x in moments]
         S = np.array([[0, -self.r_bg[2], self.r_bg[1]], [self.r_bg[2], 0, -self.r_bg[0]],
                       [-self.r_bg[1], self.r_bg[0], 0]], float)
         Ixy, Ixz, Iyz = self.products
         MRB = np.zeros((6, 6))
         MRB[:3, :3], MRB[:3, 3:], MRB[3:, :3] = self.m * np.eye(3), -self.m * S, self.m * S
-        MRB[3:, 3:] = [[self.Ix, Ixy, Ixz], [Ixy, self.Iy, Iyz], [Ixz, Iyz, self.Iz]]
+        MRB[3:, 3:] = [[Ix, Ixy, Ixz], [Ixy, Iy, Iyz], [Ixz, Iyz, Iz]]
 
         u_c = self.V_c * math.cos(self.beta_c - eta[5])
         v_c = self.V_c * math.sin(self.beta_c - eta[5])
@@ -115,17 +128,18 @@ _TAIL = '''
                                  np.cross(nu_r[3:], momentum[3:]) + np.cross(nu_r[:3], momentum[:3])])
         down = np.array([-math.sin(eta[4]), math.cos(eta[4]) * math.sin(eta[3]), math.cos(eta[4]) * math.cos(eta[3])])
         tau = self.hydrodynamics(nu_r, u_actual[:3])
-        tau[0] += u_actual[3]
+        tau[0] += u_actual[3]@DRIVEN@
         weight = self.m * GRAVITY
         buoyancy = weight if self.volume is None else self.rho * GRAVITY * self.volume
         tau[:3] += (weight - buoyancy) * down
         tau[3:] += np.cross(weight * self.r_bg - buoyancy * self.r_bb, down)
-        nu_dot = Dnu_c + np.linalg.solve(MRB + self.MA, tau - CRB_nu)
-        return nu + sampleTime * nu_dot, np.array(u_control, float)
+        nu_dot = Dnu_c
+        nu_dot[free] += np.linalg.solve((MRB + self.MA)[np.ix_(free, free)], (tau - CRB_nu)[free])
+        return nu + sampleTime * nu_dot, @ACTUAL@
 
     def stepInput(self, t):
         """The thrust that balances the resistance at U0, and no control angles."""
-        return np.array([0.0, 0.0, 0.0, -self.hydrodynamics(self.nu_0)[0]], float)
+        return np.array([0.0, 0.0, 0.0, -self.hydrodynamics(self.nu_0)[0]@ZEROS@], float)
 '''
 
 
@@ -139,6 +153,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     terms, h = written_terms(parameters), parameters.hydrostatics
     accelerations, source = written_accelerations(parameters)
     p, mass = parameters, parameters.mass
+    commands, (largest, turning) = command_names(parameters), limits(parameters)
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
     lines = [
         "#!/usr/bin/env python3",
@@ -156,6 +171,9 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             buoyancy=None if h is None else tuple(map(float, h.centre_of_buoyancy)),
             volume=None if h is None else h.volume,
             controls="".join(f"\n    {words}" for words in control_signs(p)),
+            vector=", ".join((*_VECTOR, *commands)).replace("\\", "/").replace('"', "'"),
+            labels="".join(f", {c!r}" for c in commands),
+            kept=" but for limits and rates of angles" if largest else "",
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",
@@ -174,6 +192,10 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             ]
     lines += ["", f"        # Acceleration derivatives, primed: {one_line(source)}"]
     lines += [f"        self.{name} = {value!r}" for name, value in accelerations.items()]
+    lines += [f"        self.limit_{c} = {x!r}  # rad" for c, x in largest.items()]
+    if commands:
+        for member, rows in zip(("thrusters", "segments"), coded_thrusters(parameters), strict=True):
+            lines += [f"        self.{member} = ["] + [f"            {r!r}," for r in rows] + ["        ]"]
     tables, wind = coded_tables(parameters)
     if tables:
         lines += [
@@ -183,7 +205,21 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             "        self.tables = [",
         ]
         lines += [f"            {t!r}," for t in tables] + ["        ]"]
-    lines += [*_added_mass(accelerations), *_force(terms, bool(tables)), _TAIL.rstrip()]
+    angles = [(largest.get(c, UNLIMITED), turning.get(c, UNLIMITED)) for c in CONTROLS]
+    tail = (
+        _TAIL.replace(
+            "@DRIVEN@", "\n        tau += driven(self.thrusters, self.segments, u_actual[4:])" if commands else ""
+        )
+        .replace(
+            "@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if largest else "np.array(u_control, float)"
+        )
+        .replace("@ZEROS@", ", 0.0" * len(commands))
+    )
+    lines += [*_added_mass(accelerations), *_force(terms, bool(tables), largest), tail.rstrip()]
+    if largest:
+        lines.append(_TURNED.format(angles=angles).rstrip())
+    if commands:
+        lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "driven.py.txt").rstrip())
     if tables:
         lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "tables.py.txt").rstrip())
     return {f"{name}.py": ("\n".join(lines) + "\n").encode()}
@@ -218,7 +254,7 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
     return [*lines, "        ])"]
 
 
-def _force(terms: tuple[ForceTerm, ...], tabled: bool) -> list[str]:
+def _force(terms: tuple[ForceTerm, ...], tabled: bool, largest: Mapping[str, float]) -> list[str]:
     lines = [
         "",
         "    def hydrodynamics(self, nu, delta=(0.0, 0.0, 0.0)):",
@@ -227,7 +263,11 @@ def _force(terms: tuple[ForceTerm, ...], tabled: bool) -> list[str]:
         "        It contains -C_A(nu) nu already, the Munk moment in Nv and Mw: m2c(MA, nu) must not be added.",
         '        """',
         *(f"        {name} = nu[{k}]" for k, name in enumerate(MOTIONS)),
-        *(f"        {name} = delta[{CONTROLS.index(name)}]" for name in written_controls(terms)),
+        *(
+            f"        {c} = {read_angle(c, f'delta[{k}]', 'self.', c in largest)}"
+            for k, c in enumerate(CONTROLS)
+            if c in written_controls(terms) or tabled
+        ),
         "        U = max((u**2 + v**2 + w**2) ** 0.5, 1e-9)",
         *[f"        course = {COURSE}  # {COURSE_MEANS}"] * has_course(terms),
         *_scales({t.length_power for t in terms}),
@@ -236,7 +276,7 @@ def _force(terms: tuple[ForceTerm, ...], tabled: bool) -> list[str]:
         parts = [expression(t, _place, "**") for t in terms if t.component == component] or ["0.0"]
         lines += [f"        {component} = (", *(f"            {'+ ' if i else ''}{p}" for i, p in enumerate(parts))]
         lines.append("        )")
-    more = " + tabled(self.tables, self.speaks, nu, delta)" if tabled else ""
+    more = " + tabled(self.tables, self.speaks, nu, (dr, ds, db))" if tabled else ""
     return [*lines, f"        return np.array([{', '.join(COMPONENTS)}], float){more}"]
 
 
@@ -256,7 +296,9 @@ def steered_force(
             names[node.targets[0].id] = _value(node.value, names)
     out = np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
     tables = _read_tables(methods["__init__"])
-    return out if tables is None else out + tables.force(nu, controls)
+    if tables is None:
+        return out
+    return out + tables.force(nu, np.column_stack([np.broadcast_to(names[c], len(nu)) for c in CONTROLS]))
 
 
 def _read_tables(constructor: ast.FunctionDef) -> ForceLaw | None:
@@ -317,6 +359,10 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
             return names[name][k]
         case ast.Call(func=ast.Name(id="max"), args=[first, second]):
             return np.maximum(_value(first, names), _value(second, names))
+        case ast.Call(func=ast.Name(id="min"), args=[first, second]):
+            return np.minimum(_value(first, names), _value(second, names))
+        case ast.UnaryOp(op=ast.USub(), operand=first):
+            return -_value(first, names)
         case ast.Call(func=ast.Name(id="abs"), args=[first]):
             return np.abs(_value(first, names))
         case ast.BinOp(left=left, op=sign, right=right):
@@ -331,14 +377,15 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
 
 def missing(parameters: ParameterFile) -> tuple[str, ...]:
     """Mass, moments of inertia and added mass, where the file has none."""
-    asks = "dynamics() asks for them, hydrodynamics() does not"
-    return (*missing_mass(parameters, asks, "dynamics() asks for Ix"), *missing_water(parameters))
+    asks = "dynamics() asks for m, and holds rotations without a moment of inertia"
+    return (*missing_mass(parameters, asks, "roll is held"), *missing_water(parameters))
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
     return (
         *written_changes(parameters, "the class (as remus100.py, which zeroes its Munk terms)", "ideal_*", "MA"),
+        *held_in_words(parameters, "u_control[4:]", rates="are kept in dynamics()"),
         "weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy"
         if parameters.hydrostatics is None
         else "weight and buoyancy, r_bb and volume, act in dynamics(), not in hydrodynamics(); GRAVITY is the file's",

@@ -123,7 +123,12 @@ def _composed(part: Element, tag: str, path: Path) -> tuple[Array, Array]:
 def _mass(parts: list[Element], name: str, findings: list[Finding], path: Path) -> MassProperties | None:
     """Sum of the parts; None, with a finding, where one states no mass: it follows from a material and a mesh."""
     if silent := [one_line(p.get("name", ""))[:80] for p in parts if p.find("mass") is None]:
-        findings.extend(left_out(name, "inertia", [f"mass of {s}" for s in silent]))
+        stated = [
+            f"{_one(p.find('mass'), 'value', path):g} kg of {one_line(p.get('name', ''))[:80]}"  # type: ignore[arg-type]
+            for p in parts
+            if p.find("mass") is not None
+        ]
+        findings.extend(left_out(name, "inertia", [*(f"mass of {s}" for s in silent), *stated]))
         return None
     bodies = []
     for part in parts:
@@ -169,7 +174,8 @@ def _afloat(parts: list[Element], name: str, findings: list[Finding], path: Path
     ]
     sizes = [_volume(p, path) for p in buoyant]
     if unknown := [one_line(p.get("name", ""))[:80] for p, s in zip(buoyant, sizes, strict=True) if s is None]:
-        findings.extend(left_out(name, "hydrostatics", [f"volume of {u}" for u in unknown]))
+        known = [f"{s:.4g} m^3 of {one_line(p.get('name', ''))[:80]}" for p, s in zip(buoyant, sizes, strict=True) if s]
+        findings.extend(left_out(name, "hydrostatics", [*(f"volume of {u}" for u in unknown), *known]))
         return None
     whole = math.fsum(s for s in sizes if s)
     if not whole > 0.0:

@@ -25,6 +25,7 @@ from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locked
 from coeflab.formats.gazebo.law import symmetric
+from coeflab.formats.left_out import SILENT
 from coeflab.law.rigid_body import momentum_force
 from coeflab.law.transforms import force_transfer, rotation
 
@@ -119,6 +120,20 @@ class Xacro(Mapping[str, float]):
 
     def __len__(self) -> int:
         return len(self._raw)
+
+
+OWN = ("property", "arg", "macro", "include", "if", "unless", "insert_block")
+
+
+def unfolded(root: Element) -> tuple[str, ...]:
+    """Calls of macros in a document, which nothing here unfolds: name, and how often; sensors and the like apart."""
+    names = [
+        e.tag.removeprefix(SPACE)
+        for e in root.iter()
+        if isinstance(e.tag, str) and e.tag.startswith(SPACE) and e.tag.removeprefix(SPACE) not in OWN
+    ]
+    counts = {n: names.count(n) for n in names if not any(s in n.lower() for s in SILENT)}
+    return tuple(n if k == 1 else f"{k} {n}" for n, k in counts.items())
 
 
 PLUGIN_DENSITY = 1028.0

@@ -16,7 +16,16 @@ from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
 from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
-from coeflab.formats.uuv_simulator.law import FRD, MATRICES, PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
+from coeflab.formats.uuv_simulator.law import (
+    FRD,
+    MATRICES,
+    PLUGIN_DENSITY,
+    SPACE,
+    FossenLink,
+    Xacro,
+    read_fossen_link,
+    unfolded,
+)
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.imported_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -133,6 +142,8 @@ def _left_out(root: Element, link: FossenLink) -> tuple[Finding, ...]:
         *left_out(name, "environment", [f"<{t}>" for t in CURRENT if own.find(t) is not None]),
         *other_plugins(name, plugins, own),
         *other_masses(name, root.iter("link"), link.link),
+        *left_out(name, "macros", unfolded(root)),
+        *left_out(name, "includes", [e.get("filename", "").rpartition("/")[2] for e in root.iter(f"{SPACE}include")]),
         *left_out(name, "joints", [j.get("name", "") for j in root.iter("joint") if j.get("type", "fixed") != "fixed"]),
     ]
     file = own.get("filename", "")

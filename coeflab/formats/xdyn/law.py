@@ -90,7 +90,10 @@ RIGID = "rigid body inertia matrix at the center of gravity and projected in the
 ADDED = "added mass matrix at the center of gravity and projected in the body frame"
 DAMPING = "damping matrix at the center of gravity projected in the body frame"
 HERE = "hydrodynamic forces calculation point in body frame"
-BUOYANCY = "buoyancy"
+BUOYANCY, THRUST = "buoyancy", "thrusters"  # models of our own beside the one of the hull
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {
+    "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "cos": np.cos, "sin": np.sin,
+}  # fmt: skip
 POWERS = {"linear damping": 1, "quadratic damping": 2}
 UNITS = {"m": 1.0, "m/s": 1.0, "rad/s": 1.0, "rad": 1.0, "kg/m^3": 1.0, "m/s^2": 1.0, "ft": 0.3048, "knot": 1852.0 / 3600.0,
          "km/h": 1.0 / 3.6, "deg": np.pi / 180.0, "deg/s": np.pi / 180.0}  # fmt: skip
@@ -133,6 +136,8 @@ class XdynBody:
         Names of the other force models, the manoeuvring model ``buoyancy`` among them.
     unread : tuple of str
         Keys of the state at the start, of waves and the like that are not zero.
+    thrusters : Manoeuvring or None
+        The manoeuvring model of that name, which no force is read of.
     """
 
     name: str
@@ -147,6 +152,7 @@ class XdynBody:
     damping: tuple[tuple[int, Array], ...]
     left_out: tuple[str, ...]
     unread: tuple[str, ...] = ()
+    thrusters: Manoeuvring | None = None
 
     def __post_init__(self) -> None:
         for name in ("centre", "damping_point", "mesh", "rigid", "added"):
@@ -168,15 +174,7 @@ class XdynBody:
         """
         out = np.zeros_like(nu)
         states: dict[str, Callable[..., Any]] = {m: partial(_state, nu[:, j]) for j, m in enumerate(MOTIONS)}
-        functions: dict[str, Callable[..., Any]] = {
-            **states,
-            "abs": np.abs,
-            "sqrt": np.sqrt,
-            "exp": np.exp,
-            "log": np.log,
-            "cos": np.cos,
-            "sin": np.sin,
-        }
+        functions: dict[str, Callable[..., Any]] = {**states, **FUNCTIONS}
         for model in self.manoeuvring:
             moved = {name: x for name, x in (commands or {}).items() if name in model.commands}
             found = settled(model.expressions, {**self.given(model), **moved}, functions)
@@ -254,7 +252,7 @@ def xdyn_body(content: Mapping[str, Any], file: Path | str) -> XdynBody:
     models = [*models, *(body.get("controlled forces") or [])] if isinstance(models, list) else []
     if not all(isinstance(m, dict) and isinstance(m.get("model"), str) for m in models):
         raise reading.fail("a force without a model", "model: name", "external forces")
-    shaped = [m for m in models if m["model"] == "maneuvering" and m.get("name") != BUOYANCY]
+    shaped = [m for m in models if m["model"] == "maneuvering" and m.get("name") not in (BUOYANCY, THRUST)]
     named = str(body.get("name"))
     place = body.get("position of body frame relative to mesh")
     return XdynBody(
@@ -270,10 +268,11 @@ def xdyn_body(content: Mapping[str, Any], file: Path | str) -> XdynBody:
         manoeuvring=tuple(_manoeuvring(reading, m, named) for m in shaped),
         damping=tuple((POWERS[m["model"]], reading.matrix(m, DAMPING)) for m in models if m["model"] in POWERS),
         left_out=tuple(
-            BUOYANCY if m["model"] == "maneuvering" else m["model"] for m in models
+            str(m["name"]) if m["model"] == "maneuvering" else m["model"] for m in models
             if m not in shaped and m["model"] not in POWERS
         ),
         unread=_unread(content, body),
+        thrusters=next((_manoeuvring(reading, m, named) for m in models if m["model"] == "maneuvering" and m.get("name") == THRUST), None),
     )  # fmt: skip
 
 

@@ -31,6 +31,7 @@ from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
 from coeflab.formats.imported_file import Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
+from coeflab.formats.xdyn.actuators import limited, read_limits
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import AHEAD
@@ -41,6 +42,7 @@ from coeflab.law.terms import parse_suffix
 from coeflab.law.transforms import force_transfer, moved
 from coeflab.vehicle.imported_numbers import gravity
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterSurface
 
 Product = tuple[tuple[str, int], ...]
 MOST = 4000
@@ -247,8 +249,9 @@ def _components(
     functions |= {"abs": partial(_absolute, f"u{marked}"), "sqrt": partial(_root, notes)}
     functions |= {f: partial(_of_number, f) for f in ("exp", "log", "cos", "sin")}
     given = {**body.given(model), **{c: Products.of(c) for c in model.commands if c in CONTROLS}}
+    free = {limited(c): c for c in read_limits(model.expressions) if c in model.commands}
     try:
-        known = settled(model.expressions, given, functions, finish)
+        known = settled({**model.expressions, **free}, given, functions, finish)
     except ArithmeticProblem:
         if at_point:
             return None
@@ -413,6 +416,11 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         datum=Datum("origin of the body frame" if body.mesh is None else "origin of the mesh"),
         matrix=matrix if selected else None,
         mass=mass,
+        surfaces=tuple(
+            ParameterSurface(control=c, limit=limit)
+            for m in body.manoeuvring
+            for c, limit in read_limits(m.expressions).items()
+        ),
         notes=(*notes, *doubt),
         findings=_left_out(body, name),
     )

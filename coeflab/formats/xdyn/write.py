@@ -7,6 +7,7 @@ written, and the ideal fluid's products beside them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -15,7 +16,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.types import Array, remembered
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.core.wording import identifier, one_line
+from coeflab.core.wording import identifier, listed, one_line
+from coeflab.formats.coded_thrusters import held_in_words, limits
 from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     COURSE,
@@ -30,10 +32,22 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, XdynBody, xdyn_body
+from coeflab.formats.xdyn.actuators import command_names, held_lines, limited, thrust_lines
+from coeflab.formats.xdyn.law import (
+    ADDED,
+    BUOYANCY,
+    DAMPING,
+    FUNCTIONS,
+    HERE,
+    RIGID,
+    THRUST,
+    XdynBody,
+    settled,
+    xdyn_body,
+)
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
-from coeflab.law.rigid_body import about_another, rigid_body_inertia
+from coeflab.law.rigid_body import MassProperties, about_another, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.expected_signs import control_signs
@@ -43,8 +57,8 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "xdyn: a YAML simulation file with inertia, added mass, damping and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
 adds_coriolis = False
-holds = frozenset({"hydrostatics"})
-not_held = not_written
+holds = frozenset({"hydrostatics", "thrusters", "surfaces"})
+not_held, missing = not_written, missing_water
 
 FORCES = "hydrodynamic_forces"
 VISCOSITY = 1e-6
@@ -56,18 +70,27 @@ def _names(parameters: ParameterFile) -> tuple[str, str]:
     return identifier(parameters.body, {"NED", FORCES, BUOYANCY}), identifier(parameters.name)
 
 
-def _centre(parameters: ParameterFile) -> Array | None:
-    """Centre of gravity from the reference point; None where it is not known."""
+def _weighed(parameters: ParameterFile) -> MassProperties:
     mass = parameters.mass
-    return None if mass is None or mass.centre is None else np.array(mass.centre)
+    if mass is None or mass.centre is None or mass.inertia_matrix is None:
+        keys = ("mass", "mass.centre", "mass.inertia_matrix")
+        lacking = keys if mass is None else [k for k in keys[1:] if getattr(mass, k.removeprefix("mass.")) is None]
+        raise InputError(
+            f"no {listed(lacking)}", "the rigid-body inertia, without which xdyn does not run", column=lacking[0],
+            advice="State mass, centre_of_gravity and inertia_matrix in body.toml, or --mass, --cg, --inertia of `coeflab params new`.",
+        )  # fmt: skip
+    return mass
 
 
-def _rigid(parameters: ParameterFile) -> Array | None:
-    """Inertia about the centre of gravity, (6, 6); None where it is not known."""
-    mass, centre = parameters.mass, _centre(parameters)
-    if mass is None or centre is None or mass.inertia_matrix is None:
-        return None
-    about = about_another(np.array(mass.inertia_matrix), mass.mass, centre, np.zeros(3))
+def _centre(parameters: ParameterFile) -> Array:
+    """Centre of gravity from the reference point."""
+    return np.array(_weighed(parameters).centre)
+
+
+def _rigid(parameters: ParameterFile) -> Array:
+    """Inertia about the centre of gravity, (6, 6)."""
+    mass = _weighed(parameters)
+    about = about_another(np.array(mass.inertia_matrix), mass.mass, np.array(mass.centre), np.zeros(3))
     return rigid_body_inertia(mass.mass, np.zeros(3), (about + about.T) / 2.0)
 
 
@@ -109,35 +132,32 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     Raises
     ------
     InputError
-        The sum of rigid-body inertia and added mass is not positive definite, which no simulation survives.
+        No rigid-body inertia, or one whose sum with the added mass is not positive definite: xdyn does not run these.
     """
     (body, name), h = _names(parameters), parameters.hydrostatics
-    centre, rigid = _centre(parameters), _rigid(parameters)
-    origin = "reference point" if centre is None else "centre of gravity"
-    offset = np.zeros(3) if centre is None else 0.0 - centre
+    offset, rigid = 0.0 - _centre(parameters), _rigid(parameters)
     water = water_inertia(parameters)
     added = moved(water.matrix, -offset)
-    if rigid is not None and definiteness(rigid + added).smallest <= 0.0:
+    if definiteness(rigid + added).smallest <= 0.0:
         raise InputError("an inertia that is not positive definite with its added mass", "positive masses and inertias")
     terms, speed = written_terms(parameters), parameters.conditions.speed
     place = np.array(parameters.reference_point.point) - offset
     dynamics = [
         *_block(0, f"{HERE}:", _axes((0.0, 0.0, 0.0), "m")),
         *_block(0, "centre of inertia:", [f"frame: {body}", *_axes((0.0, 0.0, 0.0), "m")]),
-        *(_block(0, f"{RIGID}:", _rows(rigid)) if rigid is not None else [f"# {_absent(parameters)}"]),
+        *_block(0, f"{RIGID}:", _rows(rigid)),
         *_block(0, f"{ADDED}:", _rows(added)),
     ]
     states = ", ".join(f"'{s}({body})'" for s in STATES)
     position = [*_axes((0.0, 0.0, 0.0), "m"), *_angles()]
     lines = [
         f"# {one_line(parameters.name)}, body: {one_line(parameters.body)}",
-        f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
+        "# Body frame: x forward, y starboard, z down, origin at the centre of gravity;",
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
-        f"# {propulsion(parameters)}",
+        *([] if parameters.thrusters else [f"# {propulsion(parameters)}"]),
         *(f"# {words}" for words in in_header(parameters)),
         *(f"# {words}; rad" for words in control_signs(parameters)),
-        *(["# xdyn does not run this file yet: write the rigid-body inertia, see below."] if rigid is None else []),
         f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
@@ -156,7 +176,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         *_restoring(parameters, body, offset),
         *_damping(terms, not offset.any()),
         *_manoeuvring(parameters, body, offset, terms),
-        *_commands(terms),
+        *_thrusters(parameters, body, offset),
+        *_commands(parameters, terms),
         "output:",
         "  - format: csv",
         f"    filename: {name}.csv",
@@ -216,19 +237,56 @@ def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Seq
         f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
         *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
         *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in selected),
+        *held_lines(parameters, written_controls(tuple(selected))),
     ]
     for component in COMPONENTS:
         parts = [expression(t, _place, "^") for t in selected if t.component == component]
-        lines.append(f"{component}: {' + '.join(parts) or '0'}")
+        text = " + ".join(parts) or "0"
+        for c in limits(parameters)[0]:
+            text = re.sub(rf"\b{c}\b", limited(c), text)
+        lines.append(f"{component}: {text}")
     return ["      - model: maneuvering", *("        " + line for line in lines)]
 
 
-def _commands(terms: tuple[ForceTerm, ...]) -> list[str]:
-    controls = written_controls(terms)
-    if not controls:
+def _thrusters(parameters: ParameterFile, body: str, offset: Array) -> list[str]:
+    """A model with every thruster, which acts at the reference point."""
+    if not parameters.thrusters:
         return []
-    values = [f"    {c}: {{unit: rad, values: [0.0]}}" for c in controls]
-    return ["commands:", f"  - name: {FORCES}", "    t: [0.0]", *values]
+    commands, expressions = thrust_lines(parameters)
+    lines = [
+        f"name: {THRUST}",
+        *_block(0, "reference frame:", [f"frame: {body}", *_axes(offset.tolist(), "m"), *_angles()]),
+        f"commands: [{', '.join(commands)}]",
+        *expressions,
+    ]
+    return ["      - model: maneuvering", *("        " + line for line in lines)]
+
+
+def _commands(parameters: ParameterFile, terms: tuple[ForceTerm, ...]) -> list[str]:
+    """All commands at zero; those of thrusters by their own unit, which stands beside them."""
+    controls = written_controls(terms)
+    lines = []
+    if controls:
+        lines += [f"  - name: {FORCES}", "    t: [0.0]"]
+        lines += [f"    {c}: {{unit: rad, values: [0.0]}}" for c in controls]
+    if parameters.thrusters:
+        lines += [f"  - name: {THRUST}", "    t: [0.0]"]
+        for t, name in zip(parameters.thrusters, command_names(parameters), strict=True):
+            lines.append(
+                f"    {name}: {{unit: 1, values: [0.0]}}  # {one_line(f'{t.name}: {t.curve.command}, {t.curve.unit}')}"
+            )
+            if t.tilt_axis is not None:
+                lines.append(f"    {name}_tilt: {{unit: rad, values: [0.0]}}")
+    return ["commands:", *lines] if lines else []
+
+
+def wrench(files: Mapping[str, bytes], commands: Mapping[str, Array]) -> Array:
+    """(n, 6) of the thrusters about the reference point, by the file's own expressions."""
+    body = _read(*next((n, c) for n, c in files.items() if n.endswith(".yml")))
+    model = body.thrusters
+    found = settled(model.expressions, {**body.given(model), **commands}, FUNCTIONS) if model is not None else {}
+    size = len(next(iter(commands.values())))
+    return np.column_stack([np.broadcast_to(found.get(c, 0.0), size) for c in COMPONENTS])
 
 
 def force(files: Mapping[str, bytes], nu: Array) -> Array:
@@ -258,20 +316,6 @@ def added_mass(files: Mapping[str, bytes]) -> Array:
     return moved(body.added, body.manoeuvring[0].point - body.centre)
 
 
-def missing(parameters: ParameterFile) -> tuple[str, ...]:
-    """Rigid-body inertia about a known centre of gravity, and added mass, where the file has none."""
-    rigid = () if _rigid(parameters) is not None else (_absent(parameters).removesuffix("."),)
-    return (*rigid, *missing_water(parameters))
-
-
-def _absent(parameters: ParameterFile) -> str:
-    what = "mass, centre and inertia_matrix" if parameters.mass is None else "centre and inertia_matrix"
-    return (
-        f"Rigid-body inertia: the parameter file has no {what} (body.toml: centre_of_gravity, inertia_matrix); xdyn refuses "
-        "the export until the matrix is in it."
-    )
-
-
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
     centre, terms = _centre(parameters), written_terms(parameters)
@@ -280,27 +324,26 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
         ),
         "velocities over the ground are used as those through the water; currents are for linear and quadratic damping only",
-        propulsion(parameters),
+        *held_in_words(parameters, f"the commands of {THRUST}", rates="are not kept: an expression has no time"),
+        *(() if parameters.thrusters else (propulsion(parameters),)),
     ]
     if parameters.hydrostatics is not None:
         words.append(
             f"weight as xdyn's model gravity, buoyancy as a second manoeuvring model, {BUOYANCY}, in the centre of buoyancy: both are "
             "no part of the differences in this report"
         )
-    if centre is None:
-        words.append("the body frame has its origin at the reference point; the centre of gravity is not known")
-    elif centre.any():
+    if centre.any():
         x, y, z = (f"{v:g}" for v in centre)
         words.append(
             f"the body frame has its origin at the centre of gravity, ({x}, {y}, {z}) m from the reference point; the "
             "expressions use the velocities at the reference point, and forces act there"
         )
-    if any(_damped(t, centre is None or not centre.any()) for t in terms):
+    if any(_damped(t, not centre.any()) for t in terms):
         words.append("damping about a state of rest is written as damping matrices, with the opposite sign")
     if any(m.area is not None for m in parameters.models):
         words.append(
             "no hydrodynamic polar is written for C_D and the like: xdyn's takes C_L, C_D and C_m as functions of one angle in one "
-            "plane, and would add to the expressions of the coefficients"
+            "plane, and would add to the expressions of the coefficients, which have no arc tangent for alpha and beta"
         )
     if parameters.conditions.viscosity is None:
         words.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses: the file has none")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check
@@ -31,6 +31,11 @@ def command(
         autocompletion=complete.parameters,
         help="Parameter file: mass, inertia, scaling, and what to compare with.",
     ),
+    columns: str = typer.Option(
+        "",
+        metavar="NAMES",
+        help='All columns of a file without a header, or under other names: "t [s], x [m], y [m], -psi [deg], -"; u, v, r follow of x, y, psi.',
+    ),
     thruster: str = typer.Option(
         "", metavar="NAME", help="A bench test of this thruster: thrust and torque over its command, no motion."
     ),
@@ -47,9 +52,7 @@ def command(
     ),
     asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
     fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
-    accelerations: str = typer.Option(
-        "measured", metavar="measured|computed", autocompletion=complete.accelerations, help=show.ACCELERATIONS
-    ),
+    accelerations: str = options.ACCELERATIONS,
     optimizer: str = typer.Option(
         "stlsq", metavar="NAME", autocompletion=complete.optimizers, help="stlsq or sr3 of pysindy."
     ),
@@ -75,16 +78,16 @@ def command(
     from coeflab.identify import identified_tables
     from coeflab.identify.identify import identify_from
 
-    options: dict[str, object] = {
+    asked: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
         "added_mass": "fit" if fit_added_mass else "known", "optimizer": optimizer, "resamples": resamples, "seed": seed,
-        "accelerations": accelerations,
+        "accelerations": accelerations, "columns": columns,
     }  # fmt: skip
     if window:
-        options["window"] = window
+        asked["window"] = window
     with show.progress(json) as say:
         say(f"reading {len(series)} time series")
-        found = identify_from(series, read_parameters(params), options)
+        found = identify_from(series, read_parameters(params), asked)
     written = [] if out is None else _write(found, out)
     if json:
         show.json_object({**as_json(found), "files": [str(p) for p in written]})
@@ -104,12 +107,12 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
     from coeflab.api.parameters import read_parameters
     from coeflab.api.vehicle import Vehicle
-    from coeflab.cli.as_json import findings
     from coeflab.core.files import write_all
     from coeflab.core.units import quantity
     from coeflab.core.wording import file_stem
     from coeflab.identify.identified_figures import bench_figure
     from coeflab.identify.thruster import WINDOW, bench_test, with_curves
+    from coeflab.report.as_json.findings import findings
     from coeflab.report.figures.svg import sheet
 
     within = quantity(window, "time", key="--window") if window else WINDOW
@@ -139,6 +142,7 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
 
 def as_json(found: Identified) -> dict[str, Any]:
     """Every candidate with its values, absent ones null, and the works that the method rests on."""
+    from coeflab.cli.as_json import finding_as_data
     from coeflab.core.provenance import work
     from coeflab.identify.identify import citations
 
@@ -165,6 +169,7 @@ def as_json(found: Identified) -> dict[str, Any]:
             for b in found.balances
         ],
         "statements": list(found.statements),
+        "findings": [finding_as_data(f) for f in found.findings],
         "citations": [work(key) for key in citations],
     }  # fmt: skip
 

@@ -54,7 +54,7 @@ def command(
     paths = write(tuned, out if out is not None else Path(REPORTS) / tuned.plan.name)
     found = tuned.checks
     if json:
-        from coeflab.cli.as_json import findings
+        from coeflab.report.as_json.findings import findings
 
         show.json_object({**as_json(tuned), "findings": findings(found), "files": [str(p) for p in paths]})
     else:

@@ -119,6 +119,8 @@ class Importance:
         Rows of the design that all have the figure.
     why : str
         Why there are no shares.
+    tests : tuple of (str, float)
+        Share of the variance that would go if a test gave all its coefficients exactly, largest first.
     """
 
     figure: str
@@ -126,6 +128,7 @@ class Importance:
     shares: tuple[Share, ...] = ()
     rows: int = 0
     why: str = ""
+    tests: tuple[tuple[str, float], ...] = ()
 
 
 def spread(figure: Figure, values: Array, statuses: Sequence[str], why: str = "") -> Spread:

@@ -26,6 +26,7 @@ from coeflab.motion.uncertainty.batches import Batch, Setup, Store, carried_out,
 from coeflab.motion.uncertainty.draws import Uncertain, drawn, drawn_stability, unfelt
 from coeflab.motion.uncertainty.sobol import SobolDesign, known_share, share_noise, sobol_design, sobol_indices
 from coeflab.motion.uncertainty.spread import MOST_LACKING, Importance, Spread, shares, spread
+from coeflab.motion.uncertainty.tests import group_share, tests_of
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.inertia import MEASURED, WaterInertia
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -381,15 +382,21 @@ def _importance(
     least = max(SEEN, share_noise(len(members)))
     pairs = [(varied.symbols[k], float(v)) for k, v in zip(felt, share, strict=True) if v > least]
     known = tuple(sorted(pairs, key=lambda p: -p[1]))
+    columns = {s: members[:, [k]] for k, s in enumerate(varied.symbols) if k in set(felt)}
+    by_test = [
+        (t, group_share(np.hstack([columns[s] for s in those]), values))
+        for t, those in tests_of(tuple(columns)).items()
+    ]
+    tests = tuple(sorted(((t, v) for t, v in by_test if v > least), key=lambda p: -p[1]))
     if sampled is None:
-        return Importance(name, known)
+        return Importance(name, known, tests=tests)
     indices = sobol_indices(results[0], results[1], np.array(results[2:]))
     lacking = 1.0 - indices.rows / sampled.base
     if lacking > MOST_LACKING:
-        return Importance(name, known, (), indices.rows, f"{100.0 * lacking:.3g} % of the rows lack the figure")
+        return Importance(name, known, (), indices.rows, f"{100.0 * lacking:.3g} % of the rows lack the figure", tests)
     if not np.isfinite(indices.first).all():
-        return Importance(name, known, (), indices.rows, "the figure does not vary")
-    return Importance(name, known, shares(indices, sampled.groups, sampled.sources), indices.rows)
+        return Importance(name, known, (), indices.rows, "the figure does not vary", tests)
+    return Importance(name, known, shares(indices, sampled.groups, sampled.sources), indices.rows, tests=tests)
 
 
 def _said(ended: tuple[str, ...], how: str) -> list[str]:

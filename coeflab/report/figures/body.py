@@ -7,6 +7,7 @@ Axes with ticks in metres under and left of a view along a body axis.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -109,9 +110,7 @@ class Sheet:
 
     def outline(self, mesh: Surface) -> None:
         """Draw a surface as a filled outline."""
-        outline = silhouette.mesh_outline(*mesh, self.frame)
-        self._fill(outline, "band", BEHIND)
-        self._line(outline, "ink", 0.9)
+        draw_outline(self.axes, mesh, self.frame, self.move)
 
     def part(self, facets: Array, colour: str, poor: bool, convex: bool) -> None:
         """Draw (n, 4, 3) facets, those that look toward the viewer; poor ones striped, convex ones by their outline."""
@@ -154,9 +153,41 @@ class Sheet:
             self.axes.add_patch(PathPatch(path, zorder=2, **style))
 
 
-def outline_path(outline: Any, move: Array | tuple[float, float] = (0.0, 0.0)) -> Path | None:
+def draw_outline(
+    axes: Axes, surface: Surface, frame: Array, move: Array | tuple[float, float] = (0.0, 0.0), palette: Mapping[str, str] = COLOURS,
+    digits: int = 2, sense: Sequence[float] = (1.0, 1.0),
+) -> None:  # fmt: skip
+    """A surface as a filled outline.
+
+    Parameters
+    ----------
+    axes : Axes
+    surface : Surface
+        Vertices, m, FRD, and faces.
+    frame : (2, 3) array
+        From metres to what the axes count, across and up.
+    move : (2,) array
+        Added to it.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    digits : int
+        To which places are rounded.
+    sense : (2,) sequence of float
+        Of what the axes are called: -1 where it grows against the frame.
+    """
+    path = outline_path(silhouette.mesh_outline(*surface, frame), move, digits, sense)
+    if path is not None:
+        fill: dict[str, Any] = {"facecolor": palette["band"], "edgecolor": "none", "alpha": BEHIND}
+        line: dict[str, Any] = {"facecolor": "none", "edgecolor": palette["ink"], "linewidth": 0.9}
+        for look in (fill, line):
+            axes.add_patch(PathPatch(path, zorder=2, **look))
+
+
+def outline_path(
+    outline: Any, move: Array | tuple[float, float] = (0.0, 0.0), digits: int = 2, sense: Sequence[float] = (1.0, 1.0)
+) -> Path | None:
     """An outline as a path, moved by so much; None where there is none."""
-    rings = [np.round(ring + move, 2) for ring in silhouette.polygons(outline)]
+    rings = [np.round((ring + move) * sense, digits) for ring in silhouette.polygons(outline)]
     return Path.make_compound_path(*(Path(np.vstack([r, r[:1]]), closed=True) for r in rings)) if rings else None
 
 

@@ -232,19 +232,39 @@ def _ours(
         if r.value is not None
     ]
     at, half, high = (np.array([m[i] for m in mine]) for i in range(3))
-    look: dict[str, Any] = {"color": COLOURS["a"], "marker": "o", "markersize": 5.0}
+    handle = draw_intervals(axes, at, half, high, "ours", COLOURS["a"], across)
+    handle.set_label("ours, U95")
+    notes = [f"{primed(r.symbol)}: {plus_minus(r.value, r.u95, '±')}" for *_, r in mine]
+    return [handle], [points("ours", "ours", at, high, notes)]
+
+
+def draw_intervals(
+    axes: Axes, at: Array, half: Array, high: Array, key: str, colour: str, across: Range = (-np.inf, np.inf)
+) -> Any:
+    """Values with bars, one a level; returns what a legend shows.
+
+    Parameters
+    ----------
+    axes : Axes
+    at, half, high : (n,) array
+        Values, half-widths, and the level of each.
+    key : str
+        Of the series.
+    colour : str
+    across : (float, float)
+        Ends of the axis; a bar that goes on beyond has an arrow there.
+    """
+    look: dict[str, Any] = {"color": colour, "marker": "o", "markersize": 5.0}
     if len(at):
         low, top = (np.clip(at + k * half, *across) for k in (-1.0, 1.0))
-        tagged(strokes(axes, (low, top), (high, high), color=COLOURS["a"], linewidth=2.2, zorder=2), "ours")
+        tagged(strokes(axes, (low, top), (high, high), color=colour, linewidth=2.2, zorder=2), key)
         inside = (at >= across[0]) & (at <= across[1])
-        tagged(axes.plot(at[inside], high[inside], linestyle="none", zorder=3, **look), "ours")
+        tagged(axes.plot(at[inside], high[inside], linestyle="none", zorder=3, **look), key)
         for cut, end, marker in ((at - half < across[0], across[0], "<"), (at + half > across[1], across[1], ">")):
             if np.any(cut):
-                arrow = {**GOES_ON, "marker": marker, "color": COLOURS["a"]}
-                tagged(axes.plot(np.full(int(cut.sum()), end), high[cut], clip_on=False, **arrow), "ours")
-    notes = [f"{primed(r.symbol)}: {plus_minus(r.value, r.u95, '±')}" for *_, r in mine]
-    handle = tagged(Line2D([], [], linewidth=2.2, label="ours, U95", **look), "ours")
-    return [handle], [points("ours", "ours", at, high, notes)]
+                arrow = {**GOES_ON, "marker": marker, "color": colour}
+                tagged(axes.plot(np.full(int(cut.sum()), end), high[cut], clip_on=False, **arrow), key)
+    return tagged(Line2D([], [], linewidth=2.2, **look), key)
 
 
 def share_text(share: float) -> str:

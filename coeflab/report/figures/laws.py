@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from coeflab.core.types import Array, brief, locked
 from coeflab.report.document import Figure, Panel
-from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.palette import COLOURS, recoloured
 from coeflab.report.figures.panel import BOTTOM, GAP, LEFT, LEGEND_ROW, RIGHT, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, Style, curve, numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
@@ -149,6 +149,23 @@ def _up(plot: Plot) -> tuple[float, float]:
     return limits(np.concatenate(seen), 0.08) or (-1.0, 1.0)
 
 
+def draw_trace(axes: Axes, trace: Trace, key: str, palette: Mapping[str, str] = COLOURS) -> list[Any]:
+    """A curve or points; returns what a legend shows.
+
+    Parameters
+    ----------
+    axes : Axes
+    trace : Trace
+    key : str
+        Of its series.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    look: dict[str, Any] = {name: recoloured(v, palette) if isinstance(v, str) else v for name, v in trace.look.items()}
+    drawn: list[Any] = axes.plot(trace.x, trace.y, zorder=2.5 if trace.form == "curve" else 3.0, **look)
+    return list(tagged(drawn, key))
+
+
 def _drawn(axes: Axes, plot: Plot, keys: dict[str, str]) -> Panel:
     low, high = sorted(axes.get_ylim())
     if plot.allowed is not None:
@@ -158,6 +175,6 @@ def _drawn(axes: Axes, plot: Plot, keys: dict[str, str]) -> Panel:
     series = []
     for t in plot.traces:
         key = keys[t.name]
-        tagged(axes.plot(t.x, t.y, zorder=2.5 if t.form == "curve" else 3.0, **t.look), key)
+        draw_trace(axes, t, key)
         series.append(curve(key, t.name, t.x, t.y) if t.form == "curve" else points(key, t.name, t.x, t.y, t.notes))
     return numbers(axes, series, plot.name_across, plot.name_up)

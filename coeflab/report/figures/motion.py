@@ -14,7 +14,7 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
-from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.palette import COLOURS, recoloured
 from coeflab.report.figures.panel import BOTTOM, LEFT, LEGEND_ROW, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
@@ -39,8 +39,7 @@ def track_figures(trajectory: Trajectory, anchor: str, length: float, after: str
 
 def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: bool, after: str = "") -> Figure:
     """The track in a plane, with the body drawn at equal distances; grey where the motion leaves what data cover."""
-    x = np.asarray(trajectory.position)
-    across, up = (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
+    across, up = _in_plane(trajectory, vertical)
     names = ("north  [m]", "depth  [m]") if vertical else ("east  [m]", "north  [m]")
     top = TOP + 24.0
     wide, tall = _equal(across, up, (WIDTH - LEFT - RIGHT) / (top - BOTTOM), length)
@@ -55,11 +54,7 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
             figure, BOTTOM, top - BOTTOM, across=wide, up=tall[::-1] if vertical else tall, name_up=names[1],
             name_across=names[0],
         )  # fmt: skip
-        tagged(axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3), "track")
-        tagged(axes.plot(across, np.where(beyond, up, np.nan), zorder=2.8, **BEYOND), "beyond")
-        axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
-        if length > 0.0:
-            _bodies(axes, trajectory, across, up, vertical, length)
+        draw_track(axes, trajectory, vertical, length)
         marks = {}
         if np.any(~beyond[:-1] & ~beyond[1:]) or not np.any(beyond):
             marks["track"] = Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track within the data")
@@ -76,6 +71,41 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
         description,
         (shown,),
     )
+
+
+def _in_plane(trajectory: Trajectory, vertical: bool) -> tuple[Array, Array]:
+    """Places across and up: east and north, or north and depth."""
+    x = np.asarray(trajectory.position)
+    return (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
+
+
+def draw_track(
+    axes: Axes,
+    trajectory: Trajectory,
+    vertical: bool = False,
+    length: float = 0.0,
+    palette: Mapping[str, str] = COLOURS,
+) -> None:
+    """The track and its start, broken where the motion leaves what data cover; with a length the body at equal distances.
+
+    Parameters
+    ----------
+    axes : Axes
+    trajectory : Trajectory
+    vertical : bool
+        Depth over north, else north over east.
+    length : float
+        Of the body, m.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    (across, up), beyond = _in_plane(trajectory, vertical), _outside(trajectory)
+    tagged(axes.plot(across, np.where(beyond, np.nan, up), color=palette["a"], linewidth=1.4, zorder=3), "track")
+    aside = {**BEYOND, "color": palette["muted"]}
+    tagged(axes.plot(across, np.where(beyond, up, np.nan), zorder=2.8, **aside), "beyond")
+    axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=palette["a"], zorder=4)
+    if length > 0.0:
+        _bodies(axes, trajectory, across, up, vertical, length, palette["b"])
 
 
 def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np.bool_]) -> list[Series]:
@@ -102,7 +132,9 @@ def _equal(x: Array, y: Array, ratio: float, length: float) -> tuple[tuple[float
     return (cx - wide / 2.0, cx + wide / 2.0), (cy - tall / 2.0, cy + tall / 2.0)
 
 
-def _bodies(axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertical: bool, length: float) -> None:
+def _bodies(
+    axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertical: bool, length: float, colour: str
+) -> None:
     psi, theta = trajectory.angles[:, 2], trajectory.angles[:, 1]
     flat = np.cos(theta)
     ahead = (flat * np.cos(psi), -np.sin(theta)) if vertical else (flat * np.sin(psi), flat * np.cos(psi))
@@ -111,7 +143,7 @@ def _bodies(axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertic
     for i in np.unique(np.searchsorted(way, np.arange(0.0, way[-1] + apart / 2.0, apart)).clip(0, len(way) - 1)):
         dx, dy = 0.5 * length * ahead[0][i], 0.5 * length * ahead[1][i]
         axes.plot(
-            [across[i] - dx, across[i] + dx], [up[i] - dy, up[i] + dy], color=COLOURS["b"], linewidth=2.2,
+            [across[i] - dx, across[i] + dx], [up[i] - dy, up[i] + dy], color=colour, linewidth=2.2,
             solid_capstyle="round", alpha=0.8, zorder=3.4,
         )  # fmt: skip
 
@@ -158,16 +190,32 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
         top = 240.0 - 4.0 - 2 * LEGEND_ROW - 8.0
         figure = drawing(top + 12.0 + LEGEND_ROW * max(2, (len(series) + 1) // 2))
         axes = panel(figure, BOTTOM, top - BOTTOM, across=span, up=up, name_up=name_up, name_across="time  [s]")
-        handles: list[Any] = []
-        for i, (name, values) in enumerate(series.items()):
-            style = STYLES[i % len(STYLES)]
-            look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3}
-            handles += tagged(axes.plot(time, values, zorder=2.5, label=name, **look), f"s{i}")
-        legend(figure, handles, top)
+        legend(figure, draw_history(axes, time, series), top)
         found = [curve(f"s{i}", name, time, values) for i, (name, values) in enumerate(series.items())]
         shown = numbers(axes, found, "time  [s]", name_up)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, f"{', '.join(series)} over time.", description, (shown,))
+
+
+def draw_history(
+    axes: Axes, time: Array, series: Mapping[str, Array], palette: Mapping[str, str] = COLOURS
+) -> list[Any]:
+    """Quantities over time, told apart by colour and line; returns what a legend shows.
+
+    Parameters
+    ----------
+    axes : Axes
+    time : (n,) array
+    series : mapping of str to (n,) array
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    handles: list[Any] = []
+    for i, (name, values) in enumerate(series.items()):
+        style = STYLES[i % len(STYLES)]
+        look: dict[str, Any] = {"color": recoloured(style.colour, palette), "linestyle": style.line, "linewidth": 1.3}
+        handles += tagged(axes.plot(time, values, zorder=2.5, label=name, **look), f"s{i}")
+    return handles
 
 
 @as_users_wrote

@@ -54,18 +54,33 @@ def table_figure(table: ForceTable, anchor: str) -> Figure | None:
     wanted = [c for c in MOVED_BY[variable] if c in table.forces] or list(table.forces)
     x, plots = _shown(variable, columns[variable][rows]), []
     for c in wanted[:PANELS]:
-        values, used = table.forces[c][rows], table.usable[c][rows] & np.isfinite(table.forces[c][rows])
+        values = table.forces[c][rows]
         factor, power = _scale(values)
-        aside = ~used & np.isfinite(values)
         notes = tuple(f"point {label}" for label, row in zip(table.labels, rows, strict=True) if row)
-        traces = [Trace("points", x[used], values[used] * factor, -1, "filled", _of(notes, used))]
-        if np.any(aside):
-            traces.append(Trace("not used by fits", x[aside], values[aside] * factor, -1, "hollow", _of(notes, aside)))
-        plots.append(_plot(c, power, variable, traces, is_last=c == wanted[:PANELS][-1]))
+        drawn = traces(x, values * factor, table.usable[c][rows], notes)
+        plots.append(_plot(c, power, variable, drawn, is_last=c == wanted[:PANELS][-1]))
     rest = f", {' and '.join(f'{v}' for v in others)} at rest" if others else ""
     words = f"{int(np.sum(rows))} of {len(table)} rows{rest}"
     title = f"{table.name}: {' and '.join(wanted[:PANELS])} over {_name(variable)}"
     return laws_figure(anchor, title, f"{words[0].upper()}{words[1:]}.", f"{title}; {words}.", plots)
+
+
+def traces(x: Array, y: Array, usable: NDArray[np.bool_], notes: tuple[str, ...] = ()) -> list[Trace]:
+    """Points of a component: those that fits may use, and beside them those that none does.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+        Blank cells of y are not a number.
+    usable : (n,) boolean array
+    notes : tuple of str
+        One a point, or none.
+    """
+    used = usable & np.isfinite(y)
+    aside = ~used & np.isfinite(y)
+    found = [Trace("points", x[used], y[used], -1, "filled", _of(notes, used) if notes else ())]
+    hollow = Trace("not used by fits", x[aside], y[aside], -1, "hollow", _of(notes, aside) if notes else ())
+    return [*found, hollow] if np.any(aside) else found
 
 
 @as_users_wrote

@@ -1,4 +1,4 @@
-"""One LaTeX file: every table of the report with booktabs, its caption, its notes below, and its symbols as mathematics."""
+"""One LaTeX file: every table of the report with booktabs, its caption, its notes below, numbers and units by siunitx; and BibTeX of the works used."""
 
 from __future__ import annotations
 
@@ -14,11 +14,16 @@ from coeflab.report.document import Answer, AnswerRow, Document, Section
 from coeflab.report.notation import DOT, GREEK, Command, Factor, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.report.printable import shortened, visible
 
-summary = "one LaTeX file with every table: booktabs, captions, notes, symbols as mathematics"
+summary = "one LaTeX file with every table: booktabs, siunitx, captions, notes; and BibTeX of the works used"
 citations: tuple[str, ...] = ()
 
-FILE = "report.tex"
-LONGEST_TITLE, LONGEST_COLUMN = 300, 160  # letters
+FILE, WORKS = "report.tex", "report.bib"
+_NUMBER = r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+VALUE = re.compile(rf"({_NUMBER})(?: \+- ({_NUMBER}))?")
+LITERAL = re.compile(
+    r"[A-Za-z]+(?:\^-?\d+)?(?:[*/]\(?[A-Za-z]+(?:\^-?\d+)?\)?)*"
+)  # units that siunitx sets as they are written
+LONGEST_TITLE, LONGEST_COLUMN, LONGEST_KEY = 300, 160, 40  # letters
 FLOATS = 30  # rows; a longer table goes on over pages
 LINE = 112  # letters of footnote size in a line, with three for the gap between two columns
 WIDE, NARROW, FOLDED = (
@@ -42,8 +47,8 @@ PLAIN = re.compile(r"\u2212?(?<![\w.])\d[\d.]*(?:\u202f×\u202f10)?|.", re.DOTAL
 HEAD = r"""% Tables of {title}
 % by coeflab {version}, --to latex{digest}. Equal inputs give equal bytes.
 % By itself: pdflatex {file}, twice.
-% In a document of your own: \usepackage{{array,booktabs,graphicx,longtable,docmute}}; docmute skips the
-% preamble here; then \input{{report}}; or copy single tables from \begin{{table}} to \end{{table}}.
+% In a document of your own: \usepackage{{array,booktabs,graphicx,longtable,siunitx,docmute}}; docmute skips the
+% preamble here, take its \sisetup along; then \input{{report}}; or copy single tables from \begin{{table}} to \end{{table}}.
 \documentclass[a4paper]{{article}}
 \usepackage[utf8]{{inputenc}}
 \usepackage[T1]{{fontenc}}
@@ -53,6 +58,9 @@ HEAD = r"""% Tables of {title}
 \usepackage{{booktabs}}
 \usepackage{{graphicx}}
 \usepackage{{longtable}}
+\usepackage{{siunitx}}
+\sisetup{{separate-uncertainty=true,retain-explicit-plus=true,group-minimum-digits=12}}
+\providecommand{{\unit}}[1]{{\si{{#1}}}}
 \ifdefined\extrafloats\extrafloats{{500}}\fi
 \begin{{document}}
 """
@@ -76,7 +84,7 @@ def render(document: Document) -> Mapping[str, bytes]:
     Returns
     -------
     mapping of file name to bytes
-        ``report.tex``; equal documents give equal bytes. Characters that pdflatex has no letter for stand as ``U+XXXX``.
+        ``report.tex``, and ``report.bib`` where works were used; equal documents give equal bytes. Characters that pdflatex has no letter for stand as ``U+XXXX``.
     """
     with keeping(document.verbatim):
         title = shortened(visible(document.title), LONGEST_TITLE)
@@ -85,7 +93,22 @@ def render(document: Document) -> Mapping[str, bytes]:
         result.append(f"\\section*{{{tex(title)}}}\n")
         tables = [*_first(document.answer), *(part for s in document.sections for part in _section(s, 0))]
         result += tables or ["This report has no tables.\n"]
-    return {FILE: "\n".join([*result, END]).encode()}
+        works = {WORKS: _bibtex(document.works).encode()} if document.works else {}
+    return {FILE: "\n".join([*result, END]).encode(), **works}
+
+
+def _bibtex(works: Sequence[tuple[str, str]]) -> str:
+    """One entry a work, its reference as a note."""
+    out, taken = [], set[str]()
+    for name, text in works:
+        base = re.sub(r"[^A-Za-z0-9]+", "-", name).strip("-")[:LONGEST_KEY] or "work"
+        key, n = base, 2
+        while key in taken:
+            key, n = f"{base}-{n}", n + 1
+        taken.add(key)
+        note = tex(text.translate(str.maketrans("{}", "()")))
+        out.append(f"@misc{{{key},\n  key = {{{key}}},\n  note = {{{note}}}\n}}\n")
+    return "\n".join(out)
 
 
 def _comment(text: str) -> str:
@@ -149,7 +172,7 @@ def set_table(table: Table, name: str) -> str:
     caption = f"\\caption{{{tex(shortened(table.title, LONGEST_TITLE))}}}\\label{{tab:{name}}}"
     head = _row([tex(shortened(h, LONGEST_COLUMN)) for h in table.headers])
     units = {i for i, h in enumerate(table.headers) if h == "unit"}
-    rows = [_row([_cell(c, i in units) for i, c in enumerate(row)]) for row in table.rows]
+    rows = [_row([_cell(c, i in units, i in table.left) for i, c in enumerate(row)]) for row in table.rows]
     notes = [f"\\par\\noindent {tex(note)}" for note in table.notes]
     folds = _folding(table)
     columns = f"@{{}}{''.join(_columns(table, folds))}@{{}}"
@@ -214,7 +237,12 @@ def _columns(table: Table, folds: Collection[int]) -> list[str]:
     return out
 
 
-def _cell(text: str, unit: bool) -> str:
+def _cell(text: str, unit: bool, left: bool) -> str:
+    """A number of a column of numbers, with its U95, and a unit by siunitx; all else as text."""
+    if not left and (value := VALUE.fullmatch(text)):
+        return r"\num{" + value[1] + (rf" \pm {value[2]}" if value[2] else "") + "}"
+    if unit and LITERAL.fullmatch(text):
+        return r"\unit{" + text.replace("*", ".") + "}"
     return _set(unit_runs(text) if unit else cell_runs(text, kept()))
 
 

@@ -183,6 +183,7 @@ def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[st
         "topics": [{"name": _text(t.name), "texts": [_text(p) for p in t.texts]} for t in section.topics],
         "code": [_folding(glyphs(line)) for line in section.code],
         "figures": [_figure(f) for f in section.figures],
+        "plates": section.plates,
         "tables": [_table(t, level) for t in section.tables],
     }
     for i, part in enumerate(section.subsections):

@@ -6,16 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh import solids as silhouette
 from coeflab.core.errors import InputError, shown
+from coeflab.report.figures.body import FRONT, SIDE, TOP, draw_outline
 from coeflab.report.figures.three_views import surfaces_of
 from coeflab.report.plots.axes import axes_of, palette
 
-VIEWS = {  # across and up in FRD, and how they are called
-    "side": (np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]), "x [m]", "z [m]"),
-    "top": (np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), "x [m]", "y [m]"),
-    "front": (np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]), "y [m]", "z [m]"),
-}
+FINE = 9  # digits of a metre
+VIEWS = {"side": (SIDE, "x [m]", "z [m]"), "top": (TOP, "x [m]", "y [m]"), "front": (FRONT, "y [m]", "z [m]")}
 
 
 def plot_body(body: Body, view: str = "side", ax: Axes | None = None) -> Axes:
@@ -34,17 +31,17 @@ def plot_body(body: Body, view: str = "side", ax: Axes | None = None) -> Axes:
     """
     if view not in VIEWS:
         raise InputError(shown(view), f"one of {', '.join(VIEWS)}", column="view")
-    frame, across, up = VIEWS[view]
+    seen, across, up = VIEWS[view]
+    frame = seen.axes[:2]
     signs = frame.sum(axis=1)  # of what the axis is called
     axes, colours = axes_of(ax), palette()
     for _, surface in surfaces_of(body):
-        for ring in silhouette.polygons(silhouette.mesh_outline(*surface, frame)):
-            x, y = (np.append(c, c[0]) * s for c, s in zip(np.asarray(ring).T, signs, strict=True))
-            axes.fill(x, y, facecolor=colours["band"], edgecolor=colours["ink"], alpha=0.5)
+        draw_outline(axes, surface, frame, palette=colours, digits=FINE, sense=signs)
     point = frame @ np.asarray(body.reference_point) * signs
     axes.plot(*([v] for v in point), "+", color=colours["a"], label="reference point")
     axes.set_xlabel(across)
     axes.set_ylabel(up)
+    axes.autoscale_view()
     axes.set_aspect("equal")
     if not axes.yaxis_inverted():
         axes.invert_yaxis()

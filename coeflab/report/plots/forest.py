@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from coeflab.report.figures.first_page import draw_intervals
 from coeflab.report.plots.axes import axes_of, palette
 
 Interval = tuple[float | None, float | None]
@@ -30,23 +31,16 @@ def plot_forest(
     y = np.arange(len(rows))[::-1].astype(float)
     count = max((len(found) for _, found in rows), default=0)
     sizes = [abs(found[0][0] or 0.0) or max((abs(v or 0.0) for v, _ in found), default=0.0) or 1.0 for _, found in rows]
+    handles = []
     for k in range(count):
         at = [i for i, (_, found) in enumerate(rows) if k < len(found) and found[k][0] is not None]
         value = np.array([(rows[i][1][k][0] or 0.0) / sizes[i] for i in at])
         half = np.array([(rows[i][1][k][1] or 0.0) / sizes[i] for i in at])
         offset = (0.5 * (count - 1) - k) * STEP
-        axes.errorbar(
-            value,
-            y[at] + offset,
-            xerr=half,
-            fmt="o",
-            color=colours["abcd"[k % 4]],
-            capsize=2.0,
-            label=names[k] if k < len(names) else None,
-        )
+        handles.append(draw_intervals(axes, value, half, y[at] + offset, f"s{k}", colours["abcd"[k % 4]]))
     axes.axvline(0.0, color=colours["muted"], linewidth=0.8)
     axes.set_yticks(y, [symbol for symbol, _ in rows])
     axes.set_xlabel("value over its size, with U95")
     if names and rows:
-        axes.legend()
+        axes.legend(handles=handles, labels=list(names))
     return axes

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from coeflab.core.errors import InputError, shown
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS
 from coeflab.motion.trajectory import Trajectory
-from coeflab.report.plots.axes import axes_of
+from coeflab.report.figures.motion import draw_history, draw_track
+from coeflab.report.plots.axes import axes_of, palette
 
 IN_DEGREES = ("heading", "roll", "pitch")
 
@@ -38,13 +39,13 @@ def plot_motion(motion: Trajectory, what: str = "track", ax: Axes | None = None)
         raise InputError(shown(what), f"track, or one of {', '.join(known)}", column="what")
     axes = axes_of(ax)
     if what == "track":
-        axes.plot(motion.position[:, 1], motion.position[:, 0])
+        draw_track(axes, motion, palette=palette())
         axes.set_xlabel("east [m]")
         axes.set_ylabel("north [m]")
         axes.set_aspect("equal", adjustable="datalim")
         return axes
     values, unit = known[what]
-    axes.plot(motion.time, values)
+    draw_history(axes, motion.time, {what: values}, palette())
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{what} [{unit}]" if unit else what)
     return axes

@@ -7,14 +7,14 @@ from matplotlib.axes import Axes
 
 from coeflab.core.errors import InputError, shown
 from coeflab.law.symbols import ANGULAR, CONTROLS
-from coeflab.report.plots.axes import axes_of
+from coeflab.report.figures.laws import draw_trace
+from coeflab.report.figures.nouns import MOVED_BY, traces
+from coeflab.report.plots.axes import axes_of, palette
 from coeflab.tables.force_table import ForceTable
-
-MOVED_BY = {"v": "YN", "r": "YN", "w": "ZM", "q": "ZM", "p": "KN", "u": "X", "dr": "YN", "ds": "ZM", "db": "ZM"}
 
 
 def plot_table(table: ForceTable, component: str = "", over: str = "", ax: Axes | None = None) -> Axes:
-    """A component over a motion, SI; controls in degrees; what no fit uses as crosses.
+    """A component over a motion, SI; controls in degrees; what no fit uses is hollow.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ def plot_table(table: ForceTable, component: str = "", over: str = "", ax: Axes 
     axes = axes_of(ax)
     x = np.degrees(known[over]) if over in CONTROLS else np.asarray(known[over])
     y, used = np.asarray(table.forces[component]), np.asarray(table.usable[component])
-    axes.plot(x[used], y[used], "o", label=f"{table.name}, {component}")
-    if np.any(aside := ~used & np.isfinite(y)):
-        axes.plot(x[aside], y[aside], "x", label="not used by fits")
+    for trace in traces(x, y, used):
+        drawn = draw_trace(axes, trace, trace.form, palette())
+        drawn[0].set_label(f"{table.name}, {component}" if trace.form == "filled" else trace.name)
     axes.set_xlabel(f"{over} [{'deg' if over in CONTROLS else 'rad/s' if over in ANGULAR else 'm/s'}]")
     axes.set_ylabel(f"{component} [{'N' if component in 'XYZ' else 'N m'}]")
     axes.legend()

@@ -251,6 +251,12 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
             value = f.status if f.value is None else number(f.value * factor, 3)
             if f.name != "lateral deviation":
                 rows.append((called, f.name, value, unit, ends))
+    main = main_spread(carried)
+    if main is not None and main[1].tests:
+        causes = ", ".join(f"{test} {100.0 * share:.0f} %" for test, share in main[1].tests[:MOST_PARTS])
+        notes.append(
+            f"{main[0].figure.name}: causes of its 95 %, as the share of the variance that a test would take off: {causes}."
+        )
     heads = ("", "quantity", "value", "unit", "95 %")
     return Table("First manoeuvres", heads, tuple(rows), (*notes, *_held(moves)), frozenset({0, 1, 3}))
 

@@ -34,6 +34,7 @@ from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
+from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.inertia import against_computed
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
@@ -42,6 +43,7 @@ from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, De
 UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
 IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
 ACROSS = "speed  [m/s]"
+RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
 
 
 def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
@@ -103,8 +105,12 @@ def _said(part: str, values: Array) -> str:
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
     "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
-    "U95 comes from that of the four derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
+    "U95 comes from that of the derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
 )
+TURNING_TEXT = (
+    "r'/dr = (Nv' Ydr' - Yv' Ndr') / [Yv' (Nr' - xG' m') - Nv' (Yr' - m')] is the turning ability of the rudder."
+)
+REVERSAL_TEXT = "U_c is the critical speed of the stern planes: slower, planes to dive make it rise. U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]."
 
 
 def in_words(study: Study) -> list[str]:
@@ -198,7 +204,7 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     refused: list[str] = []
     for i, (name, parameters) in enumerate(study.parameter_files.items()):
         found = _indices(parameters)
-        rows += found
+        rows += [*found, *_other_criteria(parameters)]
         for index in (row[1] for row in found if row[2] != ABSENT):
             try:
                 locus = root_locus(parameters, index)
@@ -226,7 +232,13 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
     mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
-    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures), (mass,)),)
+    given = {row[1] for row in rows}
+    also = [text for name, text in ((TURNING, TURNING_TEXT), (REVERSAL, REVERSAL_TEXT)) if name in given]
+    return (
+        Section(
+            "stability", "Stability", (TEXT[0], *also, *TEXT[1:], *refused), tuple(tables), tuple(figures), (mass,)
+        ),
+    )
 
 
 def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
@@ -254,12 +266,32 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
     return out
 
 
+def _other_criteria(parameters: ParameterFile) -> list[tuple[str, ...]]:
+    """Turning ability and the critical speed of the stern planes, a row each."""
+    index = next((d for d in stability(parameters) if d.name == "G_h"), None)
+    out: list[tuple[str, ...]] = []
+    for d in criteria(parameters):
+        remarks = [d.statement] if d.result is None else [d.limits] if d.limits else []
+        if d.name == TURNING:
+            holds = index is not None and index.decided and sense(index).startswith("stable")
+            verdict = f"D/L = {number(2.0 / (abs(d.value) * RUDDER), 3)}" if holds else NO_CRITERION
+            remarks.insert(
+                0, "steady turn at 15 deg of rudder, linear" if holds else "no steady linear turn: not stable"
+            )
+        else:
+            slower = parameters.conditions.speed < d.value
+            verdict = "planes reversed" if slower else "planes as ordered"
+            remarks.insert(0, f"at {number(parameters.conditions.speed, 3)} m/s")
+        out.append((parameters.name, d.name, number(d.value), number(d.half_width, 2), verdict, "; ".join(remarks)))
+    return out
+
+
 def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     """The indices, and beside them those that the source of the same data prints."""
-    headers = ("parameter file", "index", "value", "U95", "verdict", "remark")
+    headers = ("parameter file", "criterion", "value", "U95", "verdict", "remark")
     printed = [_printed(study, name, index) for name, index, *_ in rows]
     if not any(value for value, _ in printed):
-        return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
+        return Table("Standard criteria", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     words = (
@@ -267,7 +299,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
         *notes,
     )
     return Table(
-        "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), words, frozenset({0, 1, 5, 6})
+        "Standard criteria", (*headers[:4], "published", *headers[4:]), tuple(beside), words, frozenset({0, 1, 5, 6})
     )
 
 

@@ -5,10 +5,12 @@ Mass and inertia that indices, roots and manoeuvres are computed with.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.outlining import fins_along
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -16,7 +18,7 @@ from coeflab.vehicle.inertia import water_inertia
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.outline import Outline
     from coeflab.bodies.triangulation import Triangulation
     from coeflab.law.added_mass import AddedMass
     from coeflab.study.study import Study
@@ -69,6 +71,51 @@ def sound(mesh: TriangleMesh) -> str:
         f"the mesh of {len(mesh.faces)} faces is closed, wound outward, without faces of no area or faces twice; "
         f"{size} m along x forward, y starboard, z down: look whether unit and axes are right"
     )
+
+
+def seen(body: Body) -> list[str]:
+    """What was made sure of a mesh, and of fins along the hull, in words."""
+    shape = body.shape
+    out = [sound(shape)] if isinstance(shape, TriangleMesh) and shape.remade is None else []
+    standing = fins_along(body.outline) if body.outline is not None else None
+    return out if standing is None else [*out, standing.words]
+
+
+def outline_table(outline: Outline) -> Table:
+    """Hulls, foils, ring wings and bluff parts with their sizes and places.
+
+    Parameters
+    ----------
+    outline : Outline
+    """
+
+    def row(part: Any, kind: str, area: Any, size: str, x: float, turned_by: str = "") -> tuple[str, ...]:
+        return part.name, kind, number(float(area), 3), size, number(float(x), 4), turned_by
+
+    rows = []
+    for h in outline.hulls:
+        size = f"length {h.length:.4g}, {float(h.breadth.max()):.3g} x {float(h.depth.max()):.3g}"
+        rows.append(row(h, "hull", -np.trapezoid(h.girth, h.x), size, round(float(h.x[0]), 9)))
+    for f in outline.foils:
+        size = f"span {f.span:.3g}, chords {f.root_chord:.3g} to {f.tip_chord:.3g}, t/c {f.thickness:.2g}"
+        rows.append(row(f, "foil", f.area, size, f.root[0], f.control))
+    for r in outline.rings:
+        size = f"diameter {r.diameter:.3g}, chord {r.chord:.3g}, t/c {r.thickness:.2g}"
+        rows.append(row(r, "ring", np.pi * r.diameter * r.chord, size, r.centre[0]))
+    for s in outline.propellers:
+        size = f"diameter {s.diameter:.3g}, P/D {s.pitch_ratio:.3g}, {s.blades} blades"
+        rows.append(row(s, "propeller", np.pi / 4.0 * s.diameter**2 * s.area_ratio, size, s.centre[0]))
+    for b in outline.bluff:
+        size = "half sizes " + " x ".join(f"{v:.3g}" for v in b.half_extents)
+        rows.append(row(b, f"bluff {b.kind}", b.areas.max(), size, b.centre[0]))
+    notes = [
+        "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
+        "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
+        *(("propeller: expanded area of its blades, centre of its disc",) if outline.propellers else ()),
+        *(f"left out: {line}" for line in outline.left_out),
+    ]
+    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
+    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
 
 
 def derivatives(found: Triangulation) -> Table:

@@ -9,13 +9,16 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.texts import known, remark
+from coeflab.formats.loss_tables import at_points
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, is_later
 from coeflab.vehicle.second_order import ROUNDING, products_once
+from coeflab.vehicle.stability import stability
 
 if TYPE_CHECKING:
-    pass
+    from coeflab.study.study import Study
 
 
 def contents(parameters: ParameterFile, kind: str) -> Table:
@@ -97,3 +100,15 @@ def _product(symbol: str) -> tuple[str, tuple[str, ...]]:
 def _length(p: ParameterFile) -> str:
     size = f"{p.scaling.length:.6g} m"
     return size if p.scaling.length_name == size else f"{p.scaling.length_name} {size}"
+
+
+def laws(study: Study) -> list[Table]:
+    """The force law of every parameter file of a study at its points."""
+    return [at_points(points_of(p), f"Force law of {name}") for name, p in study.parameter_files.items()]
+
+
+def decided(study: Study) -> list[str]:
+    """What the stability indices of its files decide, in words."""
+    settled = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
+    own = [c for c in study.checks if c.name == "stability" and c.subject in settled]
+    return [f"{c.subject.split()[0]}: {c.statistic}. {c.comment}" for c in own]

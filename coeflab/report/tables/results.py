@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.axes import point_in_words
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -229,10 +230,19 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
         stated = all(t.arm_point is not None for t in own if {"q", "r"} & set(t.varies))
         out.append(
             f"{listed([primed(s) for s in slopes])}: velocities of {f.campaign} are at {point_in_words(at, own[0].datum)}, {abs(shift):.3g} m "
-            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}put the drift runs "
-            f"into this campaign, for a move takes its {listed([primed(n) for n in needed])}."
+            f"{'ahead' if shift > 0.0 else 'aft'} of the study's point: {'' if stated else 'state arm_point, or '}give the drift runs "
+            f"beside it, for a move takes its {listed([primed(n) for n in needed])}."
         )
     return tuple(out)
+
+
+def answers(study: Study) -> tuple[str, ...]:
+    """Which rows are for a grid study only, whether a finer grid is needed, the rate of self-propulsion; a sentence each."""
+    found = [
+        c for c in study.checks if c.name in ("grids", "propeller") and c.severity in (Severity.NOTE, Severity.PASS)
+    ]
+    several = len({c.subject for c in found}) > 1
+    return tuple(f"{f'{c.subject}: ' * several}{c.statistic}." for c in found)
 
 
 def weight(c: Comparison) -> float:
@@ -541,6 +551,21 @@ def sources_of_numbers(study: Study) -> frozenset[str]:
 def _of(components: Sequence[str], table: ForceTable) -> str:
     whole = "" in components or (len(components) > 1 and set(components) >= set(table.forces))
     return "row" if whole else " ".join(components)
+
+
+def unused_rows(table: ForceTable) -> list[str]:
+    """Every row, or component of one, that no fit uses, by the reason."""
+    by: dict[str, dict[int, list[str]]] = {}
+    for e in table.exclusions:
+        by.setdefault(e.reason, {}).setdefault(e.row, []).append(e.component)
+    out = []
+    for reason, rows in by.items():
+        names = [
+            table.labels[row] + (f" {of}" if (of := _of(list(dict.fromkeys(c)), table)) != "row" else "")
+            for row, c in rows.items()
+        ]
+        out.append(f"{', '.join(names)}: {reason}")
+    return out
 
 
 NAMED = 12  # rows that a line names; of more the first

@@ -1,4 +1,4 @@
-"""Intervals of figures, where they come from, and which input is worth another test, as tables and in words.
+"""Intervals of figures, where they come from, and which test takes most off, as tables and in words.
 
 Uncertainty budgets, grid studies, validations and derived quantities, as tables to be shown.
 """
@@ -16,6 +16,7 @@ from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
 from coeflab.fits.uncertainty.budget import COUPLED
 from coeflab.law.symbols import primed
+from coeflab.motion.uncertainty.tests import tests_of
 from coeflab.report.tables.motion import DEGREES
 from coeflab.study.validation import AS_PRINTED, WIDE
 
@@ -115,16 +116,39 @@ def known_table(carried: Carried) -> Table:
     return Table("share of the variance that would go", headers, rows, notes if rows else (), frozenset({0}))
 
 
-def ranking(carried: Carried) -> tuple[str, ...]:
-    """What is worth another test or CFD run: over all figures of the manoeuvre, then figure by figure, in words."""
-    words = [i for i in carried.importances if i.shares or i.known]
-    own = [_parts(i) for i in words if i.figure in carried.names]
+def tests_table(carried: Carried) -> Table:
+    """Which test takes most off the variance of the manoeuvre's figures, the first first; without rows where nothing varies."""
+    having = [i for i in carried.importances if i.tests and (i.figure in carried.names or not carried.names)]
     mean: dict[str, float] = {}
-    for name, share in (p for parts in own for p in parts):
-        mean[name] = mean.get(name, 0.0) + share / len(own)
-    first = [name for name, share in sorted(mean.items(), key=lambda p: -p[1]) if share >= SMALL][:LISTED]
-    whole = f"worth another test or CFD run, by the mean share in the variance of {_counted(len(own))}: {', then '.join(first)}"
-    return (*([whole] if first else []), *map(_narrowing, words))
+    for name, share in (p for i in having for p in i.tests):
+        mean[name] = mean.get(name, 0.0) + share / len(having)
+    gives = tests_of(carried.varied.symbols)
+    rows = tuple(
+        (
+            name,
+            _some(gives[name]),
+            f"{100.0 * share:.0f} %",
+            f"{sum(i.tests[0][0] == name for i in having)} of {len(having)}",
+        )
+        for name, share in sorted(mean.items(), key=lambda p: -p[1])
+        if share >= SMALL
+    )
+    notes = (
+        f"Mean share in the variance of {_counted(len(having))} that would go if the test gave all these exactly; most of: figures that it takes most off. Coefficients of one estimate or "
+        "fit go together, so that the shares may add up to more than 100 %.",
+    )
+    headers = ("test", "gives", "takes off", "most of")
+    return Table("Which test takes most off", headers, rows, notes if rows else (), frozenset({0, 1}))
+
+
+def _some(symbols: Sequence[str]) -> str:
+    more = len(symbols) - LISTED
+    return " ".join(symbols[:LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def ranking(carried: Carried) -> tuple[str, ...]:
+    """What narrows each figure most if known exactly, in words."""
+    return tuple(_narrowing(i) for i in carried.importances if i.shares or i.known)
 
 
 def _counted(figures: int) -> str:

@@ -9,7 +9,8 @@ import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
+from coeflab.core.units import GRAMS
+from coeflab.law.scaling import FASTEST, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.to_frd import TAKEN_OUT
 

@@ -27,12 +27,12 @@ EXAMPLE = "coeflab tow suboff_bare_hull --dry-run"
 
 def solvers(incomplete: str) -> list[str]:
     """Solvers of the tow tank."""
-    return complete.plugins("tank.solvers.SOLVERS", incomplete)
+    return complete.plugins("tow_solvers", incomplete)
 
 
 def runners(incomplete: str) -> list[str]:
     """Runners of the tow tank."""
-    return complete.plugins("tank.runners.RUNNERS", incomplete)
+    return complete.plugins("tow_runners", incomplete)
 
 
 RUNS = "runs"

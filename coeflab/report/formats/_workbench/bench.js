@@ -152,9 +152,9 @@ const benchOf = (data) => {
     for (const name of Object.keys(data.campaigns)) campaigns[name] = campaignOf(name, edits);
     return campaigns;
   };
-  const motion = (vehicle, campaigns) => {
+  const motion = (vehicle, campaigns, told) => {
     const { out, lost } = coefficientsOf(vehicle, campaigns);
-    return lost ? { lost } : zigzagOf(vehicle, out);
+    return lost ? { lost } : zigzagOf(vehicle, out, told);
   };
   // What a page shows of one coefficient: its row now and as the study has it, and the indices of every file.
   const view = (edits, index) => {

@@ -1,6 +1,6 @@
 "use strict";
 // A zigzag by the fixed-step march of coeflab/motion: the same rates, steps, crossings and figures.
-const zigzagOf = (v, coefficients) => {
+const zigzagOf = (v, coefficients, told = () => {}) => {
   const NEAR = 1e-9, SLOWEST = 1e-9, FLAT = 1e-12, SLACK = 1e-6, MOVING = 1e-3, SECANTS = 8, UNCOVERED = "no data cover it";
   const ANGLES = { dr: "rudder angle", ds: "stern plane angle", db: "bow plane angle" };
   const law = v.law, many = law.source.length, offset = 1 + law.powers.length, pool = new Float64Array(offset + 2 * many);
@@ -84,6 +84,7 @@ const zigzagOf = (v, coefficients) => {
     let level = levelOf(state, 0);
     const stop = (how, when) => { live = false; ended = how; endTime = when; };
     for (let j = 1; j <= steps && live; j++) {
+      if (j % 250 === 0) told(j / steps);
       let remain = h;
       while (remain > 0) {
         const until = j * h, left = remain, since = until - left - begun, room = o.longest[phase] - since;

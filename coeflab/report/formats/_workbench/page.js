@@ -50,6 +50,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     say({ id, ...found });
     const z = f && f.zigzags[zigzag];
     if (!z) return say({ id, last: true });
+    const part = (from) => (x) => say({ id, part: from + x / 2 });
     const trim = (m) => (m.lost ? m : {
       time: m.time, north: m.state.map((s) => s[0]), east: m.state.map((s) => s[1]), heading: m.state.map((s) => s[13]),
       rudder: m.controls.map((c) => c[0]), figures: m.figures, determined: m.determined, why: m.why,
@@ -58,7 +59,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
       const s = data.sweeps[i], found = campaigns[s.campaign].rows[data.campaigns[s.campaign].sweeps.indexOf(i)];
       return "YN".includes(s.component) && found.value !== null && Math.abs(found.value) <= found.u95;
     }).map((i) => data.sweeps[i].symbol);
-    say({ id, unknown, motion: trim(bench.motion(z, campaigns)), still: trim(zigzagOf(z, z.law.coefficient)), last: true });
+    say({ id, unknown, motion: trim(bench.motion(z, campaigns, part(0))), still: trim(zigzagOf(z, z.law.coefficient, part(0.5))), last: true });
   };
   try {
     const text = `${source}\nconst data = ${JSON.stringify(data)};\nconst bench = benchOf(data);\nconst work = ${work};\nonmessage = (e) => work(bench, e.data, (m) => postMessage(m));`;
@@ -71,6 +72,8 @@ const mountBench = (root, data, source, prefix = "bench") => {
     next = { id: ++asked, edits: chosen, index: state.index, file: state.file, zigzag: state.zigzag };
     root.dataset.state = "computing";
     right.setAttribute("aria-busy", "true");
+    bar.value = 0;
+    bar.classList.add("running");
     if (running) return;
     running = true;
     const job = next;
@@ -80,8 +83,9 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const heard = (m) => {
     if (m.id === asked) {
       Object.assign(shown, m);
+      if (m.part) bar.value = m.part;
       if (m.row) show();
-      if (m.last) { showMotion(); root.dataset.state = "ready"; right.removeAttribute("aria-busy"); }
+      if (m.last) { showMotion(); root.dataset.state = "ready"; right.removeAttribute("aria-busy"); bar.classList.remove("running"); }
     }
     if (!m.last) return;
     running = false;
@@ -281,7 +285,8 @@ const mountBench = (root, data, source, prefix = "bench") => {
     picture, key, zigzagBox);
 
   const number = make("p", { class: "big" }), said = make("div", { class: "said", "aria-live": "polite" }), rest = make("div", { class: "compared" }), indexBox = make("section", { class: "index" }), motionBox = make("section", { class: "motion" });
-  const right = make("div", { class: "values" }, make("section", { class: "value" }, said, rest), indexBox, motionBox);
+  const bar = make("progress", { max: 1, value: 0, "aria-label": "Computing the zigzag" });
+  const right = make("div", { class: "values" }, make("section", { class: "value" }, bar, said, rest), indexBox, motionBox);
   const table = (caption, head, rows) => make("table", {}, make("caption", {}, caption), make("thead", {}, make("tr", {}, head.map((t, i) => make("th", { scope: "col", class: i ? "number" : false }, t)))),
     make("tbody", {}, rows.map((r) => make("tr", {}, r.map((c, i) => (i ? make("td", { class: "number" }, c) : make("th", { scope: "row" }, c)))))));
   // A sign without an interval is said with the reason, not as a finding.

@@ -1,0 +1,126 @@
+"""`fit_campaigns`: campaigns as they are, without a plan: fitted one by one or jointly, and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from coeflab.core.errors import InputError
+from coeflab.core.wording import Verbatim
+from coeflab.fits.results.fit_result import Sweep
+from coeflab.law.scaling import Scaling
+from coeflab.study.plan import DEFAULT_FITS
+from coeflab.study.run import run
+from coeflab.study.study import Plan, PlannedJoint, Study
+from coeflab.tables.importers import Importer
+from coeflab.tables.reading import suited_fit, table_at
+
+__all__ = ["FirstFit", "Study", "Sweep", "first_fit", "fit_campaigns", "suited_fit"]
+USUAL, MODEL = Importer.fit, "manoeuvring_model"
+MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+Progress = Callable[[str], None]
+
+
+def fit_campaigns(
+    paths: Sequence[Path],
+    by: str,
+    options: Mapping[str, Any] | None = None,
+    *,
+    speed: float | None = None,
+    scaling: Scaling | None = None,
+    include_uncertain: bool = False,
+    progress: Progress = lambda _: None,
+) -> Study:
+    """The study of one campaign by a fit, or of several by one that joins them; `coeflab.fit` gives the coefficients alone.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Folders of campaigns, or one CSV of each.
+    by : str
+        Name of the fit; `suited_fit` says which a campaign is for.
+    options : mapping, optional
+        Of the fit.
+    speed : float, optional
+        Only rows of this speed, m/s.
+    scaling : Scaling, optional
+        Length of the primes; the campaign's own unless given.
+    include_uncertain : bool
+        Use cells that the source marks as doubtful.
+    progress : callable, optional
+        Takes what is being done, in words.
+
+    Raises
+    ------
+    InputError
+        As `coeflab.run`.
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> study = fit_campaigns([cf.shipped("cfd_data") / "suboff_roddy_2"], "slope_at_origin")
+    >>> round(study.fits[0].coefficients["Yv'"].value, 4)
+    -0.0262
+    """
+    given = dict(options or {})
+    alone = len(paths) == 1
+    study = run(Plan(
+        name=Verbatim("_".join(p.stem for p in paths)[:80]),
+        title=Verbatim(", ".join(p.name for p in paths)),
+        tables=(table_at(paths[0], (by,), {by: given}, speed),) if alone else (),
+        joint=() if alone else (PlannedJoint(tuple(table_at(p, speed=speed) for p in paths), by, given),),
+        scaling=scaling,
+        wanted=MAIN if by == USUAL else (),
+        include_uncertain=include_uncertain,
+    ), progress)  # fmt: skip
+    return replace(study, checks=tuple(c for c in study.checks if c.name != "law at points"))  # none is offered
+
+
+class FirstFit(NamedTuple):
+    """The first fit of a new campaign that its rows allow.
+
+    Attributes
+    ----------
+    study : Study or None
+    by : str
+        Name of the fit that was tried last.
+    suited : bool
+        Whether it is the one that the campaign is for.
+    planned : bool
+        Whether a study of the campaign fits so by itself.
+    why : str
+        Why the first one is refused; empty where none is.
+    """
+
+    study: Study | None
+    by: str
+    suited: bool
+    planned: bool
+    why: str
+
+
+def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
+    """A campaign by the fit that it is for; where no setting is swept while the others rest, its rows as one model.
+
+    Parameters
+    ----------
+    folder : Path
+    progress : callable, optional
+
+    Examples
+    --------
+    >>> import coeflab as cf
+    >>> first_fit(cf.shipped("cfd_data") / "suboff_roddy_2").by
+    'slope_at_origin'
+    """
+    suited = suited_fit(folder)
+    study, why, by = None, "", suited
+    for by in dict.fromkeys([suited, MODEL] if suited == USUAL else [suited]):
+        try:
+            study = fit_campaigns([folder], by, progress=progress)
+            break
+        except InputError as refused:
+            why = why or str(refused)
+    return FirstFit(study, by, by == suited, study is not None and by in DEFAULT_FITS, why)

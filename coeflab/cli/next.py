@@ -1,0 +1,110 @@
+"""``coeflab next``: which test takes most off the uncertainty, and at which settings to run it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.api.designing import NextTests
+
+EXAMPLE = 'coeflab next suboff_roddy_2 --for "Nv\'" --runs 4 --target 10%'
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+
+def command(
+    ctx: typer.Context,
+    source: str = typer.Argument(
+        ..., metavar="SOURCE", help="A table or campaign, a parameter file, or a body of which nothing was run."
+    ),
+    wanted: str = typer.Option(
+        "",
+        "--for",
+        metavar="FIGURE",
+        help="A coefficient, G_h, G_v, or a figure of the manoeuvre; default the widest main derivative.",
+    ),
+    table: list[str] = typer.Option(
+        [], "--table", metavar="TABLE", help="Rows behind the coefficients of a parameter file; repeatable."
+    ),
+    runs: int = typer.Option(7, metavar="COUNT", help="Runs of each test, 3 to 24 where nothing was run."),
+    target: str = typer.Option("", metavar="SHARE", help="U95 that is wanted, as a share of the value: 10%."),
+    noise: str = typer.Option(
+        "1%", metavar="SHARE", help="Scatter of a reading over the largest one, where nothing was run."
+    ),
+    angle: str = typer.Option("12 deg", metavar="ANGLE", help="Largest drift or attack, where nothing was run."),
+    control: str = typer.Option("15 deg", metavar="ANGLE", help="Largest control angle, where nothing was run."),
+    rate: float = typer.Option(0.4, metavar="RATE", help="Largest r' and q', where nothing was run."),
+    manoeuvre: str = typer.Option(
+        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="Whose figure is wanted."
+    ),
+    to: Path | None = typer.Option(
+        None, metavar="FILE", help="Write the runs: .csv, or .toml with the [matrix] of coeflab tow."
+    ),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Name the test that takes most off an uncertainty, and its best settings.
+
+    Tests are ranked by the share of the variance that goes with them; settings are searched by the estimator itself on
+    simulated readings. Any further --option VALUE goes to the manoeuvre: --rudder 20. Exit code 1 where a target is not reached.
+    """
+    import coeflab as cf
+    from coeflab.api.designing import Reached
+    from coeflab.cli.simulate import of_manoeuvre
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.files import placeable, write_all
+
+    if to is not None and to.suffix not in (".csv", ".toml"):
+        raise InputError(shown(to.name), "a file name that ends in .csv or .toml", column="--to")
+    if to is not None:
+        placeable(to)
+    with show.narrated():
+        found = cf.next_tests(
+            source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle, control=control, rate=rate,
+            manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
+        )  # fmt: skip
+    if to is not None:
+        text = found.matrix() if to.suffix == ".toml" else found.frame().to_csv(index=False)
+        write_all(to.parent, {to.name: text.encode()})
+    if json:
+        show.json_object(as_json(found) | {"files": [] if to is None else [str(to)]})
+    else:
+        from coeflab.report.tables.next_tests import tables
+
+        for one in tables(found):
+            show.table(one)
+        if to is not None:
+            show.path(to)
+    if found.reached is Reached.NO:
+        raise typer.Exit(1)
+
+
+def as_json(found: NextTests) -> dict[str, Any]:
+    """Tests, best first; settings in rad, or r' and q'; U95 of the wanted figure after the runs of each test alone."""
+    return {
+        "for": found.wanted,
+        "value": found.value,
+        "u95": found.u95,
+        "target": found.target,
+        "reached": str(found.reached),
+        "u95_after_all": found.best,
+        "noise_assumed": found.noise,
+        "curves_assumed": list(found.assumed),
+        "tests": [
+            {
+                "test": str(t.kind),
+                "variable": t.variable or None,
+                "share_of_variance": t.share,
+                "settings": [float(x) for x in t.angles],
+                "u95_then": t.wanted_then,
+                "coefficients": [
+                    {"symbol": s, "u95_now": now, "u95_then": then}
+                    for s, (now, then) in zip(t.symbols, t.u95, strict=True)
+                ],
+            }
+            for t in found.tests
+        ],
+    }

@@ -1,0 +1,389 @@
+"""Which test to run next, and at which settings: what each kind of test takes off the variance of a wanted figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.machine import stage
+from coeflab.core.types import Array, brief
+from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.statistics.designs import FINAL, Response, designed, predicted_u95
+from coeflab.fits.statistics.origin_slope import OriginSlope, curve, estimate
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import ANGULAR, CONTROLS, derivative, primed
+from coeflab.motion.uncertainty.tests import Kind, kind_of
+from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.stability import INDICES, index_gradient
+
+PAIR = {"v": "YN", "r": "YN", "dr": "YN", "w": "ZM", "q": "ZM", "ds": "ZM", "db": "ZM"}
+SEEN = 0.01  # of the variance: tests that hold less are left out
+LEVELS = 12
+MEMBERS = 200
+FEWEST, MOST = 3, 24
+
+
+class Reached(StrEnum):
+    """Whether the runs bring the figure to its target."""
+
+    YES = "reached"
+    NO = "not reached"
+    OPEN = "no target"
+
+
+@dataclass(frozen=True, slots=True)
+class Ranges:
+    """What the tests may run: largest angle of drift and attack, of a control, rad, and largest r', q'."""
+
+    angle: float = float(np.radians(12.0))
+    control: float = float(np.radians(15.0))
+    rate: float = 0.4
+
+    def levels(self, variable: str) -> Array:
+        """Sizes of settings, primed, at round steps of the angle or the rate."""
+        if variable in ANGULAR:
+            return _round_steps(self.rate)
+        angles = np.radians(_round_steps(np.degrees(self.control if variable in CONTROLS else self.angle)))
+        return np.asarray(angles if variable in CONTROLS else np.sin(angles))
+
+
+def _round_steps(largest: float) -> Array:
+    """Multiples of 1, 2 or 5 times a power of ten, at most twelve, up to the largest."""
+    step = 10.0 ** np.floor(np.log10(largest / LEVELS))
+    step *= next(k for k in (1.0, 2.0, 5.0, 10.0) if k * step >= largest / LEVELS * (1.0 - 1e-9))
+    return np.asarray(np.round(step * np.arange(1.0, np.floor(largest / step + 1e-6) + 1.0), 12))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class ProposedTest:
+    """One kind of test and what it would do.
+
+    Attributes
+    ----------
+    kind : Kind
+    variable : str
+        Empty where the test is none of one variable, so that no settings are given.
+    symbols : tuple of str
+        Coefficients of the wanted figure that it gives, primed.
+    share : float
+        Of the variance of the wanted figure: what it could take off at most.
+    settings : (n,) array
+        Of the proposed runs, as the variable's prime: sine of an angle, rad of a control, r'.
+    u95 : tuple of (now, then)
+        Of every symbol.
+    equal : tuple of float
+        U95 of every symbol by as many runs at equal spacing.
+    wanted_then : float
+        U95 of the wanted figure after these runs alone.
+    rows : int
+        That were run already.
+    """
+
+    kind: Kind
+    variable: str
+    symbols: tuple[str, ...]
+    share: float
+    settings: Array
+    u95: tuple[tuple[float, float], ...]
+    equal: tuple[float, ...]
+    wanted_then: float
+    rows: int = 0
+
+    @property
+    def angles(self) -> Array:
+        """The settings as a person sets them: rad of drift, attack and controls, else r' or q'."""
+        return np.arcsin(self.settings) if self.variable in ("v", "w") else self.settings
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class NextTests:
+    """Tests by what they take off, largest first.
+
+    Attributes
+    ----------
+    wanted : str
+        Coefficient or figure.
+    value, u95 : float
+        Of it now.
+    tests : tuple of Test
+    target : float or None
+        Wanted U95.
+    noise : float or None
+        Of one reading, as a share of the reading at the largest setting, assumed where nothing was run; None where all was.
+    assumed : tuple of str
+        Symbols whose curve comes from a parameter file or an estimate, without rows.
+    """
+
+    wanted: str
+    value: float
+    u95: float
+    tests: tuple[ProposedTest, ...]
+    target: float | None
+    noise: float | None
+    assumed: tuple[str, ...]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the prediction rests on, and whether the target is reached."""
+        out = [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
+        if self.noise is not None:
+            out += [
+                Finding.of(
+                    "design.assumed",
+                    self.wanted,
+                    Severity.NOTE,
+                    statistic=self.noise,
+                    advice="--noise",
+                    symbols=self.assumed,
+                )
+            ]
+        if self.target is not None:
+            severity = Severity.PASS if self.reached is Reached.YES else Severity.WARN
+            out += [
+                Finding.of(
+                    "design.target", self.wanted, severity, statistic=self.best, threshold=self.target, advice="--runs",
+                    reached=str(self.reached),
+                )
+            ]  # fmt: skip
+        return tuple(out)
+
+    @property
+    def best(self) -> float:
+        """U95 after the runs of all tests together."""
+        left = 1.0 - sum(1.0 - (t.wanted_then / self.u95) ** 2 for t in self.tests)
+        return self.u95 * float(np.sqrt(max(left, 0.0)))
+
+    @property
+    def reached(self) -> Reached:
+        """Whether all these runs bring U95 to the target."""
+        if self.target is None:
+            return Reached.OPEN
+        return Reached.YES if self.best <= self.target else Reached.NO
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A figure, and how its variance divides among coefficients: symbol without prime to (share, U95 now)."""
+
+    name: str
+    value: float
+    u95: float
+    shares: Mapping[str, tuple[float, float]]
+
+
+def of_symbol(coefficient: Coefficient) -> Wanted:
+    """A coefficient as the wanted figure.
+
+    Raises
+    ------
+    InputError
+        No value, or no U95 that could become smaller.
+    """
+    name = primed(coefficient.symbol.removesuffix("'"))
+    if coefficient.value is None or not coefficient.u95:
+        raise InputError(
+            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="--for",
+            advice="Give a body, whose estimates have both, or a table with three settings.",
+        )  # fmt: skip
+    return Wanted(name, coefficient.value, coefficient.u95, {name.removesuffix("'"): (1.0, coefficient.u95)})
+
+
+def of_index(parameters: ParameterFile, name: str) -> Wanted:
+    """G_h or G_v by first-order shares of its four coefficients, without their covariance.
+
+    Raises
+    ------
+    InputError
+        No mass, no value, or no U95 of one of them.
+    """
+    *symbols, sign = INDICES[name]
+    found = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None and c.u95]
+    if parameters.mass is None or len(found) < len(symbols):
+        raise InputError(
+            f"{name} of a file without {'mass' if parameters.mass is None else 'U95 of all four coefficients'}",
+            f"mass, and {', '.join(map(str, symbols))} with U95", column="--for",
+        )  # fmt: skip
+    values = [float(c.value or 0.0) for c in found]
+    mass = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+    steps = index_gradient(values[0], values[1], values[2], values[3], *mass) * np.array(
+        [float(c.u95 or 0.0) for c in found]
+    )
+    variance = steps**2 / float(steps @ steps)
+    lever = values[1] * (values[2] - mass[0])
+    value = 1.0 - lever / (values[0] * (values[3] - mass[1]))
+    shares = {
+        str(s).removesuffix("'"): (float(v), float(c.u95 or 0.0))
+        for s, v, c in zip(symbols, variance, found, strict=True)
+    }
+    return Wanted(name, value, float(np.sqrt(steps @ steps)), shares)
+
+
+def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wanted:
+    """A figure of a manoeuvre, by draws that are independent: each share is what would go if that coefficient were known.
+
+    Raises
+    ------
+    InputError
+        No such figure, or one without an interval.
+    """
+    apart = parameters.model_copy(update={"covariance": ParameterCovariance(symbols=(), matrix=())})
+    carried = uncertainty(apart, question)
+    near = [s for s in carried.spreads if s.figure.name.casefold().startswith(name.casefold())]
+    if not near:
+        figures = ", ".join(s.figure.name for s in carried.spreads)
+        raise InputError(
+            shown(name), f"a coefficient, {', '.join(INDICES)}, or of {question.manoeuvre}: {figures or 'none'}",
+            column="--for", advice="--manoeuvre takes another.",
+        )  # fmt: skip
+    found = near[0]
+    if found.low is None or found.high is None or found.figure.value is None:
+        raise InputError(
+            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="--for"
+        )
+    importance = next(i for i in carried.importances if i.figure == found.figure.name)
+    shares = {}
+    for symbol, share in importance.known:
+        c = parameters.coefficient(symbol)
+        if c is not None and c.u95:
+            shares[symbol.removesuffix("'")] = (share, c.u95)
+    most = max(1.0, sum(share for share, _ in shares.values()))
+    shares = {symbol: (share / most, u95) for symbol, (share, u95) in shares.items()}
+    return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, shares)
+
+
+def next_tests(
+    wanted: Wanted, coefficients: Sequence[Coefficient], sweeps: Sequence[Sweep], ranges: Ranges, runs: int, noise: float,
+    *, target: float | None = None, computed: bool = False,
+) -> NextTests:  # fmt: skip
+    """Tests by what they take off the variance of a figure, each with the settings of its best runs.
+
+    Parameters
+    ----------
+    wanted : Wanted
+    coefficients : sequence of Coefficient
+        Expected curves where nothing was run: slopes, and Yv|v|.
+    sweeps : sequence of Sweep
+        What was run.
+    ranges : Ranges
+    runs : int
+        Of each test.
+    noise : float
+        Of one reading over the reading at the largest setting, where nothing was run.
+    target : float, optional
+        U95 that is wanted.
+    computed : bool
+        Runs repeat the same number, so no setting twice.
+
+    Raises
+    ------
+    InputError
+        Fewer than three runs where nothing was run, or no coefficient that a test gives.
+    """
+    if not 1 <= runs <= MOST:
+        raise InputError(f"{runs} runs", f"1 to {MOST}", column="--runs")
+    groups: dict[tuple[Kind, str], list[str]] = {}
+    for symbol in wanted.shares:
+        groups.setdefault(kind_of(symbol), []).append(symbol)
+    known = {c.symbol.removesuffix("'"): c for c in coefficients}
+    ran = {s.symbol: s for s in sweeps if s.parity == "odd" and s.value is not None}
+    assumed: list[str] = []
+    out = []
+    for (kind, variable), symbols in groups.items():
+        share = sum(wanted.shares[s][0] for s in symbols)
+        slopes = [s for s in symbols if variable and derivative(s).factors == (variable,)]
+        if share < SEEN and len(groups) > 1:
+            continue
+        if not slopes:
+            nothing = tuple((wanted.shares[s][1], wanted.shares[s][1]) for s in symbols)
+            out.append(ProposedTest(kind, "", _primed(symbols), share, np.zeros(0), nothing, (), wanted.u95))
+            continue
+        stage(f"runs of {kind}")
+        responses = []
+        for s in slopes:
+            own, now = wanted.shares[s]
+            responses.append(_response(s, variable, ran.get(s), known, ranges, noise, own / now**2))
+            assumed += [] if s in ran else [primed(s)]
+        rows = len(responses[0].x)
+        if not rows and runs < FEWEST:
+            raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="--runs")
+        levels = _levels(variable, ranges, ran.get(slopes[0]))
+        settings = designed(responses, runs, levels, distinct=computed)
+        equal = _equal(runs, levels, responses[0].odd)
+        after = [_after(wanted.shares[s][1], r, ran.get(s), settings) for s, r in zip(slopes, responses, strict=True)]
+        plain = [_after(wanted.shares[s][1], r, ran.get(s), equal) for s, r in zip(slopes, responses, strict=True)]
+        if not rows and _sum(plain, responses) < _sum(after, responses):
+            settings, after = equal, plain
+        gone = sum(wanted.shares[s][0] * (1.0 - (a / wanted.shares[s][1]) ** 2) for s, a in zip(slopes, after))
+        then = wanted.u95 * float(np.sqrt(max(1.0 - gone, 0.0)))
+        both = tuple((wanted.shares[s][1], a) for s, a in zip(slopes, after, strict=True))
+        out.append(ProposedTest(kind, variable, _primed(slopes), share, settings, both, tuple(plain), then, rows))
+    if not out:
+        raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
+    ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
+    return NextTests(
+        wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed)
+    )  # fmt: skip
+
+
+def _sum(u95: Sequence[float], responses: Sequence[Response]) -> float:
+    return sum(r.weight * u**2 for u, r in zip(u95, responses, strict=True))
+
+
+def _primed(symbols: Sequence[str]) -> tuple[str, ...]:
+    return tuple(primed(s) for s in symbols)
+
+
+def _present(sweep: Sweep) -> OriginSlope:
+    return estimate(sweep.x, sweep.y, sweep.se, odd=bool(sweep.symmetry))
+
+
+def _response(
+    symbol: str, variable: str, sweep: Sweep | None, known: Mapping[str, Coefficient], ranges: Ranges, noise: float, weight: float
+) -> Response:  # fmt: skip
+    if sweep is not None:
+        present = _present(sweep)
+        used = np.flatnonzero(present.used)
+        return Response(
+            lambda x: curve(present, x)[0], present.noise, weight, sweep.x[used], sweep.y[used], bool(sweep.symmetry)
+        )
+    slope = float(known[symbol].value or 0.0)
+    bent = known.get(f"{symbol}|{variable}|")
+    bend = 0.0 if bent is None else float(bent.value or 0.0)
+
+    def expected(x: Array) -> Array:
+        return slope * x + bend * x * np.abs(x)
+
+    largest = float(np.abs(expected(ranges.levels(variable))).max())
+    return Response(expected, noise * largest, weight)
+
+
+def _levels(variable: str, ranges: Ranges, sweep: Sweep | None) -> Array:
+    """Those of the ranges; of rows that were run those within them, since beyond them nothing is known of the curve."""
+    if sweep is None:
+        return ranges.levels(variable)
+    size = float(np.abs(sweep.x).max())
+    angle = size if variable in CONTROLS else float(np.arcsin(min(size, 1.0)))
+    return Ranges(angle, angle, size).levels(variable)
+
+
+def _equal(runs: int, levels: Array, one_sided: bool) -> Array:
+    if one_sided:
+        return np.linspace(0.0, levels[-1], runs + 1)[1:]
+    return np.linspace(-levels[-1], levels[-1], runs)
+
+
+def _after(now: float, response: Response, sweep: Sweep | None, settings: Array) -> float:
+    """U95 after the runs: of the scatter and form alone, with what a budget adds to it kept; never above that of now."""
+    then = predicted_u95(response, settings)
+    if sweep is not None and sweep.u95 is not None:
+        then = float(np.sqrt(max(now**2 - sweep.u95**2, 0.0) + then**2))
+    return min(now, then)

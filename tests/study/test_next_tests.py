@@ -1,0 +1,101 @@
+"""Tests ranked by what they take off the variance of a figure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coeflab as cf
+from coeflab.core.errors import InputError
+from coeflab.law.coefficient import Coefficient, Parts, Status
+from coeflab.motion.uncertainty.tests import Kind, kind_of
+from coeflab.study.next_tests import Ranges, Reached, Wanted, next_tests, of_index
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import stability_index
+
+
+def coefficient(symbol: str, value: float, u95: float | None) -> Coefficient:
+    return Coefficient(symbol, value, u95, Parts(), Status.ESTIMATE, "by hand")
+
+
+@pytest.mark.parametrize(
+    ("symbol", "kind", "variable"),
+    [
+        ("Yv", Kind.DRIFT, "v"), ("Yv|v|", Kind.DRIFT, "v"), ("Mw", Kind.ATTACK, "w"), ("Nr", Kind.YAW, "r"), ("Mq", Kind.PITCH, "q"),
+        ("Ydr", Kind.RUDDER, "dr"), ("Zds", Kind.STERN, "ds"), ("X0", Kind.RESISTANCE, ""), ("Xu|u|", Kind.RESISTANCE, ""),
+        ("Yvdot", Kind.ADDED_MASS, ""), ("Yvr", Kind.OTHER, ""), ("Yuv", Kind.DRIFT, "v"), ("Kp", Kind.ROLL, ""),
+    ],
+)  # fmt: skip
+def test_which_test_gives_a_coefficient(symbol: str, kind: Kind, variable: str) -> None:
+    assert kind_of(symbol) == (kind, variable)
+
+
+def test_levels_are_round() -> None:
+    ranges = Ranges(np.radians(12.0), np.radians(15.0), 0.4)
+    np.testing.assert_allclose(np.degrees(np.arcsin(ranges.levels("v"))), np.arange(1.0, 13.0))
+    np.testing.assert_allclose(np.degrees(ranges.levels("dr")), np.arange(2.0, 15.0, 2.0))
+    np.testing.assert_allclose(ranges.levels("r"), np.arange(0.05, 0.41, 0.05))
+
+
+@pytest.fixture(scope="module")
+def file() -> ParameterFile:
+    return cf.vehicle("suboff_bare_hull", mass=700.0).file
+
+
+def test_shares_of_g_h_are_its_gradients(file: ParameterFile) -> None:
+    found = of_index(file, "G_h")
+    at = {s: float(c.value or 0.0) for s in ("Yv", "Nv", "Yr", "Nr") if (c := file.coefficient(f"{s}'")) is not None}
+    mass = file.mass
+    assert mass is not None
+
+    def index(**moved: float) -> float:
+        values = [at[s] + moved.get(s, 0.0) for s in at]
+        return float(stability_index(*values, mass.mass_prime, mass.mass_moment_prime))
+
+    assert found.value == pytest.approx(index())
+    step = {s: (index(**{s: 1e-6}) - index(**{s: -1e-6})) / 2e-6 * found.shares[s][1] for s in at}
+    assert found.u95 == pytest.approx(np.sqrt(sum(v**2 for v in step.values())), rel=1e-4)
+    for s, v in step.items():
+        assert found.shares[s][0] == pytest.approx(v**2 / found.u95**2, rel=1e-3)
+
+
+def test_the_test_of_the_uncertain_coefficient_comes_first_and_takes_its_share() -> None:
+    wanted = Wanted("G_h", 0.2, 0.1, {"Yv": (0.05, 1e-3), "Nr": (0.95, 4e-3)})
+    known = [coefficient("Yv'", -0.03, 1e-3), coefficient("Nr'", -0.004, 4e-3)]
+    found = next_tests(wanted, known, (), Ranges(), 5, 0.01, target=0.03)
+    first = found.tests[0]
+    assert (first.kind, first.symbols) == (Kind.YAW, ("Nr'",))
+    now, then = first.u95[0]
+    assert first.wanted_then == pytest.approx(0.1 * np.sqrt(1.0 - 0.95 * (1.0 - (then / now) ** 2)))
+    assert found.reached is (Reached.YES if found.best <= 0.03 else Reached.NO)
+    assert set(found.assumed) == {"Yv'", "Nr'"}
+
+
+def test_rows_that_were_run_are_taken_from_the_table() -> None:
+    found = cf.next_tests("suboff_roddy_2", "Nv'", runs=4)
+    assert (found.tests[0].rows > 0, found.assumed, found.noise) == (True, (), None)
+    assert found.best < found.u95
+
+
+def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
+    found = cf.next_tests("suboff_bare_hull", "Yr'", runs=4)
+    settings = found.tests[0].settings
+    assert found.matrix() == (
+        f"[matrix]\ndrift = []\nattack = []\nyaw = [{', '.join(f'{x:.4g}' for x in dict.fromkeys(settings))}]\npitch = []\n"
+    )
+    np.testing.assert_array_equal(found.frame()["setting"], settings)
+
+
+@pytest.mark.parametrize(
+    ("source", "wanted", "more", "column"),
+    [
+        ("suboff_bare_hull", "G_h", {}, "wanted"), ("suboff_bare_hull", "Ydr'", {}, "wanted"), ("huuv", "G_h", {}, "--for"),
+        ("suboff_bare_hull", "Yr'", {"runs": 2}, "--runs"), ("suboff_bare_hull", "Yr'", {"runs": 25}, "--runs"),
+        ("suboff_bare_hull", "Yr'", {"noise": "-1%"}, "noise"), ("suboff_bare_hull", "Yr'", {"angle": 12.0, "rate": 0.0}, "rate"),
+        ("nowhere.csv", "", {}, None),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_asked(source: str, wanted: str, more: dict[str, object], column: str | None) -> None:
+    with pytest.raises(InputError) as why:
+        cf.next_tests(source, wanted, **more)  # type: ignore[arg-type]
+    assert column is None or why.value.column == column
