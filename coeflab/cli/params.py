@@ -219,6 +219,9 @@ def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schem
 @app.command(cls=Command, epilog='Example: coeflab params conform "python3 docs/reference/reader.py"')
 def conform(
     program: str = typer.Argument(..., metavar="COMMAND", help="A program with its arguments, in quotation marks."),
+    write: Path | None = typer.Option(
+        None, metavar="FOLDER", help="Put the files, their states and the answers due there.", show_default=False
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Hold an implementation of the force law against its conformance vectors.
@@ -231,6 +234,7 @@ def conform(
 
     from coeflab.api.parameters import conform as run
     from coeflab.core.errors import InputError
+    from coeflab.core.files import typed
     from coeflab.core.finding import Severity, worst
     from coeflab.core.table import as_check
 
@@ -240,7 +244,7 @@ def conform(
         raise InputError(program, "a command with closed quotation marks", column="COMMAND") from why
     if not words:
         raise InputError("no command", "a program with its arguments", column="COMMAND")
-    found = run(words)
+    found = run(words, folder=None if write is None else typed(write))
     if json:
         from coeflab.report.as_json.findings import findings
 

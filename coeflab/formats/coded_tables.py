@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.formats.flat_law import PLACES, RULES, flat_tables
+from coeflab.formats.flat_law import RULES, flat_tables, place_at
 from coeflab.law.domain import Hull
-from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, Reading
+from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, Reading, place_of
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
 
-# variables: which of u v w p q r dr ds db U alpha beta, from 1; terms: component of X Y Z K M N D S L from 1, SI value, power of U, then of each
-# variable its power and that of its absolute value.
+# variables: which of u v w p q r dr ds db U alpha beta, from 1; terms: component from 1, X Y Z K M N, then D S L of each row of speaks, SI
+# value, power of U, then of each variable its power and that of its absolute value.
 KEYS = ("variables", "prime", "rule", "boxed", "rests", "low", "high", "spaces", "faces", "maps", "terms")
 Rows = dict[str, Any]
 
 
-def coded_tables(parameters: ParameterFile) -> tuple[list[Rows], tuple[bool, bool, bool]]:
-    """Rows of every table in the law, and for which of X, Y, Z drag, side force and lift speak."""
+def coded_tables(parameters: ParameterFile) -> tuple[list[Rows], list[list[int]]]:
+    """Rows of every table in the law, and for which of X, Y, Z each group of drag, side force and lift speaks."""
     law = motion_law(parameters)[0]
     out: list[Rows] = []
     for t in flat_tables(law):
@@ -30,16 +30,16 @@ def coded_tables(parameters: ParameterFile) -> tuple[list[Rows], tuple[bool, boo
             powers = [0] * (2 * len(t.base))
             for v, n, absolute in t.factors(term):
                 powers[2 * v + absolute] += n
-            terms.append([PLACES.index(term.component) + 1, float(term.coefficient), term.speed_power, *powers])
+            terms.append([place_of(term, law.wind) + 1, float(term.coefficient), term.speed_power, *powers])
         out.append({
             "name": t.name, "variables": [v + 1 for v in t.base], "prime": [float(p) for p in t.prime], "rule": RULES.index(t.hull.rule),
             "boxed": int(t.boxed), "rests": int(t.rests), "low": t.hull.low.tolist(), "high": t.hull.high.tolist(),
             "spaces": t.hull.spaces.tolist(), "faces": t.faces.tolist(), "maps": t.maps.reshape(-1, len(t.base) + 1).tolist(), "terms": terms,
         })  # fmt: skip
-    return out, law.wind
+    return out, [[int(x) for x in into] for into in law.wind]
 
 
-def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> ForceLaw:
+def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[Any]]) -> ForceLaw:
     """The law of such rows alone."""
     terms: list[ForceTerm] = []
     for k, t in enumerate(tables):
@@ -62,10 +62,11 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> 
                 for absolute, n in ((False, powers[2 * i]), (True, powers[2 * i + 1]))
                 if n
             )
+            component, into = place_at(int(place) - 1, wind)
             terms.append(
                 ForceTerm(
                     str(k),
-                    PLACES[int(place) - 1],
+                    component,
                     Term(factors),
                     float(value),
                     int(power),
@@ -73,7 +74,7 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> 
                     "table",
                     readings=readings,
                     hull=hull,
+                    into=into,
                 )
             )
-    one, two, three = (bool(x) for x in wind)
-    return ForceLaw(tuple(terms), np.zeros((6, 6, 6)), wind=(one, two, three))
+    return ForceLaw(tuple(terms), np.zeros((6, 6, 6)))

@@ -6,27 +6,36 @@ found here, once, so that a program needs no solver.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief
 from coeflab.law.domain import SLACK, Hull
-from coeflab.law.force_law import BASE, WIND, ForceLaw, ForceTerm
+from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import known_mass, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
-PLACES = (*COMPONENTS, *WIND)
 RULES: tuple[Literal["clamp", "taper", "refuse"], ...] = ("clamp", "taper", "refuse")
 MOST_CORNERS = 2_000_000
 Factors = tuple[tuple[int, int, bool], ...]
+
+
+def place_at(place: int, wind: Sequence[Sequence[Any]]) -> tuple[str, tuple[bool, bool, bool]]:
+    """Component and `ForceTerm.into` of a place that `coeflab.law.force_law.place_of` gives."""
+    if place < len(COMPONENTS):
+        return COMPONENTS[place], EVERYWHERE
+    group, which = divmod(place - len(COMPONENTS), len(WIND))
+    one, two, three = map(bool, wind[group])
+    return WIND[which], (one, two, three)
 
 
 @brief

@@ -17,7 +17,7 @@ def without_law(parameters: ParameterFile) -> tuple[str, ...]:
     """
     spoken = {t.component for t in force_law(parameters).terms if not t.variables or set(t.variables) & set(MOTIONS)}
     sources = sources_of(parameters)
-    spoken |= {c for s in sources.tables for c in sources.components(s)}
+    spoken |= {c for s in sources.tables for c in s.components}
     silent = [c for c in COMPONENTS if c not in spoken]
     if not silent:
         return ()

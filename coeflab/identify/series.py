@@ -16,8 +16,9 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import Header, factor, parse_header
 from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
 from coeflab.tables.importers.table import raw
+from coeflab.vehicle.parameter_parts import THRUST
 
 FEWEST = 50  # rows: fewer hold no motion from which forces could be told
 COMMAND = "command"

@@ -24,9 +24,8 @@ from coeflab.core.text.toml import TomlFile, read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import factor
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.motion.vehicle import THRUST
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.vehicle.parameter_parts import CurveSegment, ParameterThruster
+from coeflab.vehicle.parameter_parts import THRUST, CurveSegment, ParameterThruster
 
 EXPECTED = "a coefficient (Yv'), a term of a table (C_S beta), mass, added_mass Yvdot, thruster NAME ahead c0 or thruster NAME y"
 AXES = "xyz"

@@ -7,6 +7,7 @@ r L/V, no control), and held within the hull of its table's data.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
@@ -26,6 +27,8 @@ WIND = ("D", "S", "L")
 CONTROLS = BASE[6:9]
 SLOWEST = 1e-9
 MOVED = 1e-6  # of a hull: a motion on its edge is inside, with the rounding of its integration
+
+EVERYWHERE = (True, True, True)
 
 Ints = NDArray[np.int64]
 
@@ -80,6 +83,8 @@ class ForceTerm:
         U95 and origin, in words.
     hull : Hull or None
         Of the table's data.
+    into : (3,) bool
+        Of drag, side force and lift: which of X, Y and Z it acts in; sources along the body speak for the others.
     """
 
     symbol: str
@@ -94,6 +99,7 @@ class ForceTerm:
     readings: tuple[tuple[str, Reading], ...] = ()
     note: str = ""
     hull: Hull | None = None
+    into: tuple[bool, bool, bool] = EVERYWHERE
 
     @property
     def ahead(self) -> bool:
@@ -148,18 +154,18 @@ class ForceLaw:
         Q of `coeflab.law.rigid_body.ideal_quadratics`, zero where a measured term speaks: force i = sum of Q[i, j, k] nu_j nu_k.
     left_out : tuple of str
         Symbols with a value that are no part of the law: accelerations, and controls where they are not asked for.
-    wind : (3,) bool array
-        For which of X, Y and Z drag, side force and lift speak; body axes speak for the others.
     strict : bool
         Whether the force is NaN where a table refuses to be read. A motion goes on with the value at the edge, and ends there.
     coefficient : (t,) or (m, t) array
         SI; one row a member where the members differ. Those of the terms unless given.
     source, prime, low, high, tabled
         Made of the terms, once, (v,): column of the base row behind each variable, and its `Reading`.
+    wind : (g, 3) bool
+        The distinct `ForceTerm.into` of the terms.
     component, speed_power : (t,) int array
-        X Y Z K M N as 0 to 5, D S L as 6 to 8; of V.
+        X Y Z K M N as 0 to 5, D S L of group g of `wind` as 6 + 3 g and on; of V.
     powers, gathered, primed, along, angled
-        Distinct powers of V; (f, t) rows of the pool whose product is each term; variables that are primed; (9, t) which
+        Distinct powers of V; (f, t) rows of the pool whose product is each term; variables that are primed; (6 + 3 g, t) which
         component each term adds to; whether any needs the incidence.
     regions : tuple of _Region
         The hull of every table.
@@ -170,7 +176,6 @@ class ForceLaw:
     terms: tuple[ForceTerm, ...]
     ideal: Array
     left_out: tuple[str, ...] = ()
-    wind: tuple[bool, bool, bool] = (True, True, True)
     strict: bool = False
     coefficient: Array = field(default_factory=lambda: np.empty(0))
     source: Ints = field(init=False, repr=False)
@@ -178,6 +183,7 @@ class ForceLaw:
     low: Array = field(init=False, repr=False)
     high: Array = field(init=False, repr=False)
     tabled: NDArray[np.bool_] = field(init=False, repr=False)
+    wind: tuple[tuple[bool, bool, bool], ...] = field(init=False, repr=False)
     component: Ints = field(init=False, repr=False)
     powers: Ints = field(init=False, repr=False)
     gathered: Ints = field(init=False, repr=False)
@@ -194,7 +200,7 @@ class ForceLaw:
             for t, r in zip(self.terms, readings, strict=True)
         ]
         variables = list(dict.fromkeys(v for factors in of_terms for v, _, _ in factors))
-        order = (*COMPONENTS, *WIND)
+        wind = tuple(dict.fromkeys(t.into for t in self.terms if t.component in WIND)) or (EVERYWHERE,)
         own = self.coefficient if self.coefficient.size else [t.coefficient for t in self.terms]
         result = {
             "ideal": locked(self.ideal),
@@ -204,16 +210,19 @@ class ForceLaw:
             "low": np.array([r.low for _, r in variables], dtype=np.float64),
             "high": np.array([r.high for _, r in variables], dtype=np.float64),
             "tabled": np.array([r.tabled for _, r in variables], dtype=bool),
-            "component": np.array([order.index(t.component) for t in self.terms], dtype=np.int64),
+            "wind": wind,
+            "component": np.array([place_of(t, wind) for t in self.terms], dtype=np.int64),
             "powers": np.unique(np.array([t.speed_power for t in self.terms], dtype=np.int64)),
         }
         for name, value in result.items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "gathered", self._gathered(of_terms, variables))
         object.__setattr__(self, "primed", np.flatnonzero(self.prime))
-        object.__setattr__(self, "along", (self.component == np.arange(9)[:, None]).astype(np.float64))
-        object.__setattr__(self, "angled", bool(np.any(self.component >= 6) or np.any(self.source >= ALPHA)))
+        rows = np.arange(6 + 3 * len(wind))[:, None]
+        object.__setattr__(self, "along", (self.component == rows).astype(np.float64))
         object.__setattr__(self, "regions", self._regions(variables))
+        read = [self.source, *(r.source for r in self.regions if r.together)]
+        object.__setattr__(self, "angled", bool(np.any(self.component >= 6) or np.any(np.concatenate(read) >= ALPHA)))
         object.__setattr__(self, "curved", any(r.together for r in self.regions))
 
     def _regions(self, variables: list[tuple[str, Reading]]) -> tuple[_Region, ...]:
@@ -289,8 +298,9 @@ class ForceLaw:
         along = self.along @ products
         out = along[:6]
         if self.angled:
-            turned = np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
-            out[:3] += turned * np.array(self.wind)[:, None]
+            for k, speaks in enumerate(self.wind):
+                turned = np.array(body_forces(base[ALPHA], base[BETA], *along[6 + 3 * k : 9 + 3 * k]))
+                out[:3] += turned * np.array(speaks)[:, None]
         return np.asarray(out)
 
     def _products(self, base: Array) -> Array:
@@ -363,6 +373,13 @@ class ForceLaw:
 
     def _powers_of_speed(self, terms: Ints) -> Ints:
         return np.array([self.terms[i].speed_power for i in terms], dtype=np.int64)
+
+
+def place_of(term: ForceTerm, wind: Sequence[tuple[bool, bool, bool]]) -> int:
+    """Where a term adds up: X Y Z K M N as 0 to 5, D S L of group g of ``wind`` as 6 + 3 g and on."""
+    if term.component not in WIND:
+        return COMPONENTS.index(term.component)
+    return 6 + 3 * wind.index(term.into) + WIND.index(term.component)
 
 
 @brief

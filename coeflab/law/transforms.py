@@ -45,10 +45,10 @@ def derivative_transfer(shift: Array) -> tuple[Array, Array]:
 
 
 def incidence(u: Array, v: Array, w: Array) -> tuple[Array, Array]:
-    """(alpha, beta) = (atan2(w, u), asin(v / V)), radians; zero at V = 0."""
+    """(alpha, beta) = (atan2(w, u), asin(v / V)), radians; zero at V = 0, whatever the signs of zeros are."""
     speed = np.sqrt(u**2 + v**2 + w**2)
     ratio = np.divide(v, speed, out=np.zeros_like(speed), where=speed > 0.0)
-    return np.arctan2(w, u), np.arcsin(np.clip(ratio, -1.0, 1.0))
+    return np.arctan2(w + 0.0, u + 0.0), np.arcsin(np.clip(ratio, -1.0, 1.0))
 
 
 def wind_forces(alpha: Array, beta: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:

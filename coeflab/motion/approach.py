@@ -15,8 +15,8 @@ from coeflab.law.symbols import ANGLE_NAMES, CONTROLS, MOTIONS
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
 from coeflab.motion.trajectory import UNCOVERED, WITHOUT_DATA, Trajectory, covered_ranges, outside, outside_in_words
 from coeflab.motion.turn_limits import unlimited
-from coeflab.motion.vehicle import THRUST, Vehicle
-from coeflab.vehicle.parameter_parts import ParameterThruster
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST, ParameterThruster
 
 SURFACES = {"dr": "rudder", "ds": "stern planes", "db": "bow planes"}
 NOT_DETERMINED = "not determined"

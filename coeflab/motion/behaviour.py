@@ -251,9 +251,7 @@ def _law_at(
     known -= {s for s, half in zip(symbols, np.diag(matrix), strict=True) if np.isnan(half)}
     still = np.zeros((6, 6, 6))
     open_terms = dict.fromkeys(t.in_file for t in law.terms if t.in_file not in known)
-    parts = {
-        n: ForceLaw(tuple(t for t in law.terms if t.in_file == n), still, wind=law.wind) for n in open_terms
-    } | {"products of the ideal fluid": ForceLaw((), law.ideal)}  # fmt: skip
+    parts = {n: ForceLaw(tuple(t for t in law.terms if t.in_file == n), still) for n in open_terms} | {"products of the ideal fluid": ForceLaw((), law.ideal)}  # fmt: skip
 
     def force(nu: Array) -> tuple[Array, Array, dict[str, NDArray[np.bool_]]]:
         own = nu @ back.T

@@ -179,8 +179,8 @@ def term_force_of_one(law: ForceLaw) -> Force:
         return whole
     limits = (law.prime.tolist(), law.low.tolist(), law.high.tolist())
     variables = list(zip(law.source.tolist(), *limits, strict=True))
-    powers, angled, speaks = law.powers.tolist(), law.angled, [float(w) for w in law.wind]
-    coefficients = law.coefficient.reshape(-1).tolist()
+    powers, angled, wind = law.powers.tolist(), law.angled, np.array(law.wind, dtype=float).tolist()
+    places, coefficients = len(law.along), law.coefficient.reshape(-1).tolist()
     gathered = [[row for row in rows if row] for rows in law.gathered.T.tolist()]
     terms = list(zip(law.component.tolist(), coefficients, gathered, strict=True))
 
@@ -189,7 +189,7 @@ def term_force_of_one(law: ForceLaw) -> Force:
         speed = math.sqrt(u * u + v * v + w * w)
         alpha = beta = 0.0
         if angled:
-            alpha = math.atan2(w, u)
+            alpha = math.atan2(w + 0.0, u + 0.0)
             beta = math.asin(min(max(v / speed, -1.0), 1.0)) if speed > 0.0 else 0.0
         base = (u, v, w, state[10], state[11], state[12], *angles, speed, alpha, beta)
         slow = speed if speed > SLOWEST else SLOWEST
@@ -203,7 +203,7 @@ def term_force_of_one(law: ForceLaw) -> Force:
             values.append(low if value < low else high if value > high else value)
         pool += values
         pool += [abs(value) for value in values]
-        out = [0.0] * 9
+        out = [0.0] * places
         for component, coefficient, rows in terms:
             product = coefficient
             for row in rows:
@@ -211,8 +211,9 @@ def term_force_of_one(law: ForceLaw) -> Force:
             out[component] += product
         if any(out[6:]):
             turned = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
-            for k, value in enumerate(along_body(*turned, *out[6:])):
-                out[k] += value * speaks[k]
+            for group, speaks in enumerate(wind):
+                for k, value in enumerate(along_body(*turned, *out[6 + 3 * group : 9 + 3 * group])):
+                    out[k] += value * speaks[k]
         return out[:6]
 
     return force

@@ -20,10 +20,9 @@ from coeflab.motion.dynamics import restoring
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface, ParameterThruster
+from coeflab.vehicle.parameter_parts import THRUST, ParameterHydrostatics, ParameterSurface, ParameterThruster
 
 PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
-THRUST = "thrust"
 BALANCED, ONE_POINT = 5e-3, 1e-4  # of the weight and of the length: less is trimmed, or one point
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -15,10 +16,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import write_all
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.json import parse_json
+from coeflab.core.wording import one_line
 
 FOLDER = Path(__file__).with_name("conformance")
 TOLERANCE = 1e-12  # of the largest force, or moment, of a file; of the largest rate
@@ -66,75 +69,68 @@ def vector_sets() -> tuple[VectorSet, ...]:
     return tuple(out)
 
 
-def compared(
-    given: VectorSet, answers: Sequence[Mapping[str, Any]], tolerance: float = TOLERANCE
-) -> tuple[Finding, ...]:
-    """One finding a set: passed, or the first vector that is missed and the worst difference.
+def compared(given: VectorSet, answers: Sequence[Any], tolerance: float = TOLERANCE) -> tuple[Finding, ...]:
+    """One finding a set: passed, or the first vector that is missed and the furthest.
 
     Parameters
     ----------
     given : VectorSet
-    answers : sequence of mapping
-        ``force`` and ``acceleration`` of every state; six numbers, or null.
+    answers : sequence
+        Of every state an object with ``force`` and ``acceleration``; six numbers, or null.
     tolerance : float
-        Of the largest force or moment, and of the largest rate, in the set.
+        Of the largest force or moment, and of the largest rate of either kind, in the set.
     """
     if len(answers) != len(given.vectors):
         return (_fails(given, "conform.count", statistic=len(answers), threshold=len(given.vectors)),)
+    missed: list[tuple[int, int, str, Any, Any, float]] = []  # vector, place, what, due, found, how far
     worst = 0.0
-    missed: list[tuple[int, str, float, float]] = []
-    for key in ANSWERS:
+    for place, key in enumerate(ANSWERS):
         scale = [
             max((abs(v[key][i]) for v in given.vectors if v[key] is not None for i in group), default=0.0) or 1.0
             for group in ((0, 1, 2), (3, 4, 5))
         ]
         for n, (v, a) in enumerate(zip(given.vectors, answers, strict=True)):
-            due, found = v[key], _six(a.get(key) if isinstance(a, Mapping) else None)
+            due = v[key]
+            if not isinstance(a, Mapping) or key not in a or not (a[key] is None or _six(a[key])):
+                found = a.get(key, f"no {key}") if isinstance(a, Mapping) else a
+                return (_fails(given, "conform.shape", None, None, vector=n, key=key, found=shown(found)),)
+            found = a[key]
             if due is None or found is None:
-                if (due is None) != (found is None):
-                    missed.append((n, key, math.nan, math.nan))
-                    worst = math.inf
+                if due is not found:
+                    missed.append((n, place, key, due, found, math.inf))
                 continue
             for i in range(6):
                 away = abs(found[i] - due[i]) / scale[i // 3]
-                away = math.inf if math.isnan(away) else away
                 worst = max(worst, away)
                 if away > tolerance:
-                    missed.append((n, f"{key} {WHERE[key][i]}", due[i], found[i]))
-    if missed:
-        n, what, wanted, given_number = missed[0]
-        number = worst if math.isfinite(worst) else None
-        if math.isnan(wanted):
-            return (_fails(given, "conform.none", number, tolerance, vector=n, what=what, count=len(missed)),)
+                    missed.append((n, place, f"{key} {WHERE[key][i]}", due[i], found[i], away))
+    if not missed:
         return (
-            _fails(
-                given,
-                "conform.missed",
-                number,
-                tolerance,
-                vector=n,
-                what=what,
-                due=wanted,
-                found=given_number,
-                count=len(missed),
+            Finding.of(
+                "conform.met", given.name, Severity.PASS, statistic=worst, threshold=tolerance, vectors=len(given.vectors)
             ),
-        )
+        )  # fmt: skip
+    n, _, what, wanted, found, _ = min(missed, key=lambda m: m[:2])
+    far = max(missed, key=lambda m: m[-1])
+    state = ", ".join(f"{k} {json.dumps(x)}" for k, x in given.states[n].items())
+    facts = {"vector": n, "what": what, "state": state, "count": len(missed)}
+    if wanted is None or found is None:
+        which = "none_due" if wanted is None else "none_found"
+        return (_fails(given, "conform.none", None, tolerance, which=which, **facts),)
     return (
-        Finding.of(
-            "conform.met", given.name, Severity.PASS, statistic=worst, threshold=tolerance, vectors=len(given.vectors)
+        _fails(
+            given, "conform.missed", worst, tolerance, due=wanted, found=float(found), furthest=far[2], furthest_vector=far[0], **facts
         ),
+    )  # fmt: skip
+
+
+def _six(value: Any) -> bool:
+    """Whether a value is six numbers."""
+    return (
+        isinstance(value, list)
+        and len(value) == 6
+        and all(isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in value)
     )
-
-
-def _six(value: Any) -> list[float] | None:
-    """Six numbers; None for anything else."""
-    if (
-        not isinstance(value, list)
-        or len(value) != 6
-        or any(isinstance(x, bool) or not isinstance(x, int | float) for x in value)
-    ):
-        return None
-    return [float(x) for x in value]
 
 
 def _fails(
@@ -145,7 +141,17 @@ def _fails(
     )
 
 
-def conform(command: Sequence[str], tolerance: float = TOLERANCE) -> tuple[Finding, ...]:
+def as_files() -> dict[str, bytes]:
+    """Parameter file, states and answers due of every set, by the names of their files."""
+    out: dict[str, bytes] = {}
+    for s in vector_sets():
+        due = [{k: v[k] for k in ANSWERS} for v in s.vectors]
+        for name, content in (("parameters", s.parameters), ("states", s.states), ("answers", due)):
+            out[f"{s.name}.{name}.json"] = json.dumps(content, indent=1).encode()
+    return out
+
+
+def conform(command: Sequence[str], tolerance: float = TOLERANCE, folder: Path | None = None) -> tuple[Finding, ...]:
     """Run a program on every set: ``COMMAND FILE.parameters.json``, states on its standard input, answers on its standard output.
 
     Parameters
@@ -153,23 +159,42 @@ def conform(command: Sequence[str], tolerance: float = TOLERANCE) -> tuple[Findi
     command : sequence of str
         Program and arguments.
     tolerance : float
+    folder : Path, optional
+        Where files, states and answers go first.
+
+    Raises
+    ------
+    InputError
+        There is no such program.
     """
+    if shutil.which(command[0]) is None:
+        raise InputError(shown(command[0]), "a program that can be run", column="COMMAND")
+    if folder is not None:
+        write_all(folder, as_files())
     out: list[Finding] = []
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as apart:
         for s in vector_sets():
-            path = Path(folder) / f"{s.name}.parameters.json"
+            path = Path(apart) / f"{s.name}.parameters.json"
             path.write_text(json.dumps(s.parameters), encoding="utf-8")
             try:
                 done = subprocess.run(
                     [*command, str(path)], input=json.dumps(s.states), capture_output=True, text=True, timeout=LONGEST, check=False,
                 )  # fmt: skip
                 answers = parse_json(done.stdout) if done.returncode == 0 else None
-            except (OSError, ValueError, InputError, subprocess.TimeoutExpired) as why:
-                out.append(_fails(s, "conform.not_run", why=type(why).__name__))
+            except subprocess.TimeoutExpired:
+                out.append(_fails(s, "conform.not_run", why=f"it did not end within {LONGEST:g} s"))
+                continue
+            except (OSError, ValueError, InputError) as why:
+                out.append(
+                    _fails(
+                        s, "conform.not_run", why=one_line(why.found if isinstance(why, InputError) else str(why))[:200]
+                    )
+                )
                 continue
             if not isinstance(answers, list):
                 last = (done.stderr.strip().splitlines() or [""])[-1][:200]
-                out.append(_fails(s, "conform.not_run", why=last or f"exit code {done.returncode}"))
+                short = shown(answers) if done.returncode == 0 else last or f"exit code {done.returncode}"
+                out.append(_fails(s, "conform.not_run", why=short))
                 continue
             out += compared(s, answers, tolerance)
     return tuple(out)

@@ -24,7 +24,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, 
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.law_at_points import law_at_points
-from coeflab.vehicle.sources import acts_in, beside, moved_by, name_of, place_of, steered, summed
+from coeflab.vehicle.sources import acts_in, beside, moved_by, name_of, steered, summed
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -144,7 +144,7 @@ def motion_law(parameters: ParameterFile, tables: bool = False) -> tuple[ForceLa
     sources = sources_of(parameters, tables)
     fitted, found = _fitted(sources, parameters)
     terms = (*sorted(sources.terms, key=steered), *fitted)
-    return ForceLaw(terms, _ideal(parameters, sources), wind=sources.wind), (*sources.findings, *found)
+    return ForceLaw(terms, _ideal(parameters, sources)), (*sources.findings, *found)
 
 
 def known_beside(
@@ -160,7 +160,7 @@ def known_beside(
     """
     sources = beside(parameters.models, [(s, c, moved_by(v for v, _, _ in t.factors)) for s, c, t in terms])
     fitted, found = _fitted(sources, parameters)
-    return ForceLaw(fitted, np.zeros((6, 6, 6)), wind=sources.wind), (*sources.findings, *found)
+    return ForceLaw(fitted, np.zeros((6, 6, 6))), (*sources.findings, *found)
 
 
 def not_used(parameters: ParameterFile, tables: bool = False) -> tuple[Finding, ...]:
@@ -173,7 +173,7 @@ def _fitted(sources: Sources, parameters: ParameterFile) -> tuple[tuple[ForceTer
     found = [
         Finding.of("law.no_force", name_of(m), Severity.NOTE)
         for m in parameters.models
-        if not place_of(m) and not _by_coefficients(m, parameters)
+        if not m.place and not _by_coefficients(m, parameters)
     ]
     ends: dict[str, list[str]] = {}
     for s in sources.tables:
@@ -182,15 +182,18 @@ def _fitted(sources: Sources, parameters: ParameterFile) -> tuple[tuple[ForceTer
         hull, length = m.hull, parameters.scaling.length
         together = "" if hull.is_box and hull.rule != "taper" else name_of(m)
         readings = _readings(m, length, together)
-        for t in m.terms:
-            name = f"{m.response} {t.symbol}"
+        void = all(t.value is None for t in m.terms)  # its first term keeps its domain in the law
+        for k, t in enumerate(m.terms):
+            name, value = f"{m.response} {t.symbol}", t.value or 0.0
             if t.value is None:
                 found.append(Finding.of("law.undetermined", name, Severity.NOTE))
-                continue
-            term, si = Term(t.factors), scale * t.value
+                if k or not void:
+                    continue
             out.append(
-                ForceTerm(name, component, term, si, power, scale, "table", t.value, readings=readings, hull=hull)
-            )
+                ForceTerm(
+                    name, component, Term(t.factors), scale * value, power, scale, "table", value, readings=readings, hull=hull, into=s.into
+                )
+            )  # fmt: skip
         ends.setdefault(hull.rule, []).append(m.response)
     found += [
         Finding.of(EDGE, ", ".join(dict.fromkeys(names)), Severity.NOTE, rule=rule) for rule, names in ends.items()
@@ -209,7 +212,7 @@ def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
 def _place(model: ParameterModel, parameters: ParameterFile) -> tuple[str, float, int]:
     """Component, SI force of one unit of the response, power of the speed."""
     pressure, length = 0.5 * parameters.conditions.density, parameters.scaling.length
-    component = place_of(model)
+    component = model.place
     arm = length if component in "KMN" else 1.0
     if model.unit != "1":
         return component, 1.0, 0
@@ -286,7 +289,7 @@ def spoken(parameters: ParameterFile) -> Spoken:
         parts.append((d.component, c.table or "", moved, len(d.factors)))
     sources = sources_of(parameters)
     for s in sources.tables:
-        for component in sources.components(s):
+        for component in s.components:
             constants.add(component)
             parts.append((component, s.model.table, acts_in(s.model)[component], LONG))
     for component, tables, moved, degree in parts:
@@ -303,7 +306,7 @@ def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:
     """(n, 6) of the fitted tables in the law alone; None where there is none."""
     law, _ = motion_law(parameters)
     tabled = tuple(t for t in law.terms if t.kind == "table")
-    return ForceLaw(tabled, np.zeros((6, 6, 6)), wind=law.wind).force(nu) if tabled else None
+    return ForceLaw(tabled, np.zeros((6, 6, 6))).force(nu) if tabled else None
 
 
 def ahead_from(parameters: ParameterFile) -> int | None:

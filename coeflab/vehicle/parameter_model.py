@@ -11,13 +11,22 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive
+from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive, RefusedError
 from coeflab.core.types import Array
 from coeflab.law.domain import Hull
+from coeflab.law.force_law import WIND
+from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Factor, Term, design
 from coeflab.vehicle.parameter_parts import Strict
 
 ANGLE_OF = {"alpha": "w", "beta": "v"}
+# Component of the force that a response is, along the body or along the flow; a prime behind it says nothing more.
+PLACES = (
+    {c: c for c in (*COMPONENTS, *WIND)}
+    | {f"C_{c}": c for c in (*COMPONENTS, *WIND)}
+    | {"C_l": "K", "C_m": "M", "C_n": "N"}
+)
+POLARS = ("L/V^2", "D/V^2", "M/V^2")  # no force of the law: coefficients of the file state it
 
 
 class ModelVariable(Strict):
@@ -98,6 +107,10 @@ class ParameterModel(Strict):
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterModel:
+        if not self.place and self.response not in POLARS:
+            raise RefusedError(
+                f"the response {shown(self.response)}", f"one of {', '.join(PLACES)}", "Primed or not: Y' is Y.", ("response",)
+            )  # fmt: skip
         names = self.names
         if len(set(names)) != len(names):
             raise ValueError(f"{self.response}: a variable occurs more than once")
@@ -111,6 +124,11 @@ class ParameterModel(Strict):
         edges = (self.domain.low, self.domain.high)
         if any(len(e) != d for e in edges) or any(len(row) != d + 1 for row in self.domain.half_spaces):
             raise ValueError(f"{self.response}: the domain does not have {d} variables")
+        if not self.domain.half_spaces:
+            raise RefusedError(
+                f"{self.response}: no half-spaces", "at least one, for they alone bound the domain",
+                "Of a box: [1, -high] and [-1, low] for each variable.", ("domain", "half_spaces"),
+            )  # fmt: skip
         if any(a > b for a, b in zip(*edges, strict=True)):
             raise ValueError(f"{self.response}: the domain's low is above its high")
         if len(self.covariance) != k or any(len(row) != k for row in self.covariance):
@@ -127,6 +145,11 @@ class ParameterModel(Strict):
     def names(self) -> tuple[str, ...]:
         """The variables."""
         return tuple(v.name for v in self.variables)
+
+    @property
+    def place(self) -> str:
+        """X Y Z K M N, or D S L; empty where the response is no force of the law."""
+        return PLACES.get(self.response.removesuffix("'"), "")
 
     @property
     def hull(self) -> Hull:

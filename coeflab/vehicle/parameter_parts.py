@@ -15,7 +15,7 @@ from pydantic_core import CoreSchema
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
-from coeflab.core.stored import Finite, Means, Name, Positive, Words, fail_fast
+from coeflab.core.stored import Finite, Means, Name, Positive, RefusedError, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import AddedMass, OtherMethod, definiteness
@@ -127,6 +127,7 @@ Triple = tuple[Finite, Finite, Finite]
 
 
 Control = Literal["dr", "ds", "db"]
+THRUST = "thrust"  # command of a force along x, N
 UNIT_LENGTH = 1e-6
 FALL = 1e-9
 STILL = 1e-20  # of the largest entry of its kind: the square of what rounding leaves of a lever
@@ -236,6 +237,10 @@ class ParameterThruster(Strict):
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterThruster:
+        if self.name == THRUST:
+            raise RefusedError(
+                f"a thruster named {THRUST}", f"another name: the command {THRUST} is newtons along x", where=("name",)
+            )
         for what, axis in (("direction", self.direction), ("tilt_axis", self.tilt_axis)):
             if axis is not None and abs(math.hypot(*axis) - 1.0) > UNIT_LENGTH:
                 raise ValueError(f"{self.name}: {what} is {math.hypot(*axis):g} long, not 1")

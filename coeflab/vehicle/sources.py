@@ -4,13 +4,14 @@ A source states one component of the force over a set of moved variables (v w p 
 source). A coefficient speaks of the variables of its product; a table of every product of its own variables, an increment
 over a control of those with that control alone. Sources of different products add up. Of two that speak of the same products
 the one over more variables stands; coefficients that cover all variables of a table stand before it, unless tables are asked
-for first. Drag, side force and lift speak for X, Y and Z in that order.
+for first. Drag, side force and lift speak for X, Y and Z in that order; turned into another axis by alpha or beta they act there
+unless a source along the body speaks of what that makes: Yv' holds -D sin(beta).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -19,13 +20,17 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import brief
-from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
-from coeflab.law.force_law import CONTROLS, WIND, ForceTerm
+from coeflab.law.force_law import CONTROLS, EVERYWHERE, WIND, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
 
 AXES = COMPONENTS[:3]
 MAIN = dict(zip(WIND, AXES, strict=True))
+# What turns drag, side force and lift into an axis: sin(alpha) holds w, sin(beta) v. Lift has no part in Y.
+TURNS = {
+    place: frozenset(by) for place, by in
+    {"DX": "", "DY": "v", "DZ": "w", "SX": "v", "SY": "", "SZ": "vw", "LX": "w", "LZ": ""}.items()
+}  # fmt: skip
 OF_SUM = "1.6"  # the first version of files that were written under this rule
 
 Moved = frozenset[str]
@@ -34,13 +39,6 @@ Moved = frozenset[str]
 def moved_by(variables: Iterable[str]) -> Moved:
     """What a product of variables is about: motions but u, and controls; incidence is that of v and w."""
     return frozenset(ANGLE_OF.get(v, v) for v in variables) & {*MOTIONS[1:], *CONTROLS}
-
-
-def place_of(model: ParameterModel) -> str:
-    """X Y Z K M N, or D S L; empty where the response is no force."""
-    name = model.response.removesuffix("'")
-    found = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
-    return found if found in (*COMPONENTS, *WIND) else ""
 
 
 def name_of(model: ParameterModel) -> str:
@@ -62,18 +60,21 @@ class TableSource:
         Moved ones.
     needed : frozenset of str
         Those in all of its terms: without them its force is zero by its form.
+    into : (3,) bool
+        Of drag, side force and lift: which of X, Y and Z they act in.
     """
 
     model: ParameterModel
     place: str
     variables: Moved
     needed: Moved
+    into: tuple[bool, bool, bool] = EVERYWHERE
 
     @classmethod
     def of(cls, model: ParameterModel) -> TableSource:
         """The source that a model is."""
         each = [moved_by(f.variable for f in t.factors) for t in model.terms]
-        return cls(model, place_of(model), moved_by(model.names), frozenset.intersection(*each))
+        return cls(model, model.place, moved_by(model.names), frozenset.intersection(*each))
 
     @property
     def component(self) -> str:
@@ -83,6 +84,18 @@ class TableSource:
     def speaks_of(self, product: Moved) -> bool:
         """Whether products of these variables are among its own."""
         return self.needed <= product <= self.variables
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """X Y Z K M N that it acts in."""
+        if self.place not in WIND:
+            return (self.place,)
+        return tuple(c for c, acts in zip(AXES, self.into, strict=True) if acts and self.turned(c) is not None)
+
+    def turned(self, axis: str) -> Moved | None:
+        """The product that it makes in an axis; None where it has no part in it."""
+        turn = TURNS.get(self.place + axis)
+        return None if turn is None else self.needed | turn
 
     def meets(self, other: TableSource) -> bool:
         """Whether both speak of some product."""
@@ -104,8 +117,6 @@ class Sources:
     terms : tuple of ForceTerm
         Coefficients.
     tables : tuple of TableSource
-    wind : (3,) bool
-        For which of X, Y, Z drag, side force and lift speak.
     unused_terms : tuple of ForceTerm
     unused_tables : tuple of TableSource
     findings : tuple of Finding
@@ -114,16 +125,9 @@ class Sources:
 
     terms: tuple[ForceTerm, ...]
     tables: tuple[TableSource, ...]
-    wind: tuple[bool, bool, bool]
     unused_terms: tuple[ForceTerm, ...]
     unused_tables: tuple[TableSource, ...]
     findings: tuple[Finding, ...]
-
-    def components(self, source: TableSource) -> tuple[str, ...]:
-        """X Y Z K M N that a table of the law acts in."""
-        if source.place in WIND:
-            return tuple(c for c, speaks in zip(AXES, self.wind, strict=True) if speaks)
-        return (source.place,)
 
     def open_products(self) -> NDArray[np.bool_]:
         """(6, 6, 6), by force and two velocities: the products that no source speaks of, left to the ideal fluid."""
@@ -131,7 +135,7 @@ class Sources:
         for s in self.tables:
             if s.whole:
                 at = sorted({0, *(MOTIONS.index(m) for m in s.variables if m in MOTIONS)})
-                for c in self.components(s):
+                for c in s.components:
                     out[np.ix_([COMPONENTS.index(c)], at, at)] = False
         return out
 
@@ -172,9 +176,9 @@ def summed(
         Two tables speak of the same products, and neither holds the variables of the other.
     """
     found: list[Finding] = []
-    every = [TableSource.of(m) for m in models if place_of(m)]
+    every = [TableSource.of(m) for m in models if m.place]
     standing = _among_tables(every, found)
-    selected, dropped, silent = list(terms), list[ForceTerm](), set[str]()
+    selected, dropped = list(terms), list[ForceTerm]()
     for s in list(standing):
         rivals = [t for t in selected if t.component == s.component and s.speaks_of(moved_by(t.variables))]
         if not rivals:
@@ -182,21 +186,16 @@ def summed(
         covered = frozenset().union(*(moved_by(t.variables) for t in rivals)) >= s.variables
         if covered and not tables_first:
             standing.remove(s)
-            silent.add(s.component)
             found.append(_unused_table(s, [primed(t.symbol) for t in rivals]))
             continue
         selected = [t for t in selected if t not in rivals]
         dropped += rivals
         found.append(_unused_terms(rivals, s))
-    wind = _of_wind(standing, selected, silent)
-    if any(s.place in WIND for s in standing) and not all(wind):
-        names = list(dict.fromkeys(s.model.response for s in standing if s.place in WIND))
-        left = [c for c, speaks in zip(AXES, wind, strict=True) if not speaks]
-        found.append(Finding.of("law.wind_partly", ", ".join(names), Severity.NOTE, tables=names, components=left))
     if version != OF_SUM and tuple(map(int, version.split("."))) < tuple(map(int, OF_SUM.split("."))):
         found += _by_the_older_rule(terms, every, selected, standing, version)
     out = tuple(s for s in every if s not in standing)
-    return Sources(tuple(selected), tuple(standing), wind, tuple(dropped), out, tuple(found))
+    acting = _of_wind(standing, [(t.component, moved_by(t.variables)) for t in selected], found)
+    return Sources(tuple(selected), acting, tuple(dropped), out, tuple(found))
 
 
 def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
@@ -214,18 +213,15 @@ def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Mov
         Two tables speak of the same products.
     """
     found: list[Finding] = []
-    every = [TableSource.of(m) for m in models if place_of(m)]
-    standing, silent = _among_tables(every, found), set[str]()
-    across = frozenset("vw")
+    every = [TableSource.of(m) for m in models if m.place]
+    standing = _among_tables(every, found)
     for s in list(standing):
         rivals = [symbol for symbol, c, moved in terms if c == s.component and s.speaks_of(moved)]
         if rivals:
             standing.remove(s)
-            silent.add(s.component)
             found.append(_unused_table(s, list(map(primed, rivals))))
-    silent |= {c for _, c, moved in terms if moved <= across}
-    wind = _of_wind(standing, (), silent)
-    return Sources((), tuple(standing), wind, (), tuple(s for s in every if s not in standing), tuple(found))
+    out = tuple(s for s in every if s not in standing)
+    return Sources((), _of_wind(standing, [(c, moved) for _, c, moved in terms], found), (), out, tuple(found))
 
 
 def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[TableSource]:
@@ -252,17 +248,39 @@ def _shared(a: TableSource, b: TableSource) -> str:
     return f"by {' and '.join(least)}" if least else "at rest of its own"
 
 
-def _of_wind(standing: Sequence[TableSource], kept: Sequence[ForceTerm], silent: set[str]) -> tuple[bool, bool, bool]:
-    """For which of X, Y, Z drag, side force and lift speak: those of which body axes state nothing over incidence."""
-    group = [s for s in standing if s.place in WIND]
-    own = {s.component for s in group}
-    across = frozenset("vw")
-    out = []
-    for c in AXES:
-        stated = any(t.component == c and moved_by(t.variables) <= across for t in kept)
-        stated |= any(s.place == c and s.needed <= across for s in standing)
-        out.append(bool(group) and c not in silent and (c in own or not stated))
-    return out[0], out[1], out[2]
+def _of_wind(
+    standing: Sequence[TableSource], along: Sequence[tuple[str, Moved]], found: list[Finding]
+) -> tuple[TableSource, ...]:
+    """The tables of the law, with the axes that those of drag, side force and lift act in.
+
+    Parameters
+    ----------
+    standing : sequence of TableSource
+    along : sequence of (component, moved variables)
+        Coefficients of the law.
+    found : list of Finding
+        To which those are added that say where a table does not act.
+    """
+    out, partly = list[TableSource](), dict[tuple[str, ...], list[str]]()
+    for s in standing:
+        left = []
+        for c in AXES:
+            made = s.turned(c)
+            if made is not None and (
+                any(axis == c and moved == made for axis, moved in along)
+                or any(other.place == c and other.speaks_of(made) for other in standing)
+            ):
+                left.append(c)
+        one, two, three = (c not in left for c in AXES)
+        out.append(replace(s, into=(one, two, three)))
+        if left:
+            partly.setdefault(tuple(left), []).append(s.model.response)
+    for components, responses in partly.items():
+        names = list(dict.fromkeys(responses))
+        found.append(
+            Finding.of("law.wind_partly", ", ".join(names), Severity.NOTE, tables=names, components=list(components))
+        )
+    return tuple(out)
 
 
 def _unused_table(s: TableSource, by: Sequence[str]) -> Finding:
@@ -300,6 +318,5 @@ def _by_the_older_rule(
 
 def acts_in(model: ParameterModel) -> Mapping[str, Moved]:
     """By component, the variables that a table has a force over; empty where its response is no force."""
-    place = place_of(model)
-    names = AXES if place in WIND else (place,) if place else ()
+    names = AXES if model.place in WIND else (model.place,) if model.place else ()
     return dict.fromkeys(names, moved_by(model.names))

@@ -11,6 +11,16 @@ import sys
 
 BODY, MOTION, CONTROLS, SLOW = "XYZKMN", "uvwpqr", ("dr", "ds", "db"), 1e-9
 PLACES = {"C_D": "D", "C_S": "S", "C_L": "L", "C_l": "K", "C_m": "M", "C_n": "N"}
+TURNS = {
+    "DX": "",
+    "DY": "v",
+    "DZ": "w",
+    "SX": "v",
+    "SY": "",
+    "SZ": "vw",
+    "LX": "w",
+    "LZ": "",
+}  # what (13) makes of them
 
 
 def cross(a, b):
@@ -76,7 +86,7 @@ def held(x, domain):  # the point where a table is read, the share of the free c
         foot = [v + sum((e - dot(q, y)) * q[i] for q, e in basis) for i, v in enumerate(y)]
         if len(basis) == len(chosen) and all(dot(n, foot) - c <= 1e-9 for n, c in faces):
             best = min([(math.dist(foot, y), foot), *([best] if best else [])])
-    near = [min(max(a + s * v, a), b) for a, b, s, v in zip(low, high, size, best[1])]
+    near = [a + s * v if b > a else a for a, b, s, v in zip(low, high, size, best[1])]
     t = min(1.0, math.dist([(v - a) / s for v, a, s in zip(near, low, size)], y) / 0.1)
     if any(v != w and a == b for v, w, a, b in zip(near, x, low, high)):
         t = 1.0
@@ -106,6 +116,7 @@ class Vehicle:
             self.terms.append((symbol[0], value, power, factors))
         self.tables = [m for m in f.get("models", []) if self.place(m)]
         self.unused()
+        self.on = [self.acts(m) for m in self.tables]
         self.inertia(stated)
         self.ideal()
 
@@ -124,24 +135,30 @@ class Vehicle:
         for a, b in itertools.combinations(list(self.tables), 2):  # (9) of two tables the one over more variables
             (na, va), (nb, vb) = self.over(a), self.over(b)
             if a in self.tables and b in self.tables and self.main(a) == self.main(b) and na | nb <= va & vb:
+                if not (va < vb or vb < va):
+                    raise ValueError(
+                        "two tables of one component overlap, and neither is over all variables of the other"
+                    )
                 self.tables.remove(a if va < vb else b)
-        silent = set()
         for m in list(self.tables):
             need, all_of = self.over(m)
             # (10) an increment over a control speaks of products with that control alone
             rivals = [t for t in self.terms if t[0] == self.main(m) and need <= moved(n for n, _, _ in t[3]) <= all_of]
             if rivals and set().union(*(moved(n for n, _, _ in t[3]) for t in rivals)) >= all_of:  # (8)
                 self.tables.remove(m)
-                silent.add(self.main(m))
             elif rivals:  # (7)
                 self.terms = [t for t in self.terms if t not in rivals]
-        wind = [m for m in self.tables if self.place(m) in "DSL"]
-        self.speaks = []
-        for c in "XYZ":  # (12) where body axes state a force over incidence, drag, side force and lift do not act
-            own = any(self.main(m) == c for m in wind)
-            body = any(t[0] == c and moved(n for n, _, _ in t[3]) <= {"v", "w"} for t in self.terms)
-            body = body or any(self.place(m) == c and self.over(m)[0] <= {"v", "w"} for m in self.tables)
-            self.speaks.append(bool(wind) and c not in silent and (own or not body))
+
+    def acts(self, m):  # the rows of the force that a table acts in
+        place, out = self.place(m), []
+        if place in BODY:
+            return [BODY.index(place)]
+        for i, c in ((i, c) for i, c in enumerate("XYZ") if place + c in TURNS):
+            made = self.over(m)[0] | set(TURNS[place + c])
+            body = any(t[0] == c and moved(n for n, _, _ in t[3]) == made for t in self.terms)
+            body = body or any(self.place(o) == c and self.over(o)[0] <= made <= self.over(o)[1] for o in self.tables)
+            out += [] if body else [i]  # (12)
+        return out
 
     def inertia(self, stated):
         _f, mass, hull = self.f, self.f["mass"], self.f.get("added_mass")
@@ -181,7 +198,7 @@ class Vehicle:
         if not fits(added):  # (27)
             alone = [[x if i == j else 0.0 for j, x in enumerate(row)] for i, row in enumerate(added)]
             added = computed if hull else alone if mass else added
-        self.added = added
+        self.added, self.moves = added, hull or fits(added)
 
     def ideal(self):
         self.open = (
@@ -194,32 +211,40 @@ class Vehicle:
             factors,
         ) in self.terms:  # (14) a product that a coefficient speaks of, with U for u, zero or not
             names = [n for n, _, _ in factors]
-            if not any(a for _, _, a in factors) and len(names) + power == 2 and power >= 0:
+            plain = not any(a or n in CONTROLS for n, _, a in factors)
+            if plain and len(names) + power == 2 and power >= 0:
                 pair = sorted([0] * power + [MOTION.index(n) for n in names])
                 self.open.discard((BODY.index(c), *pair))
-        for m in self.tables:  # (15) every product of u and its own variables; (16) unless it has no potential part
+        for m, on in zip(
+            self.tables, self.on
+        ):  # (15) every product of u and its own; (16) unless it has no potential part
             need, all_of = self.over(m)
             if m.get("contains_potential", True) and not need & set(CONTROLS):
                 at = [0] + [MOTION.index(n) for n in all_of if n in MOTION]
-                place = self.place(m)
-                on = [i for i in range(3) if self.speaks[i]] if place in "DSL" else [BODY.index(place)]
                 self.open -= {(i, j, k) for i in on for j in at for k in at}
 
     def force(self, nu, delta):
         u, v, w = nu[:3]
         speed = math.sqrt(u * u + v * v + w * w)
         slow = max(speed, SLOW)  # (5)
-        alpha, beta = math.atan2(w, u), math.asin(max(-1.0, min(1.0, v / speed))) if speed > 0.0 else 0.0  # (11)
+        alpha, beta = (
+            math.atan2(w + 0.0, u + 0.0),
+            math.asin(max(-1.0, min(1.0, v / speed))) if speed > 0.0 else 0.0,
+        )  # (11)
         base = {**dict(zip(MOTION, nu)), **dict(zip(CONTROLS, delta)), "alpha": alpha, "beta": beta}
-        out, q = dict.fromkeys("XYZKMNDSL", 0.0), 0.5 * self.rho * speed**2
+        total, q = [0.0] * 6, 0.5 * self.rho * speed**2
+        ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
+        along = {"D": (-ca * cb, -sb, -sa * cb), "S": (-ca * sb, cb, -sa * sb), "L": (sa, 0.0, -ca)}  # (13)
 
         def product(factors, values):
             return math.prod(abs(values[n]) ** k if a else values[n] ** k for n, k, a in factors)
 
         for c, value, power, factors in self.terms:
             course = max(-1.0, min(1.0, 10.0 * u / slow)) if c == "X" and not factors and power == 2 else 1.0  # (4)
-            out[c] += value * (speed**power if power >= 0 else slow**power) * course * product(factors, base)
-        for m in self.tables:
+            total[BODY.index(c)] += (
+                value * (speed**power if power >= 0 else slow**power) * course * product(factors, base)
+            )
+        for m, on in zip(self.tables, self.on):
             names = [x["name"] for x in m["variables"]]
             scales = [  # (17) a primed variable is by the present speed
                 (1.0 if n in "uvw" else self.length) / slow if x["unit"] == "1" and n in MOTION else 1.0
@@ -242,13 +267,9 @@ class Vehicle:
                                          dict(zip(names, p))) for t in m["terms"] if t["value"] is not None)
                 for p in (near, point)
             ]  # fmt: skip
-            out[place] += unit * (sums[0] + free * (sums[1] - sums[0]))
-        ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
-        drag, side, lift = out["D"], out["S"], out["L"]
-        turned = (  # (13)
-            -ca * cb * drag - ca * sb * side + sa * lift, -sb * drag + cb * side, -sa * cb * drag - sa * sb * side - ca * lift,
-        )  # fmt: skip
-        total = [out[c] + (turned[i] if i < 3 and self.speaks[i] else 0.0) for i, c in enumerate(BODY)]
+            for i in on:
+                way = along[place][i] if place in along else 1.0
+                total[i] += way * unit * (sums[0] + free * (sums[1] - sums[0]))
         if self.open:  # -C_A(nu) nu, product by product
             for j, k in ((j, k) for j in range(6) for k in range(j, 6)):
                 one = [[float(i == n) for i in range(6)] for n in (j, k)]
@@ -288,7 +309,8 @@ class Vehicle:
         h, m = self.f.get("hydrostatics"), self.f["mass"]["mass"]
         if not h:  # (28)
             return [0.0] * 6
-        weight, lift = m * h["gravity"], self.rho * h["gravity"] * h["volume"]
+        g = h.get("gravity", 9.80665)
+        weight, lift = m * g, self.rho * g * h["volume"]
         arm = [weight * a - lift * b for a, b in zip(self.centre, h["centre_of_buoyancy"])]
         return [(weight - lift) * d for d in down] + cross(arm, down)
 
@@ -300,11 +322,13 @@ class Vehicle:
         ]
         force, nu = self.force(state["nu"], delta), state["nu"]
         free = [MOTION.index(m) for m in state.get("free", MOTION)]
-        if force is None or not set(free) <= set(self.known):
+        if force is None or not self.moves or not set(free) <= set(self.known):
             return {"force": force, "acceleration": None}
         wrench, rest = self.thrust(state.get("commands", {})), self.afloat(state.get("attitude", [1.0, 0.0, 0.0, 0.0]))
         total = [sum(x) for x in zip(force, wrench, rest, pushed(self.rigid, nu))]
         matrix = [[self.rigid[i][j] + self.added[i][j] for j in free] for i in free]
+        if not definite(matrix, range(len(free))):  # (27)
+            return {"force": force, "acceleration": None}
         found = dict(zip(free, solved(matrix, [total[i] for i in free])))
         return {"force": force, "acceleration": [found.get(i, 0.0) for i in range(6)]}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
 from pathlib import Path
@@ -24,6 +25,17 @@ def test_the_reader_passes_and_a_wrong_one_fails(tmp_path: Path) -> None:
     wrong = CliRunner().invoke(app, ["params", "conform", shlex.join([sys.executable, str(tmp_path / "wrong.py")])])
     assert wrong.exit_code == 1
     assert "torpedo" in wrong.output
+
+
+def test_files_states_and_answers_are_written(tmp_path: Path) -> None:
+    command = shlex.join([sys.executable, "-c", "print(1)"])
+    done = CliRunner().invoke(app, ["params", "conform", command, "--write", str(tmp_path / "out")])
+    assert done.exit_code == 1
+    names = {p.name.split(".", 1)[1] for p in (tmp_path / "out").iterdir()}
+    assert names == {"parameters.json", "states.json", "answers.json"}
+    states, answers = (json.loads((tmp_path / "out" / f"torpedo.{n}.json").read_bytes()) for n in ("states", "answers"))
+    assert len(states) == len(answers)
+    assert set(answers[0]) == {"force", "acceleration"}
 
 
 @pytest.mark.parametrize("command", ["", "'open"])

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.texts import words
 from coeflab.formats.c_program import program as c
@@ -77,6 +78,10 @@ def compiled(folder: Path, file: ParameterFile, main: str, compiler: str = "gcc"
 def test_it_gives_the_conformance_vectors(tmp_path: Path, name: str) -> None:
     given = SETS[name]
     file = of(given)
+    if name == "no_diagonal":  # what cannot move is no program
+        with pytest.raises(InputError, match="positive definite"):
+            flat_law(file)
+        return
     free = "".join(MOTIONS[k] for k in flat_law(file).free)
     driver, rows = compiled(tmp_path, file, DRIVER), []
     for s in given.states:

@@ -17,7 +17,17 @@ from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.vehicle.conform import vector_sets
 from coeflab.vehicle.parameter_file import ParameterFile
 
-NAMES = ("huuv_5dof", "domains", "overlaps", "refusals", "refusal_at_rest")
+NAMES = (
+    "huuv_5dof",
+    "domains",
+    "overlaps",
+    "refusals",
+    "refusal_at_rest",
+    "turned",
+    "along_the_body",
+    "along_a_table",
+    "edges",
+)
 SETS = {s.name: s for s in vector_sets() if s.name in NAMES}
 OCTAVE = shutil.which("octave-cli")
 

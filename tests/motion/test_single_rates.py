@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from coeflab.law.terms import Factor, Term
 from coeflab.motion.dynamics import Dynamics, rates_of_one, term_force_of_one
 from coeflab.motion.marching import alone
 from coeflab.motion.vehicle import Vehicle, vehicle
-from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.vehicle.conform import vector_sets
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.formats.massed import torpedo
 
 
@@ -26,7 +28,14 @@ def of_tables() -> Vehicle:
     return vehicle(file, ("u", "v", "r"))
 
 
-@pytest.mark.parametrize("made", [lambda: vehicle(torpedo()), of_tables], ids=["derivatives", "tables"])
+def apart() -> Vehicle:
+    """Drag and lift that act in other axes than an increment does."""
+    return vehicle(
+        ParameterFile.model_validate_json(json.dumps(next(s for s in vector_sets() if s.name == "turned").parameters))
+    )
+
+
+@pytest.mark.parametrize("made", [lambda: vehicle(torpedo()), of_tables, apart], ids=["derivatives", "tables", "apart"])
 def test_random_states(made: object) -> None:
     v: Vehicle = made()  # type: ignore[operator]
     rng = np.random.default_rng(3)
@@ -59,7 +68,10 @@ def terms(draw: Any) -> ForceTerm:
     term = Term(tuple(draw(st.lists(FACTORS, max_size=3))))
     held = {v: draw(READINGS) for v, _, _ in term.factors if draw(st.booleans())}
     component, power = draw(st.sampled_from([*COMPONENTS, *WIND])), draw(st.integers(-2, 2))
-    return ForceTerm("any", component, term, draw(NUMBERS), power, 1.0, "table", readings=tuple(held.items()))
+    into = draw(st.tuples(st.booleans(), st.booleans(), st.booleans()))
+    return ForceTerm(
+        "any", component, term, draw(NUMBERS), power, 1.0, "table", readings=tuple(held.items()), into=into
+    )
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity, worst
 from coeflab.core.texts import words
 from coeflab.vehicle.conform import VectorSet, compared, conform, vector_sets
@@ -32,8 +33,8 @@ DROPPED = {
     9: ("self.tables.remove(a if va < vb else b)", "pass"),
     10: ("and need <= moved(", "and set() <= moved("),
     11: ("math.asin(max(-1.0, min(1.0, v / speed)))", "math.atan2(v, u)"),
-    12: ("c not in silent and (own or not body)", "True"),
-    13: ("-sb * drag + cb * side", "cb * side"),
+    12: ("out += [] if body else [i]", "out += [i]"),
+    13: ('"D": (-ca * cb, -sb,', '"D": (-ca * cb, 0.0,'),
     14: ("self.open.discard((BODY.index(c), *pair))", "pass"),
     15: ("self.open -= {(i, j, k) for i in on", "self.open -= {(i, j, k) for i in []"),
     16: ('if m.get("contains_potential", True)', "if True"),
@@ -53,6 +54,29 @@ DROPPED = {
     30: ("c, s, on = math.cos(angle), math.sin(angle)", "c, s, on = math.cos(angle), -math.sin(angle)"),
 }  # fmt: skip
 ALSO = {
+    "(12) what is over nothing speaks of no incidence": ("moved(n for n, _, _ in t[3]) == made for", "moved(n for n, _, _ in t[3]) <= made for"),
+    "(12) of the product that the turn makes": ("set(TURNS[place + c])", "set()"),
+    "(12) and of no other over v and w": ("moved(n for n, _, _ in t[3]) == made for", 'moved(n for n, _, _ in t[3]) <= {"v", "w"} for'),
+    "(12) tables along the body too": ("body = body or any(self.place(o) == c", "body = body or any(False"),
+    "(12) with what the table needs": ("made = self.over(m)[0] | set(", "made = set() | set("),
+    "(4) by U^2 alone, no control in it": ('c == "X" and not factors', 'c == "X" and all(n in CONTROLS for n, _, _ in factors)'),
+    "(5) of a floor at rest": ("slow = max(speed, SLOW)", "slow = max(speed, 1e-12)"),
+    "(8) without a rival nothing is left out": ("if rivals and set()", "if set()"),
+    "(11) whatever U": ("if speed > 0.0 else 0.0", "if speed > SLOW else 0.0"),
+    "(11) zeros below zero": ("math.atan2(w + 0.0, u + 0.0)", "math.atan2(w, u)"),
+    "(14) n of damping at rest is none": ("if plain and len(names) + power == 2", "power = 2 - len(names)\n            if plain"),
+    "(14) controls close none": ("any(a or n in CONTROLS for n, _, a in factors)", "any(a for n, _, a in factors)"),
+    "(15) products without what it needs": ("for j in at for k in at}", "for j in at for k in at if need <= moved((MOTION[j], MOTION[k]))}"),
+    "(16) an increment closes none": (" and not need & set(CONTROLS):", ":"),
+    "(19) 1e-9 to spare": ("<= 1e-9 * max(1.0, abs(s[-1])) for", "<= 0.0 for"),
+    "(19) of b": ("1e-9 * max(1.0, abs(s[-1]))", "1e-9"),
+    "(21) where no term is determined": ("for m, on in zip(self.tables, self.on):\n            names", 'for m, on in zip(self.tables, self.on):\n            if all(t["value"] is None for t in m["terms"]):\n                continue\n            names'),
+    "(22) off a variable of no width": ("any(v != w and a == b for", "any(False for"),
+    "(24) an acceleration of zero": ('= -c["value"] * unit', '= -c["value"] * unit or 1.0'),
+    "(27) nothing accelerates": ("or not self.moves or", "or"),
+    "(27) unknown inertia": ("and definite(whole, range(6), 1e-9)", ""),
+    "(28) standard gravity": ('h.get("gravity", 9.80665)', 'h.get("gravity", 9.81)'),
+    "(29) the first of two segments": ('if s["low"] <= x <= s["high"]][:1]', 'if s["low"] <= x <= s["high"]][-1:]'),
     "product of an added mass by U or u, closed": ("pair = sorted([0] * power + [", "pair = sorted([1] * power + ["),
     "free continuation in the taper": ("unit * (sums[0] + free", "unit * (sums[1] + 0.0 * free"),
     "no table refuses at rest": (" and (speed > SLOW or m[\"unit\"] != \"1\")", ""),
@@ -132,15 +156,30 @@ def test_the_reader_alone_passes_as_a_program() -> None:
 
 def test_what_is_no_answer_is_said() -> None:
     assert {f.code for f in conform([sys.executable, "-c", "print(1)"])} == {"conform.not_run"}
-    assert {f.code for f in conform(["no-such-program-there"])} == {"conform.not_run"}
+    with pytest.raises(InputError, match="no-such-program-there"):
+        conform(["no-such-program-there"])
     given = SETS["torpedo"]
     assert compared(given, [])[0].code == "conform.count"
-    wrong = [dict(v) for v in given.vectors]
-    wrong[3] = {**wrong[3], "force": [x * (1.0 + 1e-9) for x in wrong[3]["force"]]}
-    (found,) = compared(given, wrong)
-    assert (found.code, found["vector"]) == ("conform.missed", 3)
-    wrong[0] = {"force": None, "acceleration": wrong[0]["acceleration"]}
-    assert compared(given, wrong)[0].code == "conform.none"
+    right = [{k: v[k] for k in ("force", "acceleration")} for v in given.vectors]
+    assert compared(given, right)[0].code == "conform.met"
+    force = [x * (1.0 + 1e-9) for x in right[3]["force"]]
+    (found,) = compared(given, [*right[:3], {**right[3], "force": force}, *right[4:]])
+    assert (found.code, found["vector"], found["furthest_vector"]) == ("conform.missed", 3, 3)
+    assert "nu" in found["state"]
+    further = {**right[5], "acceleration": [x + 1.0 for x in right[5]["acceleration"]]}
+    (found,) = compared(given, [*right[:3], {**right[3], "force": force}, right[4], further, *right[6:]])
+    assert (found["vector"], found["furthest_vector"]) == (3, 5)
+    (found,) = compared(given, [{**right[0], "force": None}, *right[1:]])
+    assert (found.code, found["which"]) == ("conform.none", "none_found")
+    for odd in (
+        {"forces": force, "acceleration": None},
+        {**right[0], "force": force[:5]},
+        {**right[0], "force": ["1"] * 6},
+        7,
+        None,
+    ):
+        (found,) = compared(given, [odd, *right[1:]])
+        assert (found.code, found["vector"]) == ("conform.shape", 0)
 
 
 def test_every_rule_stands_on_the_page() -> None:

@@ -297,13 +297,14 @@ def over(*variables: str) -> ParameterModel:
     content = json.loads(record(fitted("Y'")).model_dump_json())
     term = {"value": 1.0, "half_width_95": 0.0}
     k = len(variables)
+    spaces = [[*(way * float(v == at) for v in variables), -1.0] for at in variables for way in (1.0, -1.0)]
     content.update(
         variables=[{"name": v, "unit": "1"} for v in variables],
         terms=[
             {"symbol": f"Y{v}", "factors": [{"variable": v, "power": 1, "absolute": False}], **term} for v in variables
         ],
         covariance=[[0.0] * k for _ in range(k)],
-        domain={"low": [-1.0] * k, "high": [1.0] * k, "half_spaces": [], "extrapolation": "refuse"},
+        domain={"low": [-1.0] * k, "high": [1.0] * k, "half_spaces": spaces, "extrapolation": "refuse"},
     )
     return ParameterModel.model_validate(content)
 

@@ -74,7 +74,7 @@ static double held(int k, const double *x, double *near, int *inside)
 
 static int force_of(const double *c, const double nu[6], const double delta[3], double force[6])
 {
-    double x[12], total[9], near[D], point[D];
+    double x[12], total[6 + 3 * WINDS], near[D], point[D];
     double ca, sa, cb, sb, speed, slow;
     int i, k, n, refused = 0;
     for (i = 0; i < 6; i++) x[i] = nu[i];
@@ -82,9 +82,9 @@ static int force_of(const double *c, const double nu[6], const double delta[3], 
     speed = sqrt(nu[0] * nu[0] + nu[1] * nu[1] + nu[2] * nu[2]);
     slow = speed > 1e-9 ? speed : 1e-9;
     x[9] = speed;
-    x[10] = ANGLED ? atan2(nu[2], nu[0]) : 0.0;
+    x[10] = ANGLED ? atan2(nu[2] + 0.0, nu[0] + 0.0) : 0.0;
     x[11] = ANGLED && speed > 0.0 ? asin(at_most(nu[1] / speed, -1.0, 1.0)) : 0.0;
-    for (i = 0; i < 9; i++) total[i] = 0.0;
+    for (i = 0; i < 6 + 3 * WINDS; i++) total[i] = 0.0;
     for (n = 0; n < COEFFICIENTS; n++) {
         double y = c[n] * by_speed(speed, SPEED[n]);
         if (COURSE[n]) y *= at_most(10.0 * nu[0] / slow, -1.0, 1.0);
@@ -108,9 +108,13 @@ static int force_of(const double *c, const double nu[6], const double delta[3], 
     for (n = 0; n < PRODUCTS; n++)
         total[PRODUCT[3 * n]] += IDEAL[n] * nu[PRODUCT[3 * n + 1]] * nu[PRODUCT[3 * n + 2]];
     ca = cos(x[10]), sa = sin(x[10]), cb = cos(x[11]), sb = sin(x[11]);
-    if (SPEAKS[0]) total[0] += -ca * cb * total[6] - ca * sb * total[7] + sa * total[8];
-    if (SPEAKS[1]) total[1] += -sb * total[6] + cb * total[7];
-    if (SPEAKS[2]) total[2] += -sa * cb * total[6] - sa * sb * total[7] - ca * total[8];
+    for (n = 0; n < WINDS; n++) {
+        const int *speaks = SPEAKS + 3 * n;
+        const double *wind = total + 6 + 3 * n;
+        if (speaks[0]) total[0] += -ca * cb * wind[0] - ca * sb * wind[1] + sa * wind[2];
+        if (speaks[1]) total[1] += -sb * wind[0] + cb * wind[1];
+        if (speaks[2]) total[2] += -sa * cb * wind[0] - sa * sb * wind[1] - ca * wind[2];
+    }
     for (i = 0; i < 6; i++) force[i] = refused ? NAN : total[i];
     return refused;
 }

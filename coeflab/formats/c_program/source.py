@@ -12,9 +12,9 @@ import numpy as np
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
-from coeflab.formats.flat_law import PLACES, RULES, FlatLaw
+from coeflab.formats.flat_law import RULES, FlatLaw, place_at
 from coeflab.law.domain import Hull
-from coeflab.law.force_law import AHEAD, BASE, ForceLaw, ForceTerm, Reading
+from coeflab.law.force_law import AHEAD, BASE, ForceLaw, ForceTerm, Reading, place_of
 from coeflab.law.symbols import CONTROLS
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -96,19 +96,21 @@ def source(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         f"#define PRODUCTS {len(law.ideal)}",
         f"#define THRUSTERS {len(parameters.thrusters)}",
         f"#define ANGLED {int(angled)}",
+        f"#define WINDS {len(law.law.wind)}",
         f"#define D {d}",
         f"#define W {d + 1}",
         f"#define S {width}",
         "",
-        "/* Terms: SI value, component of X Y Z K M N D S L, power of U, course; factors: variable, power, absolute */",
+        "/* Terms: SI value, component of X Y Z K M N, then D S L of each row of SPEAKS, power of U, course; factors: variable, power,",
+        "   absolute */",
         *(f"/* {n}: {remark(t.symbol)} {remark(t.note)} */" for n, t in enumerate(terms)),
         _array("VALUES", [t.coefficient for t in terms]),
-        _array("PLACE", [PLACES.index(t.component) for t in terms], "int"),
+        _array("PLACE", [place_of(t, law.law.wind) for t in terms], "int"),
         _array("SPEED", [t.speed_power for t in terms], "int"),
         _array("COURSE", [t.ahead for t in terms], "int"),
         _array("FACTOR_BEGIN", begins, "int"),
         _array("FACTORS", factors, "int"),
-        _array("SPEAKS", law.law.wind, "int"),
+        _array("SPEAKS", [x for into in law.law.wind for x in into], "int"),
         "/* Products of two velocities of the ideal fluid: force, velocity, velocity; SI value */",
         _array("PRODUCT", [x for i, j, k, _ in law.ideal for x in (i, j, k)], "int"),
         _array("IDEAL", [x for *_, x in law.ideal]),
@@ -202,24 +204,25 @@ def law_of(text: str) -> ForceLaw:
         )
         if a["COURSE"][n]:
             factors, readings = (Factor("u", 1),), (("u", AHEAD),)
+        component, into = place_at(a["PLACE"][n], np.reshape(a["SPEAKS"][: 3 * a["WINDS"]], (-1, 3)).tolist())
         terms.append(
             ForceTerm(
                 str(n),
-                PLACES[a["PLACE"][n]],
+                component,
                 Term(factors),
                 a["VALUES"][n],
                 a["SPEED"][n],
                 1.0,
                 readings=readings,
                 hull=hull,
+                into=into,
             )
         )
     ideal = np.zeros((6, 6, 6))
     for n in range(a["PRODUCTS"]):
         i, j, k = a["PRODUCT"][3 * n : 3 * n + 3]
         ideal[i, j, k] = ideal[i, k, j] = a["IDEAL"][n] * (1.0 if j == k else 0.5)
-    one, two, three = (bool(x) for x in a["SPEAKS"][:3])
-    return ForceLaw(tuple(terms), ideal, wind=(one, two, three))
+    return ForceLaw(tuple(terms), ideal)
 
 
 def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Hull, tuple[tuple[str, Reading], ...]]:

@@ -1,11 +1,11 @@
 
 function F = tabled(nu, delta)
 % X Y Z K M N of the tables; not a number where one refuses to be read outside of its data.
-U = norm(nu(1:3));  s = max(U, 1e-9);  b = 0;  refused = false;  D = zeros(9,1);
-a = atan2(nu(3), nu(1));
+U = norm(nu(1:3));  s = max(U, 1e-9);  b = 0;  refused = false;
+a = atan2(nu(3) + 0, nu(1) + 0);
 if U > 0, b = asin(max(-1, min(1, nu(2)/U))); end
 base = [nu(:); delta(:); U; a; b];
-[T, speaks] = tables();
+[T, speaks] = tables();  D = zeros(6 + numel(speaks), 1);
 for k = 1:numel(T)
   t = T(k);
   x = base(t.variables)';
@@ -21,11 +21,9 @@ for k = 1:numel(T)
     D(r(1)) = D(r(1)) + r(2)*V^r(3)*y;
   end
 end
-turned = [-cos(a)*cos(b)*D(7) - cos(a)*sin(b)*D(8) + sin(a)*D(9); ...
-          -sin(b)*D(7) + cos(b)*D(8); ...
-          -sin(a)*cos(b)*D(7) - sin(a)*sin(b)*D(8) - cos(a)*D(9)];
+turn = [-cos(a)*cos(b) -cos(a)*sin(b) sin(a); -sin(b) cos(b) 0; -sin(a)*cos(b) -sin(a)*sin(b) -cos(a)];
 F = D(1:6);
-F(1:3) = F(1:3) + speaks(:).*turned;
+F(1:3) = F(1:3) + sum(speaks'.*(turn*reshape(D(7:end), 3, [])), 2);
 if refused, F(:) = NaN; end
 end
 

@@ -198,14 +198,14 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     return {f"{function}.m": ("\n".join(lines) + "\n").encode()}
 
 
-def _tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[bool]) -> list[str]:
+def _tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[int]]) -> list[str]:
     """A function that gives the rows of every table."""
     out = [
         "function [T, speaks] = tables()",
         "% Fitted tables. variables: of u v w p q r dr ds db U alpha beta; a variable is times prime/U where that is not zero; rule",
-        "% outside: 0 nearest point, 1 fading into it, 2 none; terms: X Y Z K M N D S L, value (SI), power of U, then of each variable",
-        "% its power and that of its absolute value.",
-        f"speaks = [{' '.join(str(int(x)) for x in wind)}];",
+        "% outside: 0 nearest point, 1 fading into it, 2 none; terms: X Y Z K M N, then D S L of each row of speaks, value (SI), power",
+        "% of U, then of each variable its power and that of its absolute value.",
+        f"speaks = [{'; '.join(' '.join(map(str, into)) for into in wind)}];",
     ]
     for k, t in enumerate(tables, 1):
         out.append(f"% {one_line(t['name'])}")
@@ -231,8 +231,8 @@ def _read_tables(text: str) -> ForceLaw:
         out.setdefault(int(k), {})[key] = (
             rows if nested else rows[0][0] if key in ("rule", "boxed", "rests") else rows[0]
         )
-    speaks = [bool(int(x)) for x in text.rpartition("speaks = [")[2].partition("]")[0].split()]
-    return law_of_tables([out[k] for k in sorted(out)], speaks)
+    wind = [[int(x) for x in row.split()] for row in text.rpartition("speaks = [")[2].partition("]")[0].split(";")]
+    return law_of_tables([out[k] for k in sorted(out)], wind)
 
 
 def _thrusters(parameters: ParameterFile) -> list[str]:

@@ -201,7 +201,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         lines += [
             "",
             "        # Fitted tables, as tabled() reads them",
-            f"        self.speaks = {[int(x) for x in wind]!r}",
+            f"        self.speaks = {wind!r}",
             "        self.tables = [",
         ]
         lines += [f"            {t!r}," for t in tables] + ["        ]"]
@@ -312,7 +312,7 @@ def _read_tables(constructor: ast.FunctionDef) -> ForceLaw | None:
     }
     if not found:
         return None
-    return law_of_tables(ast.literal_eval(found["tables"]), [bool(x) for x in ast.literal_eval(found["speaks"])])
+    return law_of_tables(ast.literal_eval(found["tables"]), ast.literal_eval(found["speaks"]))
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:

@@ -21,8 +21,8 @@ from coeflab.motion.integrators.fixed_step import SECANTS
 from coeflab.motion.manoeuvre import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
 
 # Few arrays, because every call counts the references of each: the source column of each variable; its prime, low and high;
-# powers of V; rows of the pool and component of each term; for which of X, Y, Z drag, side force and lift speak, nothing where no
-# incidence is needed; coefficients.
+# powers of V; rows of the pool and component of each term; for which of X, Y, Z each group of drag, side force and lift speaks,
+# nothing where no incidence is needed; coefficients.
 Law = tuple[Ints, Array, Ints, NDArray[np.uint64], Array, Array]
 PAIRS = len(FIRST)
 INVERSE, LOAD, CURRENT = PAIRS, PAIRS + 6, PAIRS + 7  # rows of the body's array, below the forms of the pairs
@@ -40,7 +40,7 @@ def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) ->
     speed = math.sqrt(s[7] ** 2 + s[8] ** 2 + s[9] ** 2)
     alpha, beta = 0.0, 0.0
     if len(wind):
-        alpha = math.atan2(s[9], s[7])
+        alpha = math.atan2(s[9] + 0.0, s[7] + 0.0)
         beta = math.asin(min(max(s[8] / speed, -1.0), 1.0)) if speed > 0.0 else 0.0
     pool[0] = 1.0
     at = 1
@@ -61,7 +61,7 @@ def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) ->
         value = min(max(value, bounds[k, 1]), bounds[k, 2])
         pool[at + k] = value
         pool[at + count + k] = abs(value)
-    for i in range(9):
+    for i in range(6 + len(wind)):
         out[i] = 0.0
     last = gathered.shape[1] - 1
     for t in range(len(gathered)):
@@ -69,20 +69,21 @@ def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) ->
         for f in range(1, last):
             product *= pool[gathered[t, f]]
         out[gathered[t, last]] += product * coefficient[t]
-    drag, side, lift = out[6], out[7], out[8]
-    if drag != 0.0 or side != 0.0 or lift != 0.0:
-        ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
-        ahead, aside, below = _along_body(ca, sa, cb, sb, drag, side, lift)
-        out[0] += ahead * wind[0]
-        out[1] += aside * wind[1]
-        out[2] += below * wind[2]
+    for g in range(0, len(wind), 3):
+        drag, side, lift = out[6 + g], out[7 + g], out[8 + g]
+        if drag != 0.0 or side != 0.0 or lift != 0.0:
+            ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
+            ahead, aside, below = _along_body(ca, sa, cb, sb, drag, side, lift)
+            out[0] += ahead * wind[g]
+            out[1] += aside * wind[g + 1]
+            out[2] += below * wind[g + 2]
 
 
 @inlined
 def _rates(
     law: Law, body: Array, s: Array, controls: Array, wrench: Array, out: Array, total: Array, pool: Array
 ) -> None:
-    """Time derivatives of the state ``s`` into ``out``; ``total`` (9,) and ``pool`` are working space."""
+    """Time derivatives of the state ``s`` into ``out``; ``total`` and ``pool`` are working space."""
     axes = _axes_in_earth(s[3], s[4], s[5], s[6])
     moved = _kinematics(axes, s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12])
     for k in range(3):
@@ -208,7 +209,16 @@ def _member(
 ) -> None:  # fmt: skip
     """The whole course of one member."""
     pool = np.empty(1 + len(law[2]) + 2 * len(law[0]))
-    space = (np.empty(14), np.empty(14), np.empty(14), np.empty(14), np.empty(14), np.empty(3), np.empty(9), pool)
+    space = (
+        np.empty(14),
+        np.empty(14),
+        np.empty(14),
+        np.empty(14),
+        np.empty(14),
+        np.empty(3),
+        np.empty(6 + len(law[4])),
+        pool,
+    )
     s, trial, begin = start.copy(), np.empty(14), begun_at.copy()
     phase, begun, live = 0, 0.0, True
     level = _level(watched[0], sign[0], value[0], s)
@@ -302,14 +312,14 @@ def march(
 def rates(dynamics: Dynamics, state: Array, controls: Array, wrench: Array) -> Array:
     """(14,) as `Dynamics.rates` of one vehicle, state (14,), angles (3,) and wrench (6,): to compare both."""
     law = (*_terms(dynamics.law), np.array(dynamics.law.coefficient).reshape(-1))
-    out, total, pool = np.empty(14), np.empty(9), np.empty(1 + len(law[2]) + 2 * len(law[0]))
+    out, total, pool = np.empty(14), np.empty(6 + len(law[4])), np.empty(1 + len(law[2]) + 2 * len(law[0]))
     _rates(law, _bodies(dynamics)[0], state, controls, wrench, out, total, pool)
     return out
 
 
 def _terms(law: ForceLaw) -> tuple[Ints, Array, Ints, NDArray[np.uint64], Array]:
     gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
-    wind = np.array(law.wind if law.angled else (), dtype=np.float64)
+    wind = np.array(law.wind if law.angled else (), dtype=np.float64).ravel()
     return law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, wind
 
 

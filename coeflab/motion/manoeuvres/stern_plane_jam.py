@@ -14,7 +14,8 @@ from coeflab.motion.approach import along, judged, propulsion, turning_sense, wi
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST
 
 summary = "stern planes jammed to dive or rise, then recovery by power, bow planes or freed planes: excursions of depth and pitch"
 citations = ("gertler1967",)

@@ -12,7 +12,8 @@ from coeflab.core.options import bounded, measured, parse_options
 from coeflab.motion.approach import along, judged, propulsion
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, value_at
 from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST
 
 summary = "stopping from a straight run: track reach, head reach and time, thrust off or astern"
 citations = ("imo_msc137",)

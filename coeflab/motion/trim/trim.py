@@ -25,7 +25,8 @@ from coeflab.law.transforms import incidence
 from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
-from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.parameter_parts import THRUST
 
 if TYPE_CHECKING:
     import pandas as pd
