@@ -16,7 +16,7 @@ from coeflab.api.result import Result
 from coeflab.bodies import body as plain
 from coeflab.bodies.simplify.source import names_body
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
+from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
@@ -204,7 +204,7 @@ def _meant(source: Any) -> type:
         return ParameterFile
     if not isinstance(source, str | Path):
         return Result
-    path = Path(source)
+    path = typed(source)
     if len(path.parts) == 1 and list((shipped("cfd_data") / path).glob("*.parameters.json")):
         return ParameterFile
     if path.suffix.lower() == ".json":

@@ -118,8 +118,8 @@ def _described(draft: Draft) -> None:
     print_list("Not taken", draft.left)
 
 
-def described(part: Part, found: Interpretation, *, whole: bool = True) -> None:
-    """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not."""
+def described(part: Part, found: Interpretation, *, whole: bool = True, most: int = 0) -> None:
+    """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not; ``most`` of each list."""
     raw = part.raw
     words = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     name = f"{part.name}: " * bool(part.name)
@@ -129,17 +129,18 @@ def described(part: Part, found: Interpretation, *, whole: bool = True) -> None:
     if whole:
         show.table(raw_tables.columns(raw, found.proposals, found.mapping))
         show.table(raw_tables.stated(raw))
-    print_list("Left out or mended", raw.remarks)
-    print_list("The numbers show", [e.text for e in found.shows if whole or not e.text.startswith("warning")])
+    print_list("Left out or mended", raw.remarks, most or MOST)
+    shows = [e.text for e in found.shows if whole or not e.text.startswith("warning")]
+    print_list("The numbers show", shows, most + 1 if most else MOST)
 
 
-def print_list(title: str, texts: Sequence[str]) -> None:
-    """A heading and at most `MOST` texts below it; nothing for none."""
+def print_list(title: str, texts: Sequence[str], most: int = MOST) -> None:
+    """A heading and at most ``most`` texts below it; nothing for none."""
     if not texts:
         return
     show.text(title)
-    for text in texts[:MOST]:
+    for text in texts[:most]:
         show.lines(textwrap.fill(text, 79, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
-    if len(texts) > MOST:
-        show.text(f"  and {len(texts) - MOST} more")
+    if len(texts) > most:
+        show.text(f"  and {len(texts) - most} more")
     show.text()

@@ -242,7 +242,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
     show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
-    for line in tables.lost_by_move(study):
+    for line in (*tables.lost_by_move(study), *tables.answers(study)):
         show.sentence(line)
     if symbols:
         _of_symbols(study, symbols)

@@ -113,7 +113,7 @@ def _may_be_written(out: Path, accept: bool) -> bool:
 def _named_after(file: Path) -> Path:
     """A folder of the current one, called after what is read."""
     whole = file.resolve()
-    name = f"{whole.name}_campaign" if whole.is_dir() else whole.stem
+    name = f"{whole.name}_campaign" if whole.is_dir() or not whole.suffix else whole.stem
     return Path(re.sub(r"[^\w.-]+", "_", name).strip("._") or "campaign")
 
 
@@ -193,7 +193,12 @@ def _first_slopes(folder: Path) -> bool:
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
-        notes += [*tables.resistances(study), tables.primed_about(study), *tables.lost_by_move(study)]
+        notes += [
+            *tables.resistances(study),
+            tables.primed_about(study),
+            *tables.lost_by_move(study),
+            *tables.answers(study),
+        ]
         heading = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"
         show.table(replace(
             found, title=f"{heading}, primed" + f", by {by}" * bool(by), headers=tuple(found.headers[i] for i in selected),

@@ -123,9 +123,10 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
 
     from coeflab.api.importing import Draft, Stated, open_lines, options_of, screen
     from coeflab.api.inspecting import single_run
-    from coeflab.cli.draft import described, print_list
+    from coeflab.cli.draft import MOST, described, print_list
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
+    from coeflab.report.tables.raw_tables import by_format
 
     path = located(table, "cfd_data")
     given_it = options_of(option)
@@ -156,11 +157,17 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
         proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in draft.chosen]
         show.json_object(told | {"proposed": proposed, "missing": missing, "next": following})
         return
+    brief = path.is_dir() and not show.whole()
     for part, found in zip(parts, founds, strict=True):
-        described(part, found)
+        described(part, found, whole=not brief, most=1 if brief else MOST)
     print_list("Not taken", draft.left)
-    for line in screen(lines, (), min(show.width(), 100)):
+    selected = [one for one in lines if one.pending or not brief]
+    for line in screen(selected, (), min(show.width(), 100), 4 if brief else 99):
         show.lines(line)
+    if brief:
+        for part, found in zip(parts, founds, strict=True):
+            show.sentence(by_format(part.raw, found.proposals))
+        show.sentence("--wide: every column and key, and what is left out or mended.")
     show.text()
     show.command_line("Next", following)
     if still:

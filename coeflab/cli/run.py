@@ -87,6 +87,7 @@ def summarise(study: Study, folder: Path) -> None:
     from coeflab.report.first_page import answer
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import sources as source_tables
+    from coeflab.report.tables.results import answers
 
     if study.shape is not None:
         from coeflab.cli.vehicle import summarise as of_shape
@@ -95,6 +96,8 @@ def summarise(study: Study, folder: Path) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
+    for line in answers(study):
+        show.sentence(line)
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)

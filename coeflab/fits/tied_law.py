@@ -3,7 +3,8 @@
 A law that is to hold over the whole range of the data is fitted with its linear part held at the slope that
 `coeflab.fits.slope_at_origin` recommends, so that the two never contradict each other at rest. Of the forms none, x|x|, x^3
 and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of it the simplest. Variables take turns.
-Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine.
+Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine; drift and attack together
+come in as groups, such as v|w| with v w^2, of which AICc takes one or none.
 A reading that the slopes left out because it does not fit the others is left out of the law too.
 What no symmetric body has is the set-up's: it is fitted with the law, taken off the points and stated, never in the law.
 
@@ -44,6 +45,7 @@ SIMPLER = 2.0  # AICc that a longer form has to gain
 EXACT = 1e-12  # residuals over the largest force that count as none
 STEP = 0.995  # by which a range shrinks at the least
 UP_DOWN, SIDEWAYS = ("w", "q"), ("v", "r")
+CROSSFLOW = (("v", "w"), ("w", "v"))
 TOGETHER = 4  # rows in which two motions move, for a cross term
 
 
@@ -177,6 +179,20 @@ def _cross_terms(component: str, variables: Sequence[str]) -> Iterator[NamedTerm
             yield t
 
 
+def _crossflow(component: str, rows: _Rows) -> list[tuple[NamedTerm, ...]]:
+    """What drift and attack do together, as groups that come in whole, the simplest first; none where no rows combine them.
+
+    Of a body alike port and starboard. As |v|w and vw^2 go together over most grids, each alone would look superfluous beside the other.
+    """
+    groups = {
+        "Y": ("v|w|", "vw", "v|w| vw", "v|w| vww", "v|w| vw vww"), "Z": ("vv", "w|v|", "vv w|v|", "vv w|v| vvw"), "K": ("vw", "v|w|", "vw v|w|"),
+    }  # fmt: skip
+    chosen = groups.get({"N": "Y", "M": "Z"}.get(component, component), ())
+    if not {"v", "w"} <= set(rows.x) or not chosen or not _both_move(read_term(f"{component}vw", "tied_law"), rows):
+        return [()]
+    return [(), *(tuple(read_term(component + t, "tied_law") for t in g.split()) for g in chosen)]
+
+
 def _of_set_up(component: str, v: str, rows: _Rows, declared: tuple[str, ...]) -> list[tuple[NamedTerm, ...]]:
     """What a set-up may add over one variable that no body of port-starboard symmetry has: X that is odd in drift.
 
@@ -234,6 +250,7 @@ def _chosen(
     *,
     constant: bool,
     declared: tuple[str, ...],
+    partner: str = "",
 ) -> _Law | None:
     """The law over the whole range or, where it misses points there, over the widest range in which it meets them."""
     variables = [v for v in rows.x if np.any(rows.moved(v))]
@@ -244,14 +261,17 @@ def _chosen(
 
     def over(some: _Rows) -> _Law | None:
         crossed = tuple(t for t in _cross_terms(component, variables) if _both_move(t, some))
-        return by_turns(some, (*own, *crossed)) or by_turns(some, own)
+        laws = [(((*own, *crossed, *g), ()), by_turns(some, (*own, *crossed, *g))) for g in _crossflow(component, some)]
+        found = _simplest([(form, law) for form, law in laws if law is not None])
+        return found[1] if found is not None else by_turns(some, own)
 
     def by_turns(some: _Rows, always: tuple[NamedTerm, ...]) -> _Law | None:
         """One variable after the other, its form with those of the others as they are; twice."""
         law, chosen = None, dict.fromkeys(variables, (tuple[NamedTerm, ...](), tuple[NamedTerm, ...]()))
         for v in (*variables, *variables):
             laws = []
-            both = product(_forms(component, v, ALIKE in declared), _of_set_up(component, v, some, declared))
+            forms = [()] if v == partner else _forms(component, v, ALIKE in declared)
+            both = product(forms, _of_set_up(component, v, some, declared))
             for form in sorted(both, key=lambda f: len(f[0]) + len(f[1])):
                 terms, added = zip(*(chosen | {v: form}).values(), strict=True)
                 laws.append((form, _fitted(some, bases, (*always, *chain(*terms)), (*apart, *chain(*added)))))
@@ -358,8 +378,18 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         if not variables:
             continue
         rows = _rows(component, tables, variables, length, found.sweeps)
+        partner = next((o for v, o in CROSSFLOW if v in variables and o not in variables and component != "X"), "")
+        combined = _rows(component, tables, [*variables, partner], length, found.sweeps) if partner else rows
+        if len(_crossflow(component, combined)) > 1:
+            rows = combined
+        else:
+            partner = ""
         constant = chosen.at_rest == "law" and component in "ZM" and ALIKE not in declared
-        law = _chosen(component, rows, bases, constant=constant, declared=declared) if len(rows.y) else None
+        law = (
+            _chosen(component, rows, bases, constant=constant, declared=declared, partner=partner)
+            if len(rows.y)
+            else None
+        )
         if law is None:
             continue
         rest += [

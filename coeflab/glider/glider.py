@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.toml import read_toml, toml_text
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
@@ -37,6 +38,9 @@ UPWARD_OR_AFT = takes.Within(
 WITHIN_RIGHT_ANGLES = takes.Within(lambda v: "" if -math.pi / 2 < v[0] < v[1] < math.pi / 2 else TWO_ANGLES)
 NOT_FOR_EVER = takes.Within(lambda v: f"at most {LONGEST:g} s" if v > LONGEST else "")
 WIDE = (-np.pi / 6, np.pi / 6)
+MUNK = (
+    1.5  # (m3 - m1) / m1: a slender hull has at most 1 (Lamb 1932, article 114), the shipped Slocum with its wings 1.44
+)
 
 
 def _require_order(low: float, high: float, unit: str) -> None:
@@ -258,6 +262,20 @@ class Glider:
             gravity=self.gravity,
             holds_munk=self.polar.contains_munk,
         )
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """That m3 - m1, which turns the glider across the stream, is of no hull with wings."""
+        difference = self.mass.heave - self.mass.surge
+        share = difference / self.mass.surge
+        if 0.0 < share <= MUNK:
+            return ()
+        return (
+            Finding.of(
+                "glider.munk", self.name, Severity.WARN, statistic=share, threshold=MUNK, advice="mass.heave, mass.surge",
+                difference=difference, way="more" if share > MUNK else "less",
+            ),
+        )  # fmt: skip
 
     @property
     def space(self) -> SpaceBody | None:

@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
-from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.options import bounded, measured, one_of, parse_options, text, words
 from coeflab.core.texts import remark
 from coeflab.fits.sparse import scaled_optimizer
 from coeflab.identify.force_balance import (
@@ -78,6 +78,8 @@ class Options:
     optimizer : str
         ``stlsq`` or ``sr3`` of pysindy.
     resamples, seed : int
+    columns : str
+        Names of the columns of the series, with units, in the place of their own.
     """
 
     terms: tuple[str, ...] = words()
@@ -89,6 +91,7 @@ class Options:
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
     resamples: int = bounded(200, 20, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
+    columns: str = text("")
 
 
 @one_thread()
@@ -111,7 +114,7 @@ def identify_from(files: Sequence[Path], parameters: ParameterFile, options: dic
     """
     o = parse_options(Options, options, "identify")
     reader = vehicle(parameters, free=("u",), accelerations=o.accelerations)
-    series = [read_series(f, reader) for f in files]
+    series = [read_series(f, reader, o.columns) for f in files]
     moving = frozenset().union(*(s.moving for s in series))
     body = vehicle(parameters, free=[m for m in MOTIONS if m in moving], accelerations=o.accelerations)
     _attitude_known(series, files, body, moving)
@@ -181,7 +184,7 @@ def _identified(
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
         tuple(balances), (*map(remark, found), *_shared(shared), *_statements(series, body, moving, share, library, half, o)),
-        tuple(f for f in found if f.code != EDGE),
+        (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings)),
     )  # fmt: skip
 
 

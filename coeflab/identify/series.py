@@ -8,21 +8,33 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.texts import words
 from coeflab.core.types import Array, brief, locked
-from coeflab.core.units import Header, factor
+from coeflab.core.units import Header, factor, parse_header
+from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.tables.importers.table import raw
 
 FEWEST = 50  # rows: fewer hold no motion from which forces could be told
 COMMAND = "command"
 TILT = ".tilt"
 TIME = {"t": "t", "time": "t"}
 ANGLES = ("phi", "theta")
+PLACES = ("x", "y", "psi")  # over ground, and the heading
+LEFT = "-"  # in the place of a name: a column that is passed over
 SAME_NAME = {**TIME, **CONTROL_COLUMNS}
+SAME_PLACE = {
+    "north": "x",
+    "east": "y",
+    "heading": "psi",
+    "yaw": "psi",
+}  # where the file has no column of the other name
 EXAMPLES = {
-    "time": "t [s]", "speed": "u [m/s]", "rate": "r [rad/s]", "angle": "dr [rad]", "force": "thrust [N]",
+    "length": "x [m]", "time": "t [s]", "speed": "u [m/s]", "rate": "r [rad/s]", "angle": "dr [rad]", "force": "thrust [N]",
 }  # fmt: skip
 
 
@@ -46,6 +58,8 @@ class MotionSeries:
         Force and moment of the thrusters.
     given : frozenset of str
         Columns that the file has, by their plain names.
+    findings : tuple of Finding
+        What follows from positions, and where they contradict the velocities.
     """
 
     file: str
@@ -55,6 +69,7 @@ class MotionSeries:
     controls: Array
     wrench: Array
     given: frozenset[str]
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("time", "velocity", "attitude", "controls", "wrench"):
@@ -67,52 +82,96 @@ class MotionSeries:
         return frozenset(n for n, x in zip((*MOTIONS, *CONTROLS), both.T, strict=True) if np.any(x != 0.0))
 
 
-def read_series(path: Path, vehicle: Vehicle) -> MotionSeries:
+def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries:
     """Read a time series.
 
-    Columns ``t`` and ``u`` are needed; v w p q r, phi and theta, dr ds db, ``thrust`` and the thrusters of the vehicle (with
-    ``.tilt``) are taken where they are, others are passed over.
+    Columns ``t`` and ``u`` are needed, or ``x``, ``y`` and ``psi``, of which u, v and r follow; v w p q r, phi and theta, dr ds db,
+    ``thrust`` and the thrusters of the vehicle (with ``.tilt``) are taken where they are, others are passed over.
 
     Parameters
     ----------
     path : Path
     vehicle : Vehicle
         Whose thrusters the commands are for.
+    columns : str
+        Names of all columns of a file without a header, or in the place of its own: ``t [s], x [m], y [m], -psi [deg], -``. A minus before
+        a name changes the sign, one alone passes a column over.
 
     Raises
     ------
     InputError
-        A missing column, a unit that does not fit, a blank cell, text, NaN, times that do not rise, too few rows.
+        A missing column, a unit that does not fit, a blank cell, text, NaN, times that do not rise, too few rows; velocities that
+        are not along the body, by positions and heading.
     """
-    cells = read_cells(path)
-    columns: dict[str, Array] = {}
-    for header in cells.headers:
-        name = SAME_NAME.get(header.name, header.name)
-        kind = _dimension(name, vehicle)
-        if not kind:
-            continue
-        if name in columns:
+    cells, signs = _named(path, columns) if columns else (read_cells(path), {})
+    plain = {h.name for h in cells.headers}
+    names = [SAME_NAME.get(h.name, h.name) for h in cells.headers]
+    names = [n if SAME_PLACE.get(n, n) in plain else SAME_PLACE.get(n, n) for n in names]
+    for k, name in enumerate(names):
+        if _dimension(name, vehicle) and name in names[:k]:
+            text = cells.headers[k].text
             raise InputError(
-                f"{shown(header.text)} beside another {name}", "one of them", file=path, line=cells.first_line - 1,
-                column=header.text,
-            )  # fmt: skip
-        columns[name] = _values(cells, header, kind, vehicle, name)
-    for needed, example in (("t", "t [s]"), ("u", "u [m/s]")):
-        if needed not in columns:
-            raise InputError(
-                f"no column {needed}", f'a column "{example}"', file=path, line=cells.first_line - 1, column=needed
+                f"{shown(text)} beside another {name}", "one of them", file=path, line=cells.first_line - 1, column=text
             )
-    time = columns["t"]
-    _rising(time, cells)
+    by_places = "u" not in names and set(PLACES) <= set(names)
+    for needed, example in (("t", "t [s]"), ("u", "u [m/s]")):
+        if needed not in names and not (needed == "u" and by_places):
+            raise InputError(
+                f"no column {needed}", f'a column "{example}"' + ", or x, y and psi" * (needed == "u"), file=path,
+                line=cells.first_line - 1, column=needed,
+                advice="" if columns else 'Columns of other names, or of a file without names: --columns "t [s], x [m], y [m], psi [deg]".',
+            )  # fmt: skip
+    found: dict[str, Array] = {}
+    for name, header in zip(names, cells.headers, strict=True):
+        kind = _dimension(name, vehicle)
+        if not kind or (name in PLACES and header.unit is None and not by_places):
+            continue
+        found[name] = signs.get(header.name, 1.0) * _values(cells, header, kind, vehicle, name)
+    _rising(found["t"], cells)
+    if by_places:
+        lacking = tuple(m for m in ("u", "v", "r") if m not in found)
+        found = by_positions(found)
+        findings = [Finding.of("record.derived", path.name, Severity.NOTE, columns=lacking, places=PLACES)]
+        if (ahead := sideways(found)) < FORWARD:
+            findings.append(Finding.of("record.sideways", path.name, Severity.FAIL, statistic=ahead, threshold=FORWARD))
+    else:
+        findings = list(contradicted(found, path.name))
+    for one in findings:
+        if one.severity is Severity.FAIL:
+            said = words(one)
+            raise InputError(said.statement, said.rule, file=path, advice=said.advice)
+    time = found["t"]
     n = len(time)
     zero = np.zeros(n)
-    roll, pitch = (columns.get(a, zero) for a in ANGLES)
-    commands = {k: v for k, v in columns.items() if k not in ("t", *MOTIONS, *CONTROLS, *ANGLES)}
+    roll, pitch = (found.get(a, zero) for a in ANGLES)
+    commands = {k: v for k, v in found.items() if k not in ("t", *MOTIONS, *CONTROLS, *ANGLES, *PLACES)}
     return MotionSeries(
-        path.name, time, np.column_stack([columns.get(m, zero) for m in MOTIONS]),
-        _attitude(roll, pitch), np.column_stack([columns.get(c, zero) for c in CONTROLS]),
-        _wrench(commands, vehicle, n), frozenset(columns),
+        path.name, time, np.column_stack([found.get(m, zero) for m in MOTIONS]),
+        _attitude(roll, pitch), np.column_stack([found.get(c, zero) for c in CONTROLS]),
+        _wrench(commands, vehicle, n), frozenset(found), tuple(findings),
     )  # fmt: skip
+
+
+def _named(path: Path, columns: str) -> tuple[Cells, dict[str, float]]:
+    """The cells of any delimited text under names of a person's own, and the signs of its columns."""
+    names = [name.strip() for name in columns.split(",")]
+    table = raw(path, {"header": -1})
+    if len(names) != len(table.columns):
+        raise InputError(
+            f"{len(names)} names for {len(table.columns)} columns", "as many names as columns, - for one that is passed over", file=path,
+            column="--columns",
+        )  # fmt: skip
+    used = [
+        (parse_header(name.removeprefix("-").strip()), column)
+        for name, column in zip(names, table.columns, strict=True)
+        if name != LEFT
+    ]
+    if not used:
+        raise InputError("no name", "names with units, such as t [s]", file=path, column="--columns")
+    texts = [column.texts or tuple(map(repr, column.values.tolist())) for _, column in used]
+    signs = {h.name: -1.0 for h in (parse_header(n[1:].strip()) for n in names if n.startswith("-") and n != LEFT)}
+    lines = tuple(int(n) for n in table.lines)
+    return Cells(path, tuple(h for h, _ in used), lines[0], tuple(zip(*texts, strict=True)), lines), signs
 
 
 def _dimension(name: str, vehicle: Vehicle) -> str:
@@ -123,7 +182,9 @@ def _dimension(name: str, vehicle: Vehicle) -> str:
         return "speed"
     if name in ANGULAR:
         return "rate"
-    if name in (*CONTROLS, *ANGLES) or (name.endswith(TILT) and _thruster(name.removesuffix(TILT), vehicle)):
+    if name in PLACES[:2]:
+        return "length"
+    if name in (*CONTROLS, *ANGLES, PLACES[2]) or (name.endswith(TILT) and _thruster(name.removesuffix(TILT), vehicle)):
         return "angle"
     if name == THRUST:
         return "force"

@@ -21,7 +21,7 @@ from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import BODY
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
-from coeflab.core.files import located, stem, typed
+from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
@@ -476,5 +476,9 @@ def campaigns_named(name: str) -> list[Path]:
     InputError
         One is not there.
     """
-    names = [name] if "," not in name or typed(name).exists() else [n.strip() for n in name.split(",") if n.strip()]
+    try:
+        alone = "," not in name or Path(name).exists()
+    except OSError:  # longer than any path can be
+        alone = False
+    names = [name] if alone else [n.strip() for n in name.split(",") if n.strip()]
     return [located(n, "cfd_data") for n in names or [name]]

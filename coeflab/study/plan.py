@@ -57,7 +57,7 @@ def _derivatives(value: Any, file: Path) -> tuple[str, ...]:
 
 def _parameters(value: Any, file: Path) -> Path:
     name = takes.text_of(value, file)
-    beside = file.parent / name
+    beside = typed(file.parent / name)
     return beside if beside.is_file() else named(name, SHIPPED)
 
 

@@ -254,7 +254,7 @@ class TableDeclaration(takes.Declaration):
     select : mapping of str to str
         Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
-        Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
+        Column with the cells of the grid that computed each row, or empty. Of rows at one condition that on the grid which most share enters fits.
     variant : str
         Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
         in a row of none. Rows of studies do not enter fits; how far they differ enters U95, but of turbulence models, whose spread stands beside it.
@@ -277,6 +277,8 @@ class TableDeclaration(takes.Declaration):
     assumed : tuple of str
         Keys that an import accepted although no source states them, such as table.arm_point: every coefficient that hangs on one says
         so. Delete a key here once the source states it.
+    contains_thrust : bool or None
+        Whether X holds the thrust of a propeller that runs, columns rps, J or thrust: unless false, X of such rows enters no fit.
     constant : mapping of str to float
         Columns of the source with one number throughout that are none of the table, such as rps: what was held while speeds varied.
     source_sha256 : str
@@ -298,6 +300,7 @@ class TableDeclaration(takes.Declaration):
     by_symmetry: takes.Words = ""
     forces_density: takes.Density | None = None
     assumed: takes.Texts = ()
+    contains_thrust: takes.Flag | None = None
     constant: Annotated[Mapping[str, Any], takes.TABLE] = field(default_factory=dict)
     source_sha256: takes.Anything = None
 

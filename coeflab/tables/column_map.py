@@ -16,6 +16,7 @@ WORDS = ("label", "point", "cells", "uncertain", "ignore")
 WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
 FORCES = (*COMPONENTS, *WIND)
 ANGLES = ("alpha", "beta")
+PROPELLER = {"rps": "rate", "J": "none", "thrust": "force"}  # what a propeller ran at, by its dimension
 SETTINGS = ("angle", "velocity", "speed", "control", "radius")  # roles of what a run is made at
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
@@ -25,6 +26,7 @@ ROLES = {
     **dict.fromkeys((*LINEAR, *ANGULAR), "velocity"),
     **dict.fromkeys(CONTROLS, "control"),
     **dict.fromkeys(FORCES, "force"),
+    **dict.fromkeys(PROPELLER, "propeller"),
     **dict.fromkeys(WORDS, "word"),
 }
 DIMENSIONS = {
@@ -33,10 +35,11 @@ DIMENSIONS = {
     **dict.fromkeys(ANGULAR, "rate"),
     "R": "length",
     "density": "density",
+    **PROPELLER,
     **{c: "moment" if c in MOMENTS else "force" for c in FORCES},
 }
 EXAMPLES = {
-    "angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m", "length": "m", "density": "kg/m^3",
+    "angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m", "length": "m", "density": "kg/m^3", "none": "-",
 }  # fmt: skip
 EXPECTED = (
     'what the column is, such as "Y [N]", "-beta [deg]", "r\' [-]", "se_N [N*m]", "Y [coefficient A=1.2 m^2]", '
@@ -47,6 +50,10 @@ _ENTRY = re.compile(
     r"\s*(?:\[(?P<unit>[^\[\]]*)\])?"
 )
 _COEFFICIENT = re.compile(r"coefficient(?:[\s,]+A\s*=\s*(?P<area>.+?))?(?:[\s,]+L\s*=\s*(?P<length>.+?))?")
+_SHIP = re.compile(r"(?P<unit>\S+)\s+ship\s+(?P<scale>[1-9]\d{0,3}(?:\.\d+)?)")  # of a model, 1 to 9999
+_PER_SPEED = re.compile(
+    r"(?P<unit>k?N(?:[\s*·.]?m)?|lbf)(?:[\s*·.]*s(?:\^|\*\*)?[2²](?:\s*/\s*\(?m(?:\^|\*\*)?[2²]\)?|[\s*·.]*m(?:\^-2|\*\*-2|⁻²))|\s*/\s*\(m/s\)(?:\^2|\*\*2|²))"
+)
 _LONGEST = 120
 ACROSS = {"drag": "along", "lift": "across", "side": "across"}
 PER = {"force": "coefficient A=1.2 m^2", "moment": "coefficient A=1.2 m^2 L=4.26 m"}
@@ -59,8 +66,8 @@ class ColumnMap:
     Attributes
     ----------
     name : str
-        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N lift drag side, or label, point, cells, uncertain,
-        ignore.
+        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N lift drag side, rps J thrust of a propeller, or label, point,
+        cells, uncertain, ignore.
     unit : str
         Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient, or what a prime is counted
         in, such as ``1e-3``.
@@ -74,6 +81,10 @@ class ColumnMap:
         m^2, of a coefficient by 1/2 rho U^2 A (moments: A L); 0 for no coefficient.
     length : float
         m, of a coefficient of a moment.
+    ship : float
+        Scale of the model beside a speed of the ship: U is the column over its root (Froude); 0 for the speed of the model.
+    per_speed : bool
+        A force over the square of the speed, ``X [N s^2/m^2]``; the unit is that of the force, over m/s.
     """
 
     name: str
@@ -83,10 +94,12 @@ class ColumnMap:
     error: bool = False
     area: float = 0.0
     length: float = 0.0
+    ship: float = 0.0
+    per_speed: bool = False
 
     @property
     def role(self) -> str:
-        """angle, speed, radius, density, velocity, control, force, error or word."""
+        """angle, speed, radius, density, velocity, control, force, error, propeller or word."""
         return "error" if self.error else ROLES[self.name]
 
     @property
@@ -111,7 +124,7 @@ class ColumnMap:
 
     def __str__(self) -> str:
         sign, prime = "-" if self.negative else "", "'" if self.primed else ""
-        unit = self.unit
+        unit = self.unit + " s^2/m^2" * self.per_speed + f" ship {self.ship!r}" * bool(self.ship)
         if self.area:
             unit = f"coefficient A={self.area!r} m^2" + (f" L={self.length!r} m" if self.length else "")
         return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
@@ -187,11 +200,19 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
         return replace(said, unit=said.unit or "-")
     if said.unit.startswith("coefficient"):
         return _coefficient(said, text)
+    if said.dimension == "none" and said.unit in ("", "-", "1"):
+        return replace(said, unit="-")
     if said.unit == "-":
         advice = f"For the prime by the campaign's length write {said.name}' [-]"
         if said.name in FORCES:
             advice += f"; for a coefficient by an area {said.plain} [{PER[said.dimension]}]"
         raise UnitsError("[-]", f"a unit of {said.dimension}, such as {EXAMPLES[said.dimension]}", advice=advice + ".")
+    if said.name == "U" and (m := _SHIP.fullmatch(said.unit)):
+        factor(m["unit"], "speed")
+        return replace(said, unit=m["unit"], ship=float(m["scale"]))
+    if said.name in FORCES and (m := _PER_SPEED.fullmatch(said.unit)):
+        factor(m["unit"], said.dimension)
+        return replace(said, unit=m["unit"], per_speed=True)
     if said.unit:
         factor(said.unit, said.dimension)
     return said

@@ -239,10 +239,10 @@ def is_unit_row(cells: Sequence[str], numbers: Set[int], names: Sequence[str] = 
 
 
 def is_name_row(cells: Sequence[str], marks: Marks) -> bool:
-    """Whether no cell is a number and at least half of them hold a text."""
-    return not any(marks.number(c) is not None for c in cells if c not in _DASHES) and 2 * sum(map(bool, cells)) >= len(
-        cells
-    )
+    """Whether at least half of the cells hold a text, and three texts at least stand beside each number; Na and nan are texts."""
+    filled = [c for c in cells if c and c not in _DASHES]
+    numbers = sum(math.isfinite(x) for c in filled if (x := marks.number(c)) is not None)
+    return 2 * sum(map(bool, cells)) >= len(cells) and 4 * numbers <= len(filled)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,12 +26,14 @@ if TYPE_CHECKING:
 AT_REST = float(np.sin(np.radians(0.05)))
 ROUNDING = 1e-12
 FEWEST_SPEEDS = 3  # of straight runs that give X0'
-COARSER = "coarser grid"
+COARSER, FINER = "coarser grid", "finer grid: for the grid study only"
+ONE_GRID = 1.15  # ratio of cells: those of one grid at other angles lie closer
 STUDIES = {
     "domain": "domain size",
     "turbulence": "turbulence model",
     "iterations": "iterations",
 }  # what each part is called
+DRIVEN = "propeller running: X holds its thrust"
 SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
 
@@ -165,6 +167,8 @@ class ForceTable:
         What its campaign.toml says of it, before it was turned and moved; None for a table made by a program.
     findings : tuple of Finding
         What is assumed of it or left out; they travel with every number that comes of it.
+    propeller : dict of str to (n,) array
+        ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
     """
 
     name: str
@@ -199,9 +203,10 @@ class ForceTable:
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None
     findings: tuple[Finding, ...] = ()
+    propeller: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("motion", "controls", "forces", "errors"):
+        for name in ("motion", "controls", "forces", "errors", "propeller"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
@@ -263,32 +268,31 @@ class ForceTable:
         scale = np.maximum(np.max(np.abs(settings), axis=0, initial=0.0), 1e-300)
         return np.asarray(np.unique(np.round(settings / scale, 9), axis=0, return_inverse=True)[1]).ravel()
 
-    def on_finest_grids(self) -> ForceTable:
-        """Of usable rows at one setting those of the finest grid stay in use; coarser ones are left to the grid study."""
+    def on_one_grid(self) -> ForceTable:
+        """Of usable rows at one setting that of the grid which most settings share stays in use, else the finest; the others are left to the grid study."""
         if self.cells is None:
             return self
-        setting, counts = self.setting, np.where(np.isfinite(self.cells), self.cells, np.inf)
-        usable, coarse = {}, {}
+        setting, counted, nothing = self.setting, np.isfinite(self.cells), np.zeros(len(self), dtype=bool)
+        level = grids(np.where(counted, self.cells, np.inf))
+        some = counted & np.logical_or.reduce([*self.usable.values(), nothing])
+        shared = [np.unique(setting[some & (level == k)]).size for k in range(int(level.max(initial=0)) + 1)]
+        common = level == len(shared) - 1 - int(np.argmax(shared[::-1]))
+        rank = np.where(counted, self.cells, 0.0) + common * 2.0 * np.max(self.cells[counted], initial=1.0)
+        usable, left, kept = {}, {}, np.zeros(len(self))
         for c, mask in self.usable.items():
-            finest = np.zeros(len(self))
-            counted = mask & np.isfinite(counts)
-            np.maximum.at(finest, setting[counted], counts[counted])
-            coarse[c] = mask & (counts < finest[setting])
-            usable[c] = mask & ~coarse[c]
-        left = np.logical_or.reduce([*usable.values(), np.zeros(len(self), dtype=bool)])
-        out = np.logical_or.reduce([*coarse.values(), np.zeros(len(self), dtype=bool)])
-        if not np.any(out):
-            return self
+            best = np.zeros(len(self))
+            np.maximum.at(best, setting[mask & counted], rank[mask & counted])
+            left[c] = mask & counted & (rank < best[setting])
+            usable[c] = mask & ~left[c]
+            in_use = usable[c] & counted
+            np.maximum.at(kept, setting[in_use], self.cells[in_use])
+        used = np.logical_or.reduce([*usable.values(), nothing])
         found = [
-            Exclusion(int(row), self.lines[row] if self.lines else 0, component, COARSER)
-            for row in np.flatnonzero(out)
-            for component in ([c for c in coarse if coarse[c][row]] if left[row] else [""])
-        ]
-        used = self.cells[left & np.isfinite(self.cells)]
-        note = f"{int(np.sum(out))} rows of coarser grids left to the grid study"
-        if np.ptp(used) > 0.0:
-            note += f"; grids in use have {int(used.min())} to {int(used.max())} cells"
-        return replace(self, usable=usable, exclusions=(*self.exclusions, *found), notes=(*self.notes, note))
+            Exclusion(int(row), self.lines[row] if self.lines else 0, c, FINER if self.cells[row] > kept[setting[row]] else COARSER)
+            for row in np.flatnonzero(np.logical_or.reduce([*left.values(), nothing]))
+            for c in ([c for c in left if left[c][row]] if used[row] else [""])
+        ]  # fmt: skip
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
 
     def at_speed(self, speed: float) -> ForceTable:
         """The rows of one speed in use, m/s, as measured; the others are left out."""
@@ -398,6 +402,27 @@ class ForceTable:
             for component in [e.component] if e.component else usable:
                 usable[component][e.row] = False
         return replace(self, usable=usable, exclusions=tuple(selected), notes=(*self.notes, "doubtful cells in use"))
+
+
+def grids(cells: Array) -> NDArray[np.intp]:
+    """A number for every row, (n,), that rows of one grid share, coarsest first: cells within `ONE_GRID` of the next.
+
+    Examples
+    --------
+    >>> grids(np.array([1.0e6, 1.05e6, 3.0e6])).tolist()
+    [0, 0, 1]
+    """
+    order = np.argsort(cells, kind="stable")
+    out = np.empty(len(cells), dtype=np.intp)
+    out[order] = np.concatenate([[0], np.cumsum(cells[order][1:] > ONE_GRID * cells[order][:-1])])[: len(cells)]
+    return out
+
+
+def running_rows(propeller: Mapping[str, Array], rows: int) -> NDArray[np.bool_]:
+    """Rows, (n,), in which a propeller turns or thrusts, by rps or thrust, else by a number for J."""
+    known = [np.nan_to_num(propeller[name]) != 0.0 for name in ("rps", "thrust") if name in propeller]
+    known = known or [np.isfinite(propeller[name]) for name in ("J",) if name in propeller]
+    return np.asarray(np.logical_or.reduce([*known, np.zeros(rows, dtype=bool)]))
 
 
 def counted_once(tables: Sequence[ForceTable], *, axial: bool = True) -> list[ForceTable]:

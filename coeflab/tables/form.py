@@ -232,7 +232,10 @@ def open_lines(lines: Sequence[Line]) -> list[Line]:
     return [line for line in lines if line.group is Group.OPEN]
 
 
-def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80) -> list[str]:
+_LONG_NUMBER = re.compile(r"\d+\.\d{7,}")
+
+
+def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80, most_lines: int = 99) -> list[str]:
     """The form as text: number, key, value, why; ``>`` before what has changed.
 
     Parameters
@@ -242,6 +245,8 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
         Keys.
     width : int
         Letters of a line.
+    most_lines : int
+        Of an open key.
     """
     out: list[str] = []
     most = max((min(len(line.key), KEY) for line in lines), default=0)
@@ -251,10 +256,10 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
         out.append(TITLES[group])
         for line in own:
             head = f"{'>' if line.key in changed else ' '}{line.number:3d}{'?' if group is Group.OPEN else ' '} {_cut(line.key, KEY):<{most}}  "
-            text = _one_line(line.value)
+            text = _LONG_NUMBER.sub(lambda m: f"{float(m[0]):.6g}", _one_line(line.value))
             if group is Group.OPEN:
                 whole = folded(line.why, width - 1, head, " " * len(head))
-                out += whole if "." in line.key else whole[:3]
+                out += whole[:most_lines] if "." in line.key else whole[:3]
                 continue
             room = width - 1 - len(head) - 2 - max(len(text), VALUE)
             decides = (

@@ -206,7 +206,7 @@ def _held(table: Filled) -> dict[str, float]:
     speeds = next((c.values for c in table.columns if c.said.role == "speed"), np.empty(0))
     if np.unique(levels_of(speeds[np.isfinite(speeds)])).size < 2:
         return {}
-    used = {c.column.name for c in table.columns}
+    used = {c.column.name for c in table.columns if c.said.role != "propeller"}
     idle = [
         c
         for c in table.raw.columns
@@ -286,6 +286,9 @@ def _table(
     """The table in coeflab's names and the file's units, all digits; and the names of its label columns."""
     rows = usable_rows(columns, len(raw))
     length = quantity(settings["scaling.length"].value, "length")
+    speed = next(
+        (c.values for c in columns if c.said.role == "speed"), quantity(settings["conditions.speed"].value, "speed")
+    )
     heads: list[str] = []
     cells: list[list[str]] = []
     labels: list[str] = []
@@ -307,6 +310,10 @@ def _table(
         own = one.column.values * (-1.0 if given.negative else 1.0)
         if given.area:
             own = own * (given.area * (given.length or 1.0) / length ** (3 if given.length else 2))
+        if given.per_speed:
+            own = own * speed**2
+        if given.ship:
+            own = own / given.ship**0.5
         if given.pure:
             own = own * abs(one.factor)
         values = np.where(np.isnan(one.values), np.nan, own)[rows]

@@ -15,7 +15,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import FORCES, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -33,12 +33,12 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import AREA, Proposal, proposals, taken_as
+from coeflab.tables.proposals import AREA, FEW_STRANGE, UNKNOWN, Proposal, named_as, proposals, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
 from coeflab.tables.settings_in_files import against_words, overruled
-from coeflab.tables.time_record import record_over_time
+from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.to_frd import columns_of
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -147,7 +147,8 @@ def interpreted(
     tentative = {c.name: _likely_map(o) for c, o in still}
     said_of = mapping | tentative
     columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
-    if not said and (bare := _no_table(raw, offers)):
+    record = tuple(record_over_time(raw))
+    if not said and not record and (bare := _no_table(raw, offers)):
         complaints = (bare,)
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
@@ -176,7 +177,7 @@ def interpreted(
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
     complaints += (
-        *record_over_time(raw), *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
+        *record, *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
     )  # fmt: skip
     settled = set(said if judged is None else judged)
     doubts = [
@@ -187,6 +188,7 @@ def interpreted(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
+    complaints += tuple(_in_vain(raw, mapping, still))
     return Interpretation(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
@@ -227,14 +229,27 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
     roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
+    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why == UNKNOWN]
+    if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
+        return InputError(
+            f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
+            file=raw.path, advice=f'Name what was varied: --map "{strange[0]}=beta [deg]"; grids at one setting are no sweep.',
+        )  # fmt: skip
     if roles & {"force", "error"} or any(
         "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
     ):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
+    over = clock(raw)
+    worded = [c.name for c in raw.columns if "_" in c.name and named_as(c.name.split("_")[0]) in FORCES]
+    if worded and not over:
+        return InputError(
+            f"forces with words behind them: {listed([shown(n) for n in worded[:MOST_IDLE]])}", "forces over settings, of one source", file=raw.path,
+            advice=f'Name those of one source: --map "{worded[0]}={named_as(worded[0].split("_")[0])} [coefficient A=1 m^2]"; others are ignored.',
+        )  # fmt: skip
     return InputError(
-        f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings", file=raw.path,
-        advice='If it is one, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+        over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
+        file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
     )  # fmt: skip
 
 
@@ -283,6 +298,24 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
 
 
+def _in_vain(
+    raw: RawTable, mapping: Mapping[str, ColumnMap], still: Sequence[tuple[RawColumn, Proposal]]
+) -> Iterator[InputError]:
+    """What no answer to a question mends: lift without drag where no column is left that may be it, a speed of zero throughout."""
+    said_of = dict(mapping) | {c.name: read_column_map(o.text.partition(" [")[0]) for c, o in still if o.text}
+    wind = {m.name: name for name, m in said_of.items() if m.name in WIND and not m.error}
+    if wind and "drag" not in wind and all(o.text for _, o in still):
+        force, one = next(iter(wind.items()))
+        yield InputError(
+            f"{force} without drag", "a column drag", file=raw.path, column=one,
+            advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.",
+        )  # fmt: skip
+    for c in raw.columns:
+        given = said_of.get(c.name)
+        if given is not None and given.name == "U" and len(raw) and not np.any(np.nan_to_num(c.values)):
+            yield InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=c.name)
+
+
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
     """A warning where no setting is anything but zero, with the columns that vary and that no fit would use."""
     moving = [c for c in columns if c.said.role in ("angle", "velocity", "control", "radius") and c.said.name != "u"]
@@ -309,17 +342,11 @@ def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError
     if not angles or not linear:
         return
     named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
-    at_rest = not any(np.any(np.nan_to_num(c.values) != 0.0) for c in angles)
-    one = linear[0].column.name
-    ways = [f"--map {shlex.quote(f'{one}=U [m/s]')} where {speeds} is the speed"] * (
-        len(linear) == 1 and linear[0].said.name == "u"
-    )
-    ways += [f"--map {shlex.quote(f'{c.column.name}=ignore')} as it is zero" for c in angles] * (
-        at_rest and len(angles) == 1
-    )
+    alone = len(linear) == 1 and linear[0].said.name == "u"
+    way = f"Give --map {shlex.quote(f'{linear[0].column.name}=U [m/s]')} where {speeds} is the speed." * alone
     yield InputError(
         f"angles ({named}) and velocities ({speeds})", "one or the other", file=raw.path, column=named,
-        advice=f"Give {' or '.join(ways)}." if ways else "Leave the columns of one kind out: --map COLUMN=ignore.",
+        advice=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
     )  # fmt: skip
 
 
@@ -328,7 +355,7 @@ def _is_straight(columns: Sequence[Assigned]) -> bool:
     speeds = [c for c in columns if c.said.role == "speed" or (c.said.role == "velocity" and c.said.name == "u")]
     found = [np.unique(c.values[np.isfinite(c.values)]).size for c in speeds]
     return max(found, default=0) >= FEWEST_SPEEDS and any(
-        c.said.role == "force" and c.said.name == "X" for c in columns
+        c.said.role == "force" and c.said.name in ("X", "drag") for c in columns
     )
 
 

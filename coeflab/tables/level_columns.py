@@ -9,6 +9,7 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import words
 from coeflab.core.types import Array
+from coeflab.tables.column_map import PROPELLER
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.levels import MOST_LEVELS, SHARE, levels_of, slopes_by_level
@@ -28,7 +29,7 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     """
     settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
     speed = next((c.values for c in columns if c.said.role == "speed"), None)
-    used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain")}
+    used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
     for idle in (
         c for c in raw.columns if c.name not in used and not c.means and not c.is_text and _has_levels(c, speed)
     ):

@@ -216,7 +216,7 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
             raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
             f'Leave the unit out to take the file\'s: "{replace(said, unit="")}".',
         )  # fmt: skip
-    return Assigned(column, replace(said, unit=unit), sign * size)
+    return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
 
 
 def _factor(unit: str, dimension: str) -> float | None:
@@ -268,7 +268,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     rows = usable_rows(known, len(raw))
     if not rows.size:
         raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
-    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force")}
+    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
     primes: dict[str, Array] = {}
     for one in known:
         if one.said.role in given:
@@ -280,6 +280,8 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     speed = speed_of_rows(given["speed"].get("U"), own, primes, campaign, len(rows), bool(given["angle"]))
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
+        if one.said.per_speed:
+            given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * speed**2
         if one.said.pure:
             unit = campaign.scaling.unit(one.said.component, density, speed)
             if one.said.area:
@@ -309,6 +311,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         files=raw.files,
         radius=given["radius"].get("R"),
         density=given["density"].get("density"),
+        propeller=given["propeller"],
     )
 
 
@@ -439,4 +442,4 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
     notes = (*out.notes, *words[:REMARKS], *more)
     out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
-    return out if cells is None else out.on_finest_grids()
+    return out if cells is None else out.on_one_grid()

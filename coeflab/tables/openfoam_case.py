@@ -161,7 +161,8 @@ def _inflow(case: FoamCase, name: str) -> Stated | None:
         # A wall may be of type fixedValue too: at rest it says nothing.
         is_wall = kind in ("fixedValue", "uniformFixedValue") and not any(stated[0])
         found.append(([float(v) for v in stated[0]], stated[1], is_wall))
-    open_ = [f for f in found if not f[2] and any(f[0])] or [f for f in found if not f[2]]
+    # What flows back at rest says nothing beside a patch that states its inflow otherwise.
+    open_ = [f for f in found if not f[2] and any(f[0])] or [f for f in found if not f[2] and not silent]
     if not open_:
         case.note(
             Finding.of(

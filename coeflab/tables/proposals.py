@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,13 +30,16 @@ from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
+from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
 UNKNOWN = "no known name"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
+SAME = 0.1
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
+FROUDE = 1.5
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 IDLE_UNITS = frozenset(
@@ -46,6 +49,19 @@ IDLE_UNITS = frozenset(
 TIMES = frozenset({"s", "sec", "ms", "min", "h"})
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
+TURNS = {
+    "": "",
+    "1/s": "rps",
+    "s^-1": "rps",
+    "hz": "rps",
+    "rev/s": "rps",
+    "u/s": "rps",
+    "1/min": "rpm",
+    "u/min": "rpm",
+    "rev/min": "rpm",
+    "min^-1": "rpm",
+}
+SHIP = ("shipspeed", "vship", "vs", "fullscalespeed", "schiffsgeschwindigkeit", "vitessenavire", "vitessedunavire")
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
@@ -113,6 +129,18 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     """
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
+    if folded(column.name) in SHIP and _fits(
+        unit := vocabulary().units.get(column.unit.casefold(), column.unit), "speed"
+    ):
+        scale = (stated or {}).get(SCALE)
+        if scale is None:
+            return Proposal(
+                "",
+                f"a speed of the ship: U [{unit} ship 31.6] with the scale of its model, U [{unit}] if forces are of the ship",
+            )
+        return Proposal(
+            f"U [{unit} ship {scale!r}]", f"of the ship, over the root of the scale {scale:g}: the speed of the model"
+        )
     name, why, certain = _name(column)
     if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
         prime = m[1] or m[2]
@@ -232,6 +260,10 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             return str(read_column_map(short)), "its name", True
         except InputError:
             pass
+    if own == "n" and column.unit and column.unit.casefold() in (*TURNS, "rps", "rpm"):
+        return "rps", "its name and unit", False
+    if own == "T" and _fits(column.unit, "force"):
+        return "thrust", "its name and unit", False
     bare = _OF_ALL.sub("", bare) if not _knows(bare) else bare
     error = None if bare in vocabulary().columns else _ERROR.search(bare)  # Achse, Bremse
     bare = _ERROR.sub("", bare) if error else bare
@@ -287,6 +319,10 @@ def _with_symbol(own: str) -> str:
 
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
+    if said.role == "propeller":
+        unit = TURNS.get(unit.casefold(), unit) if said.name == "rps" else unit
+        by_name = next((turns for turns in ("rpm", "rps") if turns in folded(column.name)), "")
+        unit = unit or {"rps": by_name, "J": "-"}.get(said.name, "")
     name = str(said).partition(" [")[0]
     why += f"; {TURN}" * (said.name == "r")
     counted = share(unit) is not None
@@ -344,6 +380,7 @@ def taken_as(one: Assigned) -> str:
     if (
         unit in ("", "-", "1")
         or one.said.pure
+        or one.said.per_speed
         or one.said.name in WORDS
         or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
     ):
@@ -390,8 +427,9 @@ def proposals(
                     out[first] = Proposal("ignore", again.format(column.name))
                     taken[given.plain] = column.name
                 else:
-                    whole = out[first].whole and not one.whole
-                    one = Proposal("ignore" * whole, again.format(taken[given.plain]))
+                    kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
+                    settled = (out[first].whole and not one.whole) or len(kinds) == 2
+                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
             else:
                 taken[given.plain] = column.name
         out.append(one)
@@ -404,7 +442,26 @@ def proposals(
         if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
-    return tuple(out)
+    return tuple(_without_a_doubled_flow(raw, out))
+
+
+def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
+    """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
+    roles = [read_column_map(one.text.partition(" [")[0]) if one.text else None for one in out]
+    still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
+    both = [
+        ("angle" if m.role == "angle" else "speed")
+        if m and not m.error and (m.role == "angle" or m.name in LINEAR)
+        else ""
+        for m in roles
+    ]
+    varied = {kind for kind, zero in zip(both, still, strict=True) if kind and not zero}
+    for one, kind, zero in zip(out, both, still, strict=True):
+        yield (
+            Proposal("ignore", f"{one.why}; zeros throughout")
+            if kind and zero and varied and kind not in varied
+            else one
+        )
 
 
 def _of_company(
@@ -430,6 +487,15 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
             return Proposal("ignore", note, note=note)
+    if (
+        folded(column.name) == "fn"
+        and column.unit in PURE
+        and known.size
+        and known.min() > 0.0
+        and known.max() < FROUDE
+    ):
+        note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
+        return Proposal("ignore", note, note=note)
     if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
         axial = folded(column.name) == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
@@ -458,11 +524,24 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         for c, one in zip(raw.columns, out, strict=True)
         if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
     ]
-    idle = {i for i in strange if not _like_a_setting(raw.columns[i].values, settings)}
+    plain = {c.name.strip() for c in raw.columns}
+    idle = {
+        i
+        for i in strange
+        if _is_of_a_force(raw.columns[i].name, plain) or not _like_a_setting(raw.columns[i].values, settings)
+    }
     return [
         replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)
     ]
+
+
+def _is_of_a_force(name: str, names: Set[str]) -> bool:
+    """Whether a name is that of a force of the table with a letter or words behind it: Cza beside Cz, Fx_visc beside Fx, Ma beside M."""
+    own = re.split(r"(?<=[a-z0-9])(?=[A-Z_ ])|[_ ]", name.strip())[0]
+    return any(
+        own in (base, f"{base}{own[-1:]}") and base != name.strip() for base in names if named_as(base) in FORCES
+    )
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
@@ -470,7 +549,14 @@ def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
     levels = np.unique(values[np.isfinite(values)]).size
     if 1 < levels <= values.size / 2:
         return True
-    return levels > 1 and any(_together(values, s) > GOES_ALONG for s in settings)
+    return levels > 1 and any(_together(values, s) > GOES_ALONG and not _same(values, s) for s in settings)
+
+
+def _same(one: Array, other: Array) -> bool:
+    """Whether two columns have the same numbers, a raw and a corrected angle: within `SAME` of the largest."""
+    both = np.isfinite(one) & np.isfinite(other)
+    largest = float(np.max(np.abs(other[both]), initial=0.0))
+    return bool(both.any()) and float(np.median(np.abs(one - other)[both])) < SAME * largest
 
 
 def _together(one: Array, other: Array) -> float:

@@ -30,6 +30,7 @@ UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
+ONCE = "once its unit is said"
 SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {
     1: ("FRD", "FLU"),
@@ -107,7 +108,7 @@ def questions(
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
         *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_halves(raw, settings, shows), *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_halves(raw, settings, shows), *_of_sizes(columns, settings, likely), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -298,8 +299,11 @@ def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> 
         )  # fmt: skip
 
 
-def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Question]:
-    forces = [c.said for c in columns if c.said.role == "force"]
+def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[str]) -> Iterator[Question]:
+    every = [c for c in columns if c.said.role == "force"]
+    forces = [c.said for c in every if np.any(np.nan_to_num(c.values))] or [
+        c.said for c in every
+    ]  # zeros are zeros in any unit
     pure = bool(forces) and all(given.pure for given in forces)
     plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
     length = next((given.length for given in forces if given.length), 0.0)
@@ -324,6 +328,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Quest
         ("speed", "Speed, m/s", "m/s", "1" if pure and plain else ""),
     ):
         found = median[role]
+        follows = not found and not cancels and {"speed": "U"}.get(role, role) in likely
         why = (
             f"median of the column of {role}"
             if found
@@ -332,8 +337,9 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Quest
             else ""
         )
         yield Question(
-            f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0], harmless=bool(found)
-        )
+            f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0] or ONCE * follows,
+            "median of its column" * follows, harmless=bool(found),
+        )  # fmt: skip
 
 
 def _from_the_nose(settings: Settings) -> float:

@@ -241,7 +241,7 @@ def with_declarations(
         raise InputError(
             f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
         )
-    return replace(table, cells=counts).on_finest_grids()
+    return replace(table, cells=counts).on_one_grid()
 
 
 def _variants(read: Cells, column: str) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import codecs
 import csv
 import math
 import re
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
@@ -25,6 +25,7 @@ from coeflab.tables.dialect import (
     Marks,
     Row,
     explained,
+    is_name_row,
     is_unit_row,
     numbered,
     numeric,
@@ -49,6 +50,7 @@ _ENCODINGS = (
     "euc_kr",
     "gb18030",
 )
+SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
 _SPACES = re.compile(r"[ \t]+")
@@ -261,8 +263,22 @@ def _delimiter(kept: list[tuple[int, str]], options: Options, path: Path) -> Fou
     if not found:
         raise InputError("no row of numbers in its first lines", "a table", file=path)
     most = max(f[3] for f in found)
-    best = next(f for f in found if f[3] >= 0.8 * most)
-    return best[0], best[1], best[2]
+    delimiter, rows, run, _ = next(f for f in found if f[3] >= 0.8 * most)
+    first, last, width, share = run
+    if _is_head([c for _, c in rows[first:last][:SEEN]], hypotheses):
+        run = (first + 1, last, width, share)
+    return delimiter, rows, run
+
+
+def _is_head(rows: Sequence[list[str]], hypotheses: Sequence[Marks]) -> bool:
+    """Whether the first of some rows names columns of numbers, though a few of its cells are numbers themselves."""
+    if len(rows) < 3:
+        return False
+    below = [
+        k for k in range(len(rows[0])) if all(any(m.number(c[k]) is not None for m in hypotheses) for c in rows[1:])
+    ]
+    named = [k for k in below if rows[0][k] and all(m.number(rows[0][k]) is None for m in hypotheses)]
+    return len(named) >= FEWEST_NAMED and is_name_row(rows[0], hypotheses[0])
 
 
 def _readings(marks: Marks) -> str:

@@ -6,16 +6,19 @@ import re
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.tables.raw_table import RawColumn, RawTable
 
-TIMES = ("t", "time", "zeit", "temps")
-FEWEST = 5  # rows
-LIKE = (
-    0.7,
-    1.4,
-)  # median ratio of the speed over ground to that through the water: a current or a slack clock may lie between
+TIMES = ("t", "time", "zeit", "temps", "tempo", "timestamp", "seconds", "sec", "elapsed time", "simulation time")
+HEADINGS = ("psi", "heading", "yaw", "hdg", "kurs", "cap")
+FEWEST, MANY = 5, 50  # rows; of a file without names
+EVEN = 5.0  # largest over median step of a clock
+IDENTIFY = "coeflab identify fits coefficients to records over time, of any text by --columns."
+LIKE = (0.7, 1.4)  # median ratio of the speed over ground to that through the water, for a current or a slack clock
+TURNED = (0.03, 0.4)  # standard deviation of a heading, rad: of many rows, of few
+ALIKE = 0.8  # correlation of a heading with the course
 
 
 def record_over_time(raw: RawTable) -> Iterator[InputError]:
@@ -27,24 +30,70 @@ def record_over_time(raw: RawTable) -> Iterator[InputError]:
     """
     by_name = {_plain(c.name): c for c in raw.columns if not c.is_text}
     time = next((by_name[name] for name in TIMES if name in by_name), None)
-    if time is not None:
+    if time is None:
+        return
+    x, y, u, v = (by_name.get(name) for name in "xyuv")
+    heading = next((by_name[name] for name in HEADINGS if name in by_name), None)
+    if x is not None and y is not None and u is not None and _moves(time, x, y, u, v):
+        found = f"{_named(x, y)} move at the speed of {_named(u, v)}"
+    elif x is not None and y is not None and heading is not None and _heads(time, x, y, heading):
+        found = f"{_named(x, y)} move where {heading.name} points"
+    else:
         yield from _oscillation(raw, time, by_name)
-    x, y, u = (by_name.get(name) for name in "xyu")
-    if time is None or x is None or y is None or u is None:
-        return
-    across = by_name.get("v")
-    rows = np.flatnonzero(np.all([np.isfinite(c.values) for c in (time, x, y, u)], axis=0))
-    if len(rows) < FEWEST or np.any(np.diff(time.values[rows]) <= 0.0):
-        return
-    over_ground = np.hypot(*(np.diff(c.values[rows]) / np.diff(time.values[rows]) for c in (x, y)))
-    speed = np.hypot(u.values[rows], 0.0 if across is None else np.nan_to_num(across.values[rows]))
-    between = (speed[1:] + speed[:-1]) / 2.0
-    if np.any(between <= 0.0) or not LIKE[0] < float(np.median(over_ground / between)) < LIKE[1]:
         return
     yield InputError(
-        f"a record over time: {_named(x, y)} move at the speed of {_named(u, across)}", "forces of steady runs",
-        file=raw.path, column=x.name, advice="coeflab identify fits coefficients to records over time.",
-    )  # fmt: skip
+        f"a record over time: {found}", "forces of steady runs", file=raw.path, column=x.name, advice=IDENTIFY
+    )
+
+
+def clock(raw: RawTable) -> str:
+    """What says that a table without a force is a record over time: a column that rises by its name, or in even steps; empty without one."""
+    named = [c for c in raw.columns if _plain(c.name) in TIMES]
+    some = named or [c for c in raw.columns[:1] if not c.unit and re.fullmatch(r"column \d+", c.name)]
+    for c in some:
+        if c.is_text or len(c.values) < (FEWEST if named else MANY) or not np.all(np.isfinite(c.values)):
+            continue
+        steps = np.diff(c.values)
+        if np.all(steps > 0.0) and (named or np.max(steps) < EVEN * float(np.median(steps))):
+            kind = "a record over time" if named else "no names, and perhaps a record over time"
+            return f"{kind}: {c.name} rises from {c.values[0]:.4g} to {c.values[-1]:.4g}, and no column is named as a force"
+    return ""
+
+
+def _moves(time: RawColumn, x: RawColumn, y: RawColumn, u: RawColumn, v: RawColumn | None) -> bool:
+    """Whether x and y move at the speed of u and v."""
+    rows = _rising(time, x, y, u)
+    if rows is None:
+        return False
+    over_ground = np.hypot(*(np.diff(c.values[rows]) / np.diff(time.values[rows]) for c in (x, y)))
+    speed = np.hypot(u.values[rows], 0.0 if v is None else np.nan_to_num(v.values[rows]))
+    between = (speed[1:] + speed[:-1]) / 2.0
+    return bool(np.all(between > 0.0)) and LIKE[0] < float(np.median(over_ground / between)) < LIKE[1]
+
+
+def _heads(time: RawColumn, x: RawColumn, y: RawColumn, heading: RawColumn) -> bool:
+    """Whether x and y move ahead along a heading that turns, clockwise or not, from either of them, in degrees or radians."""
+    rows = _rising(time, x, y, heading)
+    if rows is None:
+        return False
+    course = np.unwrap(np.arctan2(*(np.diff(c.values[rows]) for c in (y, x))))
+    for per in (1.0, np.pi / 180.0):
+        turned = np.unwrap(heading.values[rows] * per)
+        turned = (turned[1:] + turned[:-1]) / 2.0
+        varies = float(np.std(turned))
+        if varies < (TURNED[1] if len(rows) < MANY else TURNED[0]):  # curves of forces turn a little too
+            continue
+        slope = float(np.mean((turned - turned.mean()) * (course - course.mean()))) / varies**2
+        alike = abs(slope) * varies / max(float(np.std(course)), 1e-12)
+        if LIKE[0] < abs(slope) < LIKE[1] and alike > ALIKE:
+            return True
+    return False
+
+
+def _rising(time: RawColumn, *columns: RawColumn) -> NDArray[np.intp] | None:
+    """Rows where time and columns have numbers; None where these are few, or time does not rise."""
+    rows = np.flatnonzero(np.all([np.isfinite(c.values) for c in (time, *columns)], axis=0))
+    return None if len(rows) < FEWEST or np.any(np.diff(time.values[rows]) <= 0.0) else rows
 
 
 def _oscillation(raw: RawTable, time: RawColumn, by_name: dict[str, RawColumn]) -> Iterator[InputError]:
@@ -53,8 +102,8 @@ def _oscillation(raw: RawTable, time: RawColumn, by_name: dict[str, RawColumn]) 
         path, speed = by_name.get(place), by_name.get(rate)
         if path is None or speed is None:
             continue
-        rows = np.flatnonzero(np.all([np.isfinite(c.values) for c in (time, path, speed)], axis=0))
-        if len(rows) < FEWEST or np.any(np.diff(time.values[rows]) <= 0.0):
+        rows = _rising(time, path, speed)
+        if rows is None:
             continue
         moved = np.diff(path.values[rows]) / np.diff(time.values[rows])
         between = (speed.values[rows][1:] + speed.values[rows][:-1]) / 2.0
@@ -66,7 +115,7 @@ def _oscillation(raw: RawTable, time: RawColumn, by_name: dict[str, RawColumn]) 
         if any(LIKE[0] < ratio / per < LIKE[1] and whole < 2.0 * per**2 for per in turns):
             yield InputError(
                 f"a record over time: {path.name} moves at the speed of {speed.name}", "forces of steady runs", file=raw.path,
-                column=speed.name, advice="coeflab formats pmm says how records of oscillating runs are read.",
+                column=speed.name, advice=f"coeflab formats pmm says how forces over oscillating runs are read. {IDENTIFY}",
             )  # fmt: skip
             return
 

@@ -23,7 +23,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
 from coeflab.tables.assumptions import assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
-from coeflab.tables.force_table import Declared, Exclusion, ForceTable
+from coeflab.tables.force_table import DRIVEN, FEWEST_SPEEDS, Declared, Exclusion, ForceTable, running_rows
 
 
 @brief
@@ -61,6 +61,8 @@ class Columns:
         Column R, from the arm point to the centre of the circle, m; in the place of p, q and r.
     density : (n,) array or None
         Of the water of every row, kg/m^3; by default the campaign's.
+    propeller : dict of str to array
+        ``rps`` in rad/s, ``J``, ``thrust`` in N; NaN where blank.
     """
 
     file: Path
@@ -79,6 +81,7 @@ class Columns:
     files: tuple[Path, ...] = ()
     radius: Array | None = None
     density: Array | None = None
+    propeller: Mapping[str, Array] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -201,6 +204,8 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         )
     sources = columns_of(campaign.axes)
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
+    if table.contains_thrust is not False:
+        exclusions = (*exclusions, *_driven(columns, usable))
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
     errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
     if columns.radius is not None:
@@ -246,6 +251,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         findings=tuple(_assumed(columns, campaign, table, motion)),
         lines=columns.lines,
         density=columns.density,
+        propeller=columns.propeller,
         arm_point=table.arm_point,
         symmetry=campaign.symmetry,
         by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",
@@ -463,7 +469,8 @@ def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[Input
         if force in wind and angle not in columns.angles and not moving:
             yield columns.fail(f"{force} without {angle}", f"a column {angle} [deg] (or u, v, w): {force} is across the flow",
                                name=force)  # fmt: skip
-    if wind == ["drag"] and not columns.angles and not moving:
+    resistance = not columns.settings and np.unique(columns.speed).size >= FEWEST_SPEEDS
+    if wind == ["drag"] and not columns.angles and not moving and not resistance:
         yield columns.fail("drag without a direction of the flow", "a column alpha or beta [deg], or u, v, w", name="drag",
                            advice="In straight flow call it -X.")  # fmt: skip
 
@@ -589,6 +596,14 @@ def _exclusions(
                 for mask in usable.values():
                     mask[row] = False
     return usable, tuple(out)
+
+
+def _driven(columns: Columns, usable: Mapping[str, NDArray[np.bool_]]) -> Iterator[Exclusion]:
+    """X of rows in which a propeller runs: thrust is in it, so that it gives no X0'; marked as not usable."""
+    running = running_rows(columns.propeller, len(columns))
+    for row in np.flatnonzero(running & usable["X"]) if "X" in usable else ():
+        usable["X"][row] = False
+        yield Exclusion(int(row), columns.lines[row], "X", DRIVEN, of_source=True)
 
 
 def _without_inertia(

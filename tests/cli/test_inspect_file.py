@@ -21,6 +21,29 @@ def test_the_next_command_repeats_what_was_given(runs: Path) -> None:
     assert json.loads(done.stdout)["next"].startswith(f"coeflab import {runs} --as stub --name '{pattern}' --out ")
 
 
+def test_a_folder_is_at_most_forty_lines(tmp_path: Path) -> None:
+    """Of eleven runs with a half model, two open keys and nine remarks."""
+    for angle in range(-5, 6):
+        case = tmp_path / "cases" / f"a{angle}"
+        (case / "0").mkdir(parents=True)
+        (case / "0" / "U").write_text(
+            "FoamFile { class volVectorField; object U; }\ninternalField uniform (1.50000009399 0 0);\n"
+            f"boundaryField {{ inlet {{ type fixedValue; value uniform (-1.5 0 {0.01 * angle}); }} }}\n"
+        )
+        (case / "system").mkdir()
+        (case / "system" / "controlDict").write_text(
+            "functions { forces { type forces; rhoInf 998.2; CofR (1 0 0); } }\n"
+        )
+        (case / "system" / "blockMeshDict").write_text("boundary ( mid { type symmetryPlane; faces (); } );\n")
+        forces = case / "postProcessing" / "forces" / "0"
+        forces.mkdir(parents=True)
+        (forces / "forces.dat").write_text("# CofR : (1 0 0)\n# Time forces(pressure viscous) moment(pressure viscous)\n" + "".join(
+            f"{t} ((-3.{t % 3} 2 {angle}) (-1 0 0)) ((0 1 0) (0 0 0))\n" for t in range(1, 120)))  # fmt: skip
+    done = invoke("inspect", tmp_path / "cases").stdout
+    assert 15 < len(done.split("\n")) <= 41
+    assert "00009399" not in done
+
+
 def test_the_list_of_commands_says_what_they_do() -> None:
     listed = " ".join(invoke("--help").output.split())
     assert "import Make a campaign of a table or a folder of runs" in listed
@@ -70,7 +93,7 @@ def test_an_error_without_a_unit_is_raised_in_a_clean_sentence(tmp_path: Path) -
         (run / "fy-rfile.out").write_text(
             "\n".join(['"fy-rfile"', '"Iteration" "fy"', '("Iteration" "fy")', *rows, ""])
         )
-    said = flat(invoke("inspect", tmp_path / "runs").output)
+    said = flat(invoke("inspect", tmp_path / "runs", "--wide").output)
     assert re.search(r"raised to [\d.e-]+, the pooled error", said), said
 
 

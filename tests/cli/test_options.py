@@ -47,13 +47,14 @@ READ = ("nope/none.csv", "FIFO", "LOOP", "EMPTY", "BINARY", "FOLDER", LONG)
 WRITTEN = ("TAKEN/below", "LOOP", LONG)
 WRONG: dict[str, tuple[str, ...]] = {
     "FOLDER": WRITTEN, "FILE.csv": WRITTEN, "DENSITY": NUMBER, "SECONDS": (*NUMBER, "-1"), "COUNT": COUNT, "NUMBER": COUNT[:2], "DEGREES": NUMBER,
-    "TANK.toml": READ, "FILE.toml": READ, "LIST.csv": READ, "PARAMS": READ, "FILE.mplstyle": READ, "CAMPAIGN": NAME, "NAME": NAME, "IMPORTER": NAME,
+    "TANK.toml": READ, "BODY": READ, "FILE.toml": READ, "LIST.csv": READ, "PARAMS": READ, "FILE.mplstyle": READ, "CAMPAIGN": NAME, "NAME": NAME, "IMPORTER": NAME,
     "UNIT": NAME, "AXES": NAME, "METHOD": NAME, "WALL": NAME, "FORMATS": NAME, "FORMAT": NAME, "TARGET": NAME, "PLANE": NAME, "convex": NAME,
     "measured|computed": NAME, "c|python|latex|octave": NAME, "u,v,r": NAME, "u": NAME, "Yv,Yr,...": NAME, "SYMBOL": NAME, "POINT": NAME,
     "KEY=VALUE": PAIR, "COLUMN=WHAT": PAIR, "NAME=VALUE": PAIR, "SYMBOL=VALUE": PAIR, "NAME=BOX": PAIR, "EQUATION": ("x", "Yv", "=", "Yv=Yv", LONG),
     "PATTERN": ("{", "b{beta}", "b{beta:parsec}", "{}"), "LENGTH": MEASURE, "SPEED": MEASURE, "MASS": MEASURE, "VOLUME": MEASURE, "TIME": MEASURE,
     "VALUE": MEASURE, "SHARE": MEASURE, "X,Y,Z": TRIPLE, "IX,IY,IZ": TRIPLE, "N,E,D": TRIPLE, "M,M,..": ("x", "nan", "-1", "1e999", "1,,2"),
     "ANGLE": MEASURE, "RATE": (*NUMBER, "-1"), "FIGURE": NAME, "TABLE": NAME,
+    "NAMES": ("x", "t [s]", "t [parsec], u [m/s]", "-,-,-,-,-", LONG),
     "ADDRESS": ("x", "tcp://", LONG), "port": ("x", "-1", "65536", "1.5"),
 }  # fmt: skip
 # An option whose metavar says less than it takes; `state` of an import and `figure` are files to be written.

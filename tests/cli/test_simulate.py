@@ -203,5 +203,5 @@ def test_a_file_with_u95_names_the_command_that_says_how_sure(coeflab: Run, tmp_
     done = coeflab("simulate", *asked)
     typed = flat(done.stdout.replace("\\\n", " ")).partition("How sure, and why: ")[2]
     assert typed.startswith("coeflab uncertainty ")
-    assert typed.rstrip().endswith("--manoeuvre straight_run --free u,v,r --speed '2 kn'")
+    assert "--manoeuvre straight_run --free u,v,r --speed '2 kn'" in typed
     assert "How sure" not in coeflab("simulate", "remus100", "--manoeuvre", "straight_run").stdout

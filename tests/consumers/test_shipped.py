@@ -321,3 +321,41 @@ def test_doublet_and_reversal(name: str, target: str, request: pytest.FixtureReq
     group = np.repeat([peak[:3].max(), max(peak[3:].max(), 1e-3)], 3)
     apart = np.abs(theirs - ours).max(axis=0) / group
     assert apart.max() < LIMIT, dict(zip(MOTIONS, apart, strict=True))
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_sdformat_takes_it(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    """Model and world; the force in them is the loss report's matter."""
+    if shutil.which("ign") is None:
+        pytest.skip("SDFormat's parser (ign sdf) is not installed")
+    for written_as in written(file_of(name, request), "gazebo", tmp_path):
+        done = subprocess.run(
+            ["ign", "sdf", "--check", str(tmp_path / written_as)],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert "Valid" in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_mujoco_takes_it_or_it_is_refused(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    """MuJoCo makes its forces of an ellipsoid, which needs added masses along all three axes."""
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (dependency group test)")
+    file = file_of(name, request)
+    if name in ("huuv", "flyingfish_water"):
+        with pytest.raises(InputError, match="no added mass along x, y and z"):
+            written(file, "mujoco", tmp_path)
+        return
+    (model_file,) = (n for n in written(file, "mujoco", tmp_path) if n.endswith(".xml"))
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / model_file))
+    data = mujoco.MjData(model)
+    assert file.mass is not None
+    assert model.body_mass.sum() == pytest.approx(file.mass.mass)
+    data.qvel[0] = file.conditions.speed
+    mujoco.mj_step(model, data, round(2.0 / model.opt.timestep))
+    assert np.all(np.isfinite(data.qpos))
+    assert (
+        0.0 < data.qpos[0] < 2.0 * file.conditions.speed + 1e-9
+    )  # all drag of huuv_5dof is in tables, which MuJoCo has not

@@ -78,6 +78,15 @@ def test_an_sdf(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+def test_a_model_that_a_world_includes(tmp_path: Path) -> None:
+    """As gz-sim's own auv_controls.sdf: the plugin stands in the world, the vehicle in a model of elsewhere."""
+    kind = ("gz-sim-hydrodynamics-system", "gz::sim::systems::Hydrodynamics")
+    include = "<include><uri>https://fuel.gazebosim.org/1.0/a/models/MBARI%20Tethys%20LRAUV</uri></include>"
+    text = sdf(kind, "")
+    file = read(tmp_path, text.replace("</model>", f"{include}</model>", 1), "toy.sdf")
+    assert listed(file)["includes"] == {"MBARI%20Tethys%20LRAUV"}
+
+
 def test_a_urdf_of_uuv_simulator(tmp_path: Path) -> None:
     text = (DATA / "rexrov.urdf").read_text(encoding="utf-8")
     more = "<scaling_damping>2</scaling_damping><type>fossen</type>"

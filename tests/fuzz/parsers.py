@@ -48,6 +48,7 @@ ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"
 SAMPLES = ROOT / "tests" / "tables" / "samples"
 MODELS = ROOT / "tests" / "formats" / "data"
+RECORD = "t [s], x [m], y [m], psi [deg], -dr [deg], -"
 MOST_LINES, LONGEST_LINE = 60, 2000
 
 
@@ -152,6 +153,7 @@ def parsers() -> dict[str, Parser]:
         "Moments about midships, 2.1 m aft of nose. LBP = 4.26086 m, LOA 4.356 m",
         "Carriage speed 3.046 m/s, fresh water of 15 deg C, density 999.1 kg/m^3",
         "x aft, y starboard, z up; drift angle positive to port, beta = atan2(-v, u)",
+        "Model scale 1:31.6, forces with inertia, ship speed in knots, mit Trägheitsanteil, λ = 25.0",
         "Forces made dimensionless by 0.5*rho*U^2*L^2, rotating arm of radius 15.2 m, primes of the wetted area 5.98 m2",
     )
     models = tuple(p for p in sorted(MODELS.iterdir()) if p.name != "nps_auv2.m")
@@ -173,6 +175,7 @@ def parsers() -> dict[str, Parser]:
         "mapping": Parser(_corpus("mapping.toml"), saved_mapping),
         "boxes": Parser(_corpus("boxes.toml"), read_boxes),
         "motion": Parser(_corpus("motion.csv"), _motion),
+        "record": Parser(_corpus("record.txt"), lambda p: read_series(p, _vehicle(), RECORD)),
         "foam": Parser(_shipped("tests/tables/samples/openfoam/arm_srf"), _foam),
         "mesh": Parser(_corpus("body.stl", "binary.stl", "body.obj", "body.ply", "binary.ply", "body.glb", "body.dae"), load),
         "job": Parser(_corpus("job.json"), lambda p: read_job(p.parent)),
@@ -190,7 +193,8 @@ def parsers() -> dict[str, Parser]:
         "typed": Parser((), lambda t: typed(t, "speed", "--speed"), ("3 kn", "1.5 m/s", "2")),
         "axes": Parser((), parse_axes, ("FRD", "flu", "forward, port, up", "aft,starboard,up")),
         "sign": Parser((), lambda t: angle_sign("beta", t), ("v = -U sin(beta)", "v = +U sin(beta)")),
-        "column": Parser((), read_column_map, ("Y [N]", "-N' ", "beta [deg]", "Y +- [N]", "label")),
+        "column": Parser((), read_column_map, ("Y [N]", "-N' ", "beta [deg]", "Y +- [N]", "label", "U [kn ship 31.6]", "X [N s^2/m^2]", "rps [1/s]", "J [-]")),
+        "columns": Parser((), lambda t: read_series(CORPUS / "record.txt", _vehicle(), t), (RECORD, "t [s], u [m/s], v [m/s], r [rad/s], -, -"), share=0.3),
         "setting": Parser((), lambda t: read_in(*t.partition("=")[::2]), ("axes.reference_point=-2.1 from nose", "scaling.length=4.3 m LOA", "axes.frame=CFD", "drift/table.arm_point=midship", "conditions.speed=[1, 2]")),
         "names": Parser((), lambda t: name_pattern(t).conditions("b-3_r0.2_fine"), ("b{beta:deg}_r{r:rad/s}_{grid}", "{run}_{speed:m/s}")),
         "term": Parser((), lambda t: read_term(t, "k"), ("Yv|v|", "N|v|r'", "Zw", "X0", "Mqdot")),

@@ -17,8 +17,9 @@ from coeflab.fits.rows.regression import Area, response
 from coeflab.fits.uncertainty.budget import budgets_of
 from coeflab.fits.uncertainty.grid_studies import grid_studies
 from coeflab.law.symbols import MOTIONS
+from coeflab.study.checks.grids import finer, in_use
 from coeflab.tables.assumptions import CODE
-from coeflab.tables.force_table import COARSER, ForceTable
+from coeflab.tables.force_table import COARSER, FINER, ForceTable
 from coeflab.tables.settings import read_settings
 from tests.conftest import SECTIONS
 
@@ -330,7 +331,10 @@ def test_the_finest_grid_of_each_condition_enters_fits_without_a_selection(sever
     assert {e.reason for e in table.exclusions} == {COARSER}
     assert len(table.exclusions) == 18
     assert table.exclusions[0].line == 3
-    assert table.notes == ("18 rows of coarser grids left to the grid study",)
+    assert not list(in_use(table))
+    (found,) = finer(table)
+    assert found["need"] == "no"
+    assert found.statistic == pytest.approx(1.25 * 0.02 / 1.02, rel=1e-6)
 
 
 def test_every_condition_has_its_grid_study_and_u95_holds_it(several_grids: ForceTable) -> None:
@@ -346,14 +350,52 @@ def test_every_condition_has_its_grid_study_and_u95_holds_it(several_grids: Forc
     assert budget.part("grid") == pytest.approx(abs(budget.value) * 1.25 * 0.02 / 1.02, rel=1e-6)
 
 
-def test_a_selection_comes_before_the_finest_grid_and_an_unusable_cell_gives_way(read_table: Read) -> None:
+def test_a_selection_comes_before_the_shared_grid_and_an_unusable_cell_gives_way(read_table: Read) -> None:
     csv = "beta [deg],cells,set,Y [N],X [N],uncertain\n4,100,A,1,2,\n4,300,A,1,2,Y\n4,900,B,1,2,\n6,100,A,1,2,\n6,,A,1,2,\n"
     select = 'select = { set = "A", reason = "one set" }'
     table = read_table(csv, table=f'cells = "cells"\nlabels = ["set"]\n{select}')
     assert table.usable["Y"].tolist() == [True, False, False, True, True]
-    assert table.usable["X"].tolist() == [False, True, False, True, True]
-    assert [(e.row, e.component) for e in table.exclusions if e.reason == COARSER] == [(0, "X")]
-    assert table.notes == ("1 rows of coarser grids left to the grid study; grids in use have 100 to 300 cells",)
+    assert table.usable["X"].tolist() == [True, False, False, True, True]
+    assert [(e.row, e.component) for e in table.exclusions if e.reason == FINER] == [(1, "")]
+    (found,) = in_use(table)
+    assert (found["count"], found["cells"]) == (1, "100")
+
+
+@pytest.mark.parametrize(
+    ("more", "need"),
+    [((1.024,), "unknown"), ((1.024, 1.06), "diverges"), ((1.024, 1.027), "wide"), ((1.005, 1.0055), "no")],
+)
+def test_a_condition_on_finer_grids_is_for_the_grid_study_only(
+    read_table: Read, more: tuple[float, ...], need: str
+) -> None:
+    """The fit stays on the grid that most conditions share, whose cells differ a little from angle to angle."""
+    beta, cells = (
+        np.array([-9, -6, -3, 0, 3, 6, 9.0, *[6.0] * len(more)]),
+        [1e6 * k for k in (1, 1.01, 1.02, 1.03, 1.04, 1.05, 1.06)],
+    )
+    cells += [2.1e6, 4.2e6][: len(more)]
+    v = np.sin(np.radians(beta))
+    force = 0.5 * DENSITY * SPEED**2 * LENGTH**2 * (-0.03 * v - 0.2 * v**3)
+    force[7:] *= more
+    text = as_csv({"beta [deg]": beta, "n [-]": np.array(cells), "Y [N]": force}).replace("n [-]", "cells")
+    table = read_table(text, table='cells = "cells"')
+    np.testing.assert_array_equal(np.flatnonzero(table.usable["Y"]), range(7))
+    assert {(e.row, e.reason) for e in table.exclusions} == {(7 + i, FINER) for i in range(len(more))}
+    (apart,), (answer,) = in_use(table), finer(table)
+    assert (apart["count"], apart["cells"]) == (len(more), "1.03M")
+    assert (answer["need"], answer["setting"]) == (need, "6 deg of drift")
+    assert (answer["coarse"], answer["fine"]) == ("1.05M", "2.1M")
+    assert answer["change"] == pytest.approx(100.0 * (more[0] - 1.0), rel=1e-9)
+    fit = FITS.load("slope_at_origin").fit([table], table.scaling, {})
+    assert abs(fit.coefficients["Yv"].value or 0.0) == pytest.approx(0.03, rel=1e-6)
+
+
+def test_of_grids_that_share_as_many_conditions_the_finer_is_in_use(read_table: Read) -> None:
+    text = "beta [deg],cells,Y [N]\n2,1000,1\n2,2000,1.1\n4,1000,2\n4,2000,2.1\n6,1000,3\n8,2000,4\n"
+    table = read_table(text, table='cells = "cells"')
+    assert table.usable["Y"].tolist() == [False, True, False, True, True, True]
+    (found,) = in_use(table)
+    assert (found.severity, found["count"], found["of"]) == (Severity.WARN, 1, 4)
 
 
 # ---- the page

@@ -65,7 +65,7 @@ ROWS = [
     ("v' [-],N\n0,1\n", ["line 1", 'column "N"', 'such as "N [N*m]"']),
     ("v',N [N*m]\n0,1\n", ['column "v\'"', 'such as "v\' [-]"']),
     ("beta [deg],Z (N)\n1,1\n", ['the unknown column "Z (N)"', "expected one of alpha, beta, U"]),
-    ("beta [deg],thrust [N]\n1,1\n", ["line 1", 'the unknown column "thrust [N]"', "labels or ignore"]),
+    ("beta [deg],torque [N]\n1,1\n", ["line 1", 'the unknown column "torque [N]"', "labels or ignore"]),
     ("beta [deg],point\n1,1\n", ["line 1: found no force column", "at least one of X Y Z K M N"]),
     ("beta [rad],Y [N]\n1,1\n4,1\n", ["line 3", 'column "beta [rad]"', "angle of 4 rad", "half a turn", "beta [deg]"]),
     ("delta_r [rad],Y [N]\n15,1\n", ["line 2", 'column "delta_r [rad]"', "write delta_r [deg]"]),

@@ -11,10 +11,14 @@ import pytest
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
+from coeflab.tables.column_map import read_column_map
+from coeflab.tables.imported import _table
 from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.mapping import assigned
 from coeflab.tables.parts import read_parts
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import Setting
 from coeflab.tables.several_tables import complaints_of, interpreted_together, questions_together
 from coeflab.tables.vocabulary import vocabulary, words_of
 
@@ -242,3 +246,132 @@ def test_a_stranger_that_may_be_a_setting_is_asked_however_many_there_are() -> N
     units, values = ("deg", "N", "", "", ""), (beta, -3.0 * beta, levels, coupled, free)
     found = proposals(table(*(column(*c) for c in zip(names, units, values, strict=True))))
     assert [n for n, p in zip(names, found, strict=True) if p.text == "ignore"] == ["zz"]
+
+
+def test_a_velocity_of_zeros_beside_angles_says_nothing(tmp_path: Path) -> None:
+    rows = "".join(f"{a},0,2,{-3 * a}\n" for a in (-4, 0, 4))
+    (tmp_path / "zeros.csv").write_text(f"beta [deg],w,U [m/s],Y [N]\n{rows}")
+    parts, _ = read_parts(tmp_path / "zeros.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    assert not found.complaints
+    assert [p.text for p in found.proposals] == ["beta [deg]", "ignore", "U [m/s]", "Y [N]"]
+    both = table(column("beta", "deg"), column("w", "m/s"), column("Y", "N"))
+    assert proposals(both)[1].text == "w [m/s]"
+
+
+def test_a_number_of_froude_beside_forces_is_no_normal_force() -> None:
+    given = table(column("Fn", "", np.full(5, 0.2)), column("beta", "deg"), column("Y", "N"))
+    assert proposals(given)[0].text == "ignore"
+    assert proposals(table(column("Fn", "", ANGLES), column("beta", "deg"), column("Y", "N")))[0].text == ""
+
+
+@pytest.mark.parametrize("unit", ["N s^2/m^2", "N s²/m²", "N*s^2/m^2", "Ns2/m2", "N/(m/s)^2", "N s^2 m^-2"])
+def test_a_force_over_the_square_of_the_speed(unit: str) -> None:
+    said = read_column_map(f"Y [{unit}]")
+    assert (said.per_speed, said.unit, str(said)) == (True, "N", "Y [N s^2/m^2]")
+    assert proposed(column("Fy", unit)).text == "Y [N s^2/m^2]"
+    assert read_column_map(f"N [{unit.replace('N', 'N m', 1)}]").unit == "N m"
+
+
+def test_a_table_by_the_square_of_the_speed_is_in_newton(tmp_path: Path) -> None:
+    """Y = K U^2: 3 N s^2/m^2 at 2 m/s are 12 N; in place and as imported."""
+    (tmp_path / "raw.txt").write_text("beta;U;Fy\n(deg);(m/s);(N s^2/m^2)\n-4;2;3\n0;1;0\n4;2;-3\n")
+    raw = IMPORTERS.load("table").raw(tmp_path / "raw.txt", {"delimiter": "semicolon"})
+    mapping = {"beta": "beta [deg]", "U": "U [m/s]", "Fy": "Y [N s^2/m^2]"}
+    known = assigned(raw, {name: read_column_map(text) for name, text in mapping.items()})
+    settings = {"conditions.speed": Setting("1 m/s", ""), "scaling.length": Setting("4 m", "")}
+    written = _table(raw, known, settings, {})[0].decode().split("\n")
+    assert written[1:3] == ["point,beta [deg],U [m/s],Y [N]", "line 3,-4.0,2.0,12.0"]
+
+
+def test_a_name_that_reads_as_no_number_is_a_name(tmp_path: Path) -> None:
+    """Na, the yaw moment of a balance, is no "n.a."; a head may hold a few numbers where names stand over numbers."""
+    (tmp_path / "na.txt").write_text(
+        "Incidence\tX\tZ\tMa\tNa\n" + "".join(f"{a}\t-1\t{-a}\t{2 * a}\t0\n" for a in (-4, 0, 4))
+    )
+    raw = IMPORTERS.load("table").raw(tmp_path / "na.txt", {})
+    assert [c.name for c in raw.columns] == ["Incidence", "X", "Z", "Ma", "Na"]
+    rows = "".join(f"{a},{a / 10},0.01,{-a},0,0,0,0.25\n" for a in (-4, -2, 0, 2, 4))
+    (tmp_path / "polar.csv").write_text(f"alpha,CL,CD,Cm,0,0,XCp,Bot\n{rows}")
+    raw = IMPORTERS.load("table").raw(tmp_path / "polar.csv", {})
+    assert [c.name for c in raw.columns[:5]] == ["alpha", "CL", "CD", "Cm", "0"]
+    assert len(raw) == 5
+
+
+def test_a_row_of_labels_and_numbers_is_no_head(tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_text("run,model,alpha,CL\nA1,hull,-4,0.2\nA2,hull,0,0\nA3,hull,4,-0.2\n")
+    raw = IMPORTERS.load("table").raw(tmp_path / "runs.csv", {})
+    assert [c.name for c in raw.columns] == ["run", "model", "alpha", "CL"]
+    assert len(raw) == 3
+
+
+def test_of_a_force_and_its_coefficient_the_first_is_taken_and_other_axes_are_no_settings() -> None:
+    """Balances write coefficients and forces, in two sets of axes, beside the raw angle: one question for each quantity is enough."""
+    names = ("Incidence", "Inc_brut", "Cx", "Cxa", "Cz", "Cza", "X", "Xa", "Z", "Za", "Qo")
+    values = (
+        ANGLES,
+        1.01 * ANGLES,
+        -0.02 + 0.0 * ANGLES,
+        ANGLES**2,
+        ANGLES,
+        1.1 * ANGLES,
+        ANGLES**3,
+        ANGLES,
+        ANGLES,
+        ANGLES,
+        np.ones(5),
+    )
+    found = proposals(table(*(column(n, "", v) for n, v in zip(names, values, strict=True))))
+    texts = {n: p.text for n, p in zip(names, found, strict=True)}
+    assert {n for n, text in texts.items() if text == "ignore"} == {
+        "Inc_brut",
+        "Cxa",
+        "Cza",
+        "X",
+        "Xa",
+        "Z",
+        "Za",
+        "Qo",
+    }
+    assert texts["Cz"] == "Z [coefficient A=?]"
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("AoA,CL_SST,CD_SST,CL_XFOIL,CD_XFOIL", "CL_SST"),
+        ("cells,foil,far,Cl,Cd,res", "no angle"),
+    ],
+)
+def test_what_one_table_cannot_say_is_refused_with_the_names_to_give(tmp_path: Path, head: str, words: str) -> None:
+    width = head.count(",") + 1
+    (tmp_path / "t.csv").write_text(
+        head + "\n" + "".join(",".join(f"{i + k / 7:.3f}" for k in range(width)) + "\n" for i in range(4))
+    )
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    (why,) = found.complaints
+    assert words in why.found
+    assert "--map" in why.advice
+
+
+def test_a_speed_without_a_unit_and_forces_of_zeros_ask_no_conditions(tmp_path: Path) -> None:
+    rows = "".join(f"{a},20,{a / 10},0.02,0\n" for a in (-4, -2, 0, 2, 4))
+    (tmp_path / "t.csv").write_text(f"alpha,Vitesse,Cz,Cx,Y\n{rows}")
+    keys = open_keys(tmp_path / "t.csv")
+    assert {"conditions.speed", "conditions.density"}.isdisjoint(keys)
+    assert "columns.units" in keys
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("alpha,Cl\n-4,-0.4\n0,0\n4,0.4\n", "lift without drag"),
+        ("alpha,Vitesse,Fx (N),Fz (N)\n-4,0,1,-0.4\n0,0,1,0\n4,0,1,0.4\n", "a speed of zero throughout"),
+    ],
+)
+def test_what_no_answer_mends_is_refused_before_any_question(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "t.csv").write_text(text)
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    assert words in [why.found for why in found.complaints]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.time_record import record_over_time
+from coeflab.tables.time_record import clock, record_over_time
 
 T = np.arange(0.0, 8.0, 0.5)
 R = 0.2
@@ -33,6 +33,28 @@ def test_positions_are_no_forces(names: str) -> None:
     (why,) = record_over_time(raw(made))
     assert "a record over time" in why.found
     assert "identify" in why.advice
+
+
+def test_positions_that_move_where_the_heading_points_are_no_forces() -> None:
+    psi = {"psi": np.degrees(R * T)}
+    moved = {n: PATH[n] for n in ("t", "X", "Y")}
+    assert [why.column for why in record_over_time(raw(moved | psi))] == ["X"]
+    swept = {
+        "t": T,
+        "X": -3.0 - 0.01 * (4.0 * T - 16.0) ** 2,
+        "Y": 4.0 * T - 16.0,
+    }  # a sweep of 16 angles, one after the other
+    assert not list(record_over_time(raw(swept | {"psi": 4.0 * T - 16.0})))
+
+
+@pytest.mark.parametrize("names", [("t", "psi"), ("Zeit (s)", "Kurs"), ("column 1", "column 2")])
+def test_a_clock_without_a_force_is_a_record(names: tuple[str, str]) -> None:
+    time, many = names[0], np.arange(60.0)
+    columns = tuple(RawColumn(n, "", v) for n, v in zip(names, (many, np.sin(many)), strict=True))
+    table = RawTable(Path("run.txt"), columns, tuple(range(2, 62)))
+    assert f"{time} rises from 0 to 59" in clock(table)
+    back = RawTable(Path("run.txt"), (RawColumn(names[0], "", many[::-1]), columns[1]), tuple(range(2, 62)))
+    assert not clock(back)
 
 
 def test_forces_over_time_stay_forces() -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import typed
 from coeflab.core.text.xml import numbers, read_xml
 from coeflab.core.types import Array, Faces
 
@@ -186,8 +187,8 @@ def _file(uri: str, path: Path) -> Path:
     below = [inside, Path(*inside.parts[1:])] if found else [inside]
     for folder in (path.parent, *path.parent.resolve().parents[:4]):
         for one in below:
-            if (folder / one).is_file():
-                return folder / one
+            if (there := typed(folder / one)).is_file():
+                return there
     raise InputError(
         f"the mesh {shown(uri)}, which is not there", "a mesh beside the model, or below one of the four folders above it",
         file=path, advice="Copy the meshes next to the model, or name them from its folder.",

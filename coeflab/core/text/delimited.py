@@ -33,19 +33,22 @@ class Cells:
         Line number of the first row of data.
     rows : tuple of tuple of str
         One cell per header.
+    lines : tuple of int
+        Of every row, where they do not follow each other.
     """
 
     file: Path
     headers: tuple[Header, ...]
     first_line: int
     rows: tuple[tuple[str, ...], ...]
+    lines: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         return len(self.rows)
 
     def line(self, row: int) -> int:
         """Line number of a row."""
-        return self.first_line + row
+        return self.lines[row] if self.lines else self.first_line + row
 
     def position(self, name: str) -> int:
         """Position of a column by its name without unit."""

@@ -199,6 +199,9 @@ def _left_out(root: Element, link: GzLink, held: Assembly, read_too: Sequence[El
         *other_plugins(name, plugins, plugin),
         *left_out(name, "masses", held.unplaced),
         *left_out(name, "joints", joints),
+        *left_out(
+            name, "includes", [(e.text or "").strip().rpartition("/")[2] for e in root.iterfind(".//include/uri")]
+        ),
     ]
     if system is not GZ_SIM:
         out.append(Finding.of("model.system", name, Severity.NOTE, name=system.name, source=system.source))

@@ -52,6 +52,7 @@ def command(
     Write CSV and figures with --out. Exit code 1 when a motion ended early.
     """
     from coeflab.core.files import write_all
+    from coeflab.core.texts import remark
     from coeflab.glider import tables as glide_tables
     from coeflab.glider.flight import files, fly
 
@@ -66,6 +67,8 @@ def command(
             if any(p.turns for p in f.run.glider.phases):
                 show.table(glide_tables.spirals(f.run.glider, f.spirals))
             show.table(glide_tables.phases(f.run))
+            for found in f.run.glider.findings:
+                show.marked(str(found.severity), remark(found))
             if basis:
                 show.table(glide_tables.basis(f.run.glider))
         for name, new in changed.items():
@@ -76,12 +79,15 @@ def command(
 
 def as_json(flown: Flown) -> dict[str, Any]:
     """Steady glides and phases of one glider, SI and radians."""
+    from coeflab.report.as_json.findings import finding_as_data
+
     run = flown.run
     return {
         "name": run.glider.name,
         "title": run.glider.title,
         "citation": run.glider.citation,
         "basis": dict(run.glider.basis),
+        "findings": [finding_as_data(x) for x in run.glider.findings],
         "steady_glides": [
             {
                 "phase": s.phase,

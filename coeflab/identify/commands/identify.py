@@ -31,6 +31,11 @@ def command(
         autocompletion=complete.parameters,
         help="Parameter file: mass, inertia, scaling, and what to compare with.",
     ),
+    columns: str = typer.Option(
+        "",
+        metavar="NAMES",
+        help='All columns of a file without a header, or under other names: "t [s], x [m], y [m], -psi [deg], -"; u, v, r follow of x, y, psi.',
+    ),
     thruster: str = typer.Option(
         "", metavar="NAME", help="A bench test of this thruster: thrust and torque over its command, no motion."
     ),
@@ -76,7 +81,7 @@ def command(
     asked: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
         "added_mass": "fit" if fit_added_mass else "known", "optimizer": optimizer, "resamples": resamples, "seed": seed,
-        "accelerations": accelerations,
+        "accelerations": accelerations, "columns": columns,
     }  # fmt: skip
     if window:
         asked["window"] = window
@@ -139,6 +144,7 @@ def as_json(found: Identified) -> dict[str, Any]:
     """Every candidate with its values, absent ones null, and the works that the method rests on."""
     from coeflab.core.provenance import work
     from coeflab.identify.identify import citations
+    from coeflab.report.as_json.findings import finding_as_data
 
     return {
         "name": found.name,
@@ -163,6 +169,7 @@ def as_json(found: Identified) -> dict[str, Any]:
             for b in found.balances
         ],
         "statements": list(found.statements),
+        "findings": [finding_as_data(f) for f in found.findings],
         "citations": [work(key) for key in citations],
     }  # fmt: skip
 

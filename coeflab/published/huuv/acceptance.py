@@ -16,7 +16,16 @@ from coeflab.published.huuv.figures import CANNOT, paper_figures, tuning_figures
 from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
 from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, parameter_file, read_huuv, thrust
-from coeflab.published.huuv.tuning import ERRORS, IN_WORDS, hidden_rows, origin_rows, pool_rows, tuned, tuned_rows
+from coeflab.published.huuv.tuning import (
+    ERRORS,
+    IN_WORDS,
+    hidden_rows,
+    origin_rows,
+    pool_rows,
+    predicted_rows,
+    tuned,
+    tuned_rows,
+)
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -60,6 +69,7 @@ def acceptance() -> Acceptance:
             origin_rows(huuv),
             tuned_rows(halves[MATLAB]),
             pool_rows(halves[TRACKER]),
+            predicted_rows(huuv),
             hidden_rows(huuv, halves[MATLAB]),
             *stated_rows(five, whole),
             *moving_rows(five, dives),

@@ -59,6 +59,18 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
     return Table(title, ("column", "unit", "range", "is"), tuple(rows), notes, frozenset({0, 1, 2, 3}))
 
 
+def by_format(raw: RawTable, proposed: Sequence[Proposal]) -> str:
+    """Columns that fits use, and those of zeros throughout, in a sentence."""
+    used = [
+        c
+        for c, one in zip(raw.columns, proposed, strict=True)
+        if one.text not in ("ignore", "label", "uncertain", "point")
+    ]
+    zeros = [c.name for c in used if not np.any(np.nan_to_num(c.values))]
+    said = f"{len(raw)} rows of {', '.join(c.name for c in used if c.name not in zeros)}"
+    return f"{said}; zeros throughout: {', '.join(zeros)}." if zeros else f"{said}."
+
+
 def of_run(run: Run) -> tuple[Table, ...]:
     """One run: its conditions with their places, and the columns of its history."""
     words = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]

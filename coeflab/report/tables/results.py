@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.axes import point_in_words
+from coeflab.core.finding import Severity
 from coeflab.core.provenance import work
 from coeflab.core.table import (
     ABSENT,
@@ -233,6 +234,15 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
             f"beside it, for a move takes its {listed([primed(n) for n in needed])}."
         )
     return tuple(out)
+
+
+def answers(study: Study) -> tuple[str, ...]:
+    """Which rows are for a grid study only, whether a finer grid is needed, the rate of self-propulsion; a sentence each."""
+    found = [
+        c for c in study.checks if c.name in ("grids", "propeller") and c.severity in (Severity.NOTE, Severity.PASS)
+    ]
+    several = len({c.subject for c in found}) > 1
+    return tuple(f"{f'{c.subject}: ' * several}{c.statistic}." for c in found)
 
 
 def weight(c: Comparison) -> float:

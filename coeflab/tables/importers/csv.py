@@ -18,7 +18,7 @@ from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import FORCES, WIND
+from coeflab.tables.column_map import FORCES, PROPELLER, WIND
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
@@ -36,6 +36,9 @@ EXAMPLES = {
     **dict.fromkeys(ANGULAR, "rad/s"),
     "R": "m",
     "density": "kg/m^3",
+    "rps": "rps",
+    "J": "-",
+    "thrust": "N",
 }
 PLAIN = {"U": "speed", "R": "length", "density": "density"}  # roles of their own, by dimension
 
@@ -64,6 +67,8 @@ def _kind(name: str) -> _Kind | None:
         return None
     if plain in ANGLES:
         return _Kind("angle", "angle", plain, primed)
+    if plain in PROPELLER:
+        return _Kind("propeller", PROPELLER[plain], plain, primed)
     if plain in CONTROL_COLUMNS:
         return _Kind("control", "angle", CONTROL_COLUMNS[plain], primed)
     return _Kind(plain, PLAIN[plain], plain, primed) if plain in PLAIN else None
@@ -101,7 +106,7 @@ def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
-    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *FORCES))
+    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *FORCES, *PROPELLER))
     return InputError(
         f"the unknown column {shown(header.text)}",
         f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
@@ -114,7 +119,9 @@ def _unknown(cells: Cells, header: Header) -> InputError:
 
 def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
     """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
-    given: dict[str, dict[str, Array]] = {r: {} for r in ("angle", "control", "error", "force", "velocity", *PLAIN)}
+    given: dict[str, dict[str, Array]] = {
+        r: {} for r in ("angle", "control", "error", "force", "velocity", "propeller", *PLAIN)
+    }
     labels: dict[str, list[str]] = {}
     headers: dict[str, str] = {}
     primes: list[tuple[_Kind, Array]] = []
@@ -164,6 +171,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         row_labels=tuple(labels.get(POINT, ())),
         radius=given["R"].get("R"),
         density=density,
+        propeller=given["propeller"],
     )
 
 

@@ -77,13 +77,14 @@ _INERTIA = re.compile(
 )
 _TAKEN_OR_HELD = re.compile(
     r"(?i)(?<![^\W_])(?P<un>un|non-?|in)?(?:(?P<taken>correct(?:ed|ions?)|subtracted|removed|deducted|compensated|korrigiert|korrektur|abgezogen"
-    r"|bereinigt|corrig[ée]e?s?|corrections?|soustrait\w*|d[ée]duit\w*)|(?P<held>inclu(?:ded?|des|ding)|contain(?:s|ed|ing)?|enth(?:alten|ält)|inklusive"
+    r"|bereinigt|herausgerechnet|entfernt|eliminiert|eliminated|corrig[ée]e?s?|corrections?|soustrait\w*|d[ée]duit\w*)|(?P<held>inclu(?:ded?|des|ding)|contain(?:s|ed|ing)?|enth(?:alten|ält)|inklusive|inkl|incl|samt|einschlie(?:ß|ss)lich"
     r"|inclus\w*|comprise?s?|contien\w+))(?![^\W_])"
 )
 _NOT = re.compile(r"(?i)(?<![^\W_])(?:not|no|never|without|nicht|keine?\w*|ohne|sans|pas|non|aucune?)(?![^\W_])|n't\b")
 _FREE_OF = re.compile(
     rf"(?i)(?<![^\W_])(?:without|free\s+of|ohne|sans)\s+(?:the\s+|model\W?s?\s+|own\s+|l')*{_INERTIA.pattern[4:]}(?!\s*korrekt|\s+correct)"
 )
+_WITH = re.compile(rf"(?i)(?<![^\W_])(?:with|mit|avec)\s+(?:the\s+|model\W?s?\s+|own\s+|l')*{_INERTIA.pattern[4:]}")
 LONGEST = 500
 POINTED = Marks()
 _KINDS = {
@@ -205,6 +206,9 @@ def _holds_inertia(clause: str) -> Iterator[bool]:
     if not _INERTIA.search(clause):
         return
     verbs = list(_TAKEN_OR_HELD.finditer(clause))
+    if not verbs and (m := _WITH.search(clause)):
+        yield not re.search(r"(?i)[ck]orr", m[0])  # mit Trägheitskorrektur
+        return
     if not verbs and _FREE_OF.search(clause):
         yield False
     begin = 0

@@ -14,6 +14,11 @@ from coeflab.core.units import quantity
 from coeflab.tables.dialect import Marks, one_reading
 from coeflab.tables.raw_table import Stated
 
+SCALE = "model.scale"  # no key of campaign.toml: the ship over its model
+_SCALE = re.compile(
+    r"(?i)(?<![^\W_])(?:(?:model\s+)?scale(?:\s+(?:factor|ratio))?|λ|lambda|ma(?:ß|ss)stab|[ée]chelle)\s*(?:\([^()]{1,12}\)\s*)?(?:=|:|of|is)?\s*"
+    r"(?:1\s*[:/]\s*)?(?P<scale>[1-9]\d{0,3}(?:[.,]\d{1,4})?)(?![\d:/%]|\s*(?:kN|N|m|deg|m/s)\b)"
+)
 BASIS = "basis.area"  # no key of campaign.toml: what the source's coefficients were divided by, beside 1/2 rho U^2
 SIZES = {
     "T": "basis.draught", "B": "basis.breadth", "D": "basis.diameter", "V": "basis.volume",
@@ -101,6 +106,10 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
         for name, pattern in _SIZE.items():
             if (m := pattern.search(text)) and (size := _in_si(m["number"], m["unit"], _POWERS[name], marks)):
                 out.setdefault(SIZES[name], Stated(size, f'{place}: "{" ".join(m[0].split())}"', offered=True))
+        if m := _SCALE.search(text):
+            out.setdefault(
+                SCALE, Stated(float(m["scale"].replace(",", ".")), f'{place}: "{" ".join(m[0].split())}"', offered=True)
+            )
         found = _of_formula(text) or _of_sentence(text)
         if found:
             basis, words = found
