@@ -18,8 +18,8 @@ from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulation import simulate as carried_out
 from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.vehicle import THRUST
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import THRUST
 
 __all__ = ["Motion", "Simulation", "carried_out", "manoeuvres", "simulate"]
 

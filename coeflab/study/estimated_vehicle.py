@@ -477,8 +477,8 @@ def campaigns_named(name: str) -> list[Path]:
         One is not there.
     """
     try:
-        alone = Path(name).exists()
+        alone = "," not in name or Path(name).exists()
     except OSError:  # longer than any path can be
         alone = False
-    names = [name] if alone else [n.strip() for n in name.split(",")]
-    return [located(n, "cfd_data") for n in names if n]
+    names = [name] if alone else [n.strip() for n in name.split(",") if n.strip()]
+    return [located(n, "cfd_data") for n in names or [name]]

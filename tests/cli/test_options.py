@@ -53,7 +53,7 @@ WRONG: dict[str, tuple[str, ...]] = {
     "KEY=VALUE": PAIR, "COLUMN=WHAT": PAIR, "NAME=VALUE": PAIR, "SYMBOL=VALUE": PAIR, "NAME=BOX": PAIR, "EQUATION": ("x", "Yv", "=", "Yv=Yv", LONG),
     "PATTERN": ("{", "b{beta}", "b{beta:parsec}", "{}"), "LENGTH": MEASURE, "SPEED": MEASURE, "MASS": MEASURE, "VOLUME": MEASURE, "TIME": MEASURE,
     "VALUE": MEASURE, "SHARE": MEASURE, "X,Y,Z": TRIPLE, "IX,IY,IZ": TRIPLE, "N,E,D": TRIPLE, "M,M,..": ("x", "nan", "-1", "1e999", "1,,2"),
-    "ANGLE": MEASURE, "RATE": (*NUMBER, "-1"), "FIGURE": NAME, "TABLE": NAME,
+    "ANGLE": MEASURE, "ANGLE,RATE": (*MEASURE, "30 deg, x", "30 deg, -1 deg/s", "1 m, 1 deg/s"), "RATE": (*NUMBER, "-1"), "FIGURE": NAME, "TABLE": NAME,
     "NAMES": ("x", "t [s]", "t [parsec], u [m/s]", "-,-,-,-,-", LONG),
     "ADDRESS": ("x", "tcp://", LONG), "port": ("x", "-1", "65536", "1.5"),
 }  # fmt: skip

@@ -164,7 +164,7 @@ def test_a_plate_across_needs_a_length_of_the_primes(coeflab: Run, tmp_path: Pat
         ((BODY, "--mass", "heavy"), '"--mass"'),
         ((BODY, "--mass", "-1"), "above zero"),
         ((BODY, "--mass", "nan"), '"--mass": found "nan"; expected a finite number'),
-        ((BODY, "--mass", "22", "--density", "1.025"), "of 1.025 kg/m^3"),
+        ((BODY, "--mass", "22", "--density", "1.025"), "1.025 kg/m^3, which is thin air"),
         ((BODY, "--cg", "1,2"), "three numbers"),
         ((BODY, "--to", "simulink"), "simulink"),
         (("nowhere",), "nowhere"),
