@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from coeflab.api.documents import report_of, studied, written
+from coeflab.bodies.simplify.source import subject
 from coeflab.core.files import shipped, write_atomically
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
@@ -19,7 +20,7 @@ from coeflab.report.figures.svg import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.checking import checked
-from coeflab.study.estimated_vehicle import asked, from_shape, subject
+from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedTow, Study

@@ -81,7 +81,7 @@ def test_numbers_stay_while_the_form_changes(drift: Path, tmp_path: Path, monkey
     answers = ["1=CFD", "3=4 LOA", "2=-2 from nose; 5=2", "4=1.025", "4=998.2", ""]
     done = answered(monkeypatch, answers, "import", drift, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
-    assert 'is it g/cm^3? Then write "1.025 g/cm^3"' in flat(done.output)
+    assert 'Is it g/cm^3? Then write "1.025 g/cm^3"' in flat(done.output)
     table = table_of(tmp_path / "out")
     assert (table.conditions.density, table.conditions.speed, table.scaling.length) == (998.2, 2.0, 4.0)
 

@@ -162,6 +162,7 @@ def test_no_unit_of_what_is_no_symbol(symbol: str) -> None:
 
 # Products of density, one half and a power of a length that are no unit of the prime system: lines, reason.
 NO_PRIMES = {
+    "vehicle/criteria.py": (1, "half rho L^3 of a righting moment, which no SNAME symbol has"),
     "tables/low_aspect.py": (1, "forces of a table that is not read yet: its columns, before there is a Scaling"),
     "tables/mapping.py": (1, "dynamic pressure on the reference area that a person states for a coefficient"),
     "tables/openfoam_forces.py": (1, "dynamic pressure on the Aref that forceCoeffs states, at its magUInf"),

@@ -333,9 +333,9 @@ def test_a_rudder_beyond_its_limit_is_refused() -> None:
 
 def test_every_manoeuvre_is_tried_here() -> None:
     assert set(MANOEUVRES.names()) == {
-        "depth_change", "free_decay", "glide", "medium_change", "pull_out", "spiral", "steady_motion", "stop",
+        "depth_change", "free_decay", "glide", "medium_change", "pull_out", "spiral", "steady_motion", "stern_plane_jam", "stop",
         "straight_run", "turning_circle", "zigzag",
-    }  # fmt: skip  # medium_change in test_media.py
+    }  # fmt: skip  # medium_change in test_media.py, stern_plane_jam in a file of its own
 
 
 def test_a_steady_motion_holds_a_helix() -> None:

@@ -8,8 +8,8 @@ from multiprocessing import get_all_start_methods
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.report import content as in_parallel
-from coeflab.report.content import begun
+from coeflab.report import workers as in_parallel
+from coeflab.report.workers import begun
 
 copying = pytest.mark.skipif("fork" not in get_all_start_methods(), reason="this system has no fork")
 

@@ -138,7 +138,7 @@ def test_the_mass_is_compared_with_the_displacement(bare: Body, mass: float | No
 def test_what_makes_a_light_vehicle_neutral_is_said_where_its_file_states_no_masses(bare: Body) -> None:
     light = weighed(bare, Stated(DISPLACED - 10.0), 998.2).said[0]
     assert "[[mass]] with ballast = true, or flooded = true" in light
-    assert light.endswith("and without --mass it is neutral")
+    assert light.endswith("and without a stated mass it is neutral")
     for mass in (DISPLACED, DISPLACED + 20.0):
         assert "[[mass]]" not in weighed(bare, Stated(mass), 998.2).said[0]
     part = MassPart("dry", "point", 300.0, np.zeros(3), np.zeros((3, 3)))

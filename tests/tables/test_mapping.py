@@ -414,7 +414,7 @@ def test_proposals_are_certain_only_where_nobody_can_mean_otherwise() -> None:
     assert not proposed(RawColumn("Y", "", one)).whole
     assert proposed(RawColumn("drift", "", np.array([-12.0, 12.0]))).text == "beta [deg]"
     assert proposed(RawColumn("drift", "", one)).text == "beta [?]"
-    assert proposed(RawColumn("Fy mean", "N", np.array([np.nan]), ("diverged",))).text == "label"
+    assert proposed(RawColumn("Fy mean", "N", np.array([np.nan]), ("diverged",))).text == ""
 
 
 def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:

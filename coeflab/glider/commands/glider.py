@@ -121,5 +121,4 @@ def _estimated(hull: object, density: float) -> float:
     found = cf.vehicle(cast("cf.Body", hull), density=density)
     if "Mq'" not in found:
         return 0.0
-    scale = 0.5 * density * found.file.scaling.length**4
-    return max(-float(found["Mq'"].value or 0.0) * scale, 0.0)
+    return max(-float(found["Mq'"].value or 0.0) * found.file.scaling.unit("Mq", density, 1.0), 0.0)
