@@ -70,16 +70,11 @@ class Marks:
         away = f"{self.thousands}{BLANKS} '’" if self.thousands else ""
         return {**dict.fromkeys(map(ord, away)), ord(self.decimal): ".", ord("d"): "e", ord("D"): "e"}
 
-    @cached_property
-    def _column(self) -> re.Pattern[str]:
-        return re.compile(rf"(?:{self._form.pattern})(?:\n(?:{self._form.pattern}))*+")
-
     def numbers(self, cells: Sequence[str]) -> Array | None:
         """Many cells at once, equal to `number` of each; None where one of them is anything but a finite number."""
-        joined = "\n".join(cells)
-        if not self._column.fullmatch(joined):
+        if not all(map(self._form.fullmatch, cells)):
             return None
-        values = np.array(list(map(float, joined.translate(self._kept).split("\n"))))
+        values = np.array(list(map(float, "\n".join(cells).translate(self._kept).split("\n"))))
         return values if np.isfinite(values).all() else None
 
     def number(self, cell: str) -> float | None:

@@ -19,7 +19,7 @@ _BINARY = re.compile(rb"\s*+List<(scalar|vector|symmTensor|tensor)>\s*+(\d{1,9})
 _LISTED = re.compile(rb"\s++(?:List<\w+>|\d)")
 COMPONENTS = {b"scalar": 1, b"vector": 3, b"symmTensor": 6, b"tensor": 9}
 _CLOSES = {"(": ")", "[": "]", "{": "}"}
-_INTO = re.compile(r"(?:\.\./)*+")
+_INTO = re.compile(r"(?:\.\./)*")
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from itertools import permutations
 
 from coeflab.core.axes import DIRECTIONS, FRAMES, parse_axes
 from coeflab.core.errors import AxesError
+from coeflab.core.text.patterns import atomic
 from coeflab.tables.raw_table import Stated
 
 TURN_OF_R = "columns.r"  # no key of campaign.toml: the side to which words say that a positive r turns
@@ -18,8 +19,8 @@ _BODY = re.compile(
 )
 _DIRECTION = re.compile(
     r"(?i)(?<![\w'])(?P<axis>[xyz])"
-    r"(?:[-\s=:>→+]|(?:axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_]))*+"
-    r"\b(?P<to>forwards?|fwd|ahead|bow|vorne?|voraus|bug|avant|aft|astern|backwards?|stern|hinten|achtern|heck|arri[èe]re|starboard|stbd|"
+    + atomic(r"[-\s=:>→+]|(?:axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_])", "between")
+    + r"\b(?P<to>forwards?|fwd|ahead|bow|vorne?|voraus|bug|avant|aft|astern|backwards?|stern|hinten|achtern|heck|arri[èe]re|starboard|stbd|"
     r"sb|right|steuerbord|stb|tribord|port|left|backbord|bb|b[âa]bord|downwards?|down|unten|bas|upwards?|up|oben|haut)\b"
 )
 _TO = {

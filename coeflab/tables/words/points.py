@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from coeflab.core.text.patterns import atomic
 from coeflab.core.units import quantity
 from coeflab.tables.dialect import Marks, one_reading
 from coeflab.tables.raw_table import Stated
@@ -19,22 +20,27 @@ CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place t
 _POINT = re.compile(
     r"(?i)\b(?:moments?\s+(?:are\s+)?(?:taken\s+)?(?:about|around|at|to|ref\w*(?:\s+to)?)|reference\s+point|moment\w*\s+(?:um|bezogen\s+auf)|"
     r"m\.?r\.?[pc]|(?:momenten)?bezugspunkt(?:\s+der\s+momente)?|point\s+de\s+r[ée]f[ée]rence|moments?\s+(?:au|par\s+rapport\s+[àa]u?))"
-    r"(?:[=:\s]|(?:is|ist|est|the|la|le|den|das|dem|at|bei|am)(?![^\W_]))*+(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
+    + atomic(r"[=:\s]|(?:is|ist|est|the|la|le|den|das|dem|at|bei|am)(?![^\W_])", "between")
+    + r"(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
     r"cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée])\b"
 )
 _MOMENTS_AT = re.compile(
     r"(?i)(?<![^\W_])(?:moments?\s+(?:(?:are|is|were|being|taken|given|computed|referred|reduced|r[ée]duits|calcul[ée]s|pris|bezogen)\s+)*"
     r"(?:about|around|at|to|ref\w*(?:\s+to)?|auf|au|en|[àa]|par\s+rapport\s+[àa]u?)|moment\w*\s+(?:um|bezogen\s+auf)|moment[es]*(?=\W*\d)|x_?(?:ref|mrp|mrc|cofr)"
     r"|(?:moments?\s+)?ref(?:erence|\.)?\s+(?:point|cent(?:re|er))|m\.?r\.?[pc]\.?|cofr|(?:momenten)?bezugspunkt|(?:point|centre)\s+de\s+r[ée](?:f[ée]rence|duction))"
-    r"(?:[\s=:,]|(?:x_?(?:ref|mrp|mrc|cofr)|is|ist|est|the|point|cent(?:re|er)|located|lies|liegt|at|of|for|moments?|der|den|dem|das|momente[ns]?|bei|le|la|un|du|des|situ[ée]|[aàx])(?!/|[^\W_]))*+"
+    + atomic(
+        r"[\s=:,]|(?:x_?(?:ref|mrp|mrc|cofr)|is|ist|est|the|point|cent(?:re|er)|located|lies|liegt|at|of|for|moments?|der|den|dem|das|momente[ns]?|bei|le|la|un|du|des|situ[ée]|[aàx])(?!/|[^\W_])",
+        "between",
+    )
 )
 _TRIPLE = re.compile(r"[(\[]\s*" + r"[\s,;]+".join([r"([-+]?(?:\d[\d.]*|\.\d+)(?:[eE][-+]?\d+)?)"] * 3) + r"\s*[)\]]")
 _AT = re.compile(
     r"(?i)(?P<share>x\s*/\s*l\w{0,2}\s*[=:]?\s*)?(?P<number>[-+\u2212]?\d[\d.,]*)\s*[\[(]?(?P<unit>mm|cm|m|ft|in|%\s*(?:of\s+|von\s+|de\s+)?(?:the\s+|der\s+|la\s+)?l(?:ength|[äa]e?nge|ongueur|oa|pp|bp)?|l(?:oa|pp|bp)?)?"
-    r"(?![^\W_])[\])]?(?:[\s,]|(?:measured|gemessen|counted|en)(?![^\W_]))*+"
-    r"(?P<side>aft|behind|abaft|astern|after|hinter|achterlich|achtern|arri[èe]re|derri[èe]re|forward|fwd|ahead|before|in\s+front|vor|avant|devant|from|off|von|vom|ab|du|de|depuis)?"
-    r"(?:\s|(?:of|from|the|dem|der|von|vom|le|la|du|de|l')(?![^\W_]))*+"
-    r"(?P<point>midships?|amidships?|nose|bow|stem|stern|tail|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase"
+    r"(?![^\W_])[\])]?"
+    + atomic(r"[\s,]|(?:measured|gemessen|counted|en)(?![^\W_])", "before")
+    + r"(?P<side>aft|behind|abaft|astern|after|hinter|achterlich|achtern|arri[èe]re|derri[èe]re|forward|fwd|ahead|before|in\s+front|vor|avant|devant|from|off|von|vom|ab|du|de|depuis)?"
+    + atomic(r"\s|(?:of|from|the|dem|der|von|vom|le|la|du|de|l')(?![^\W_])", "after")
+    + r"(?P<point>midships?|amidships?|nose|bow|stem|stern|tail|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase"
     r"|heck|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée]|nez|[ée]trave|f\.?p\.?|a\.?p\.?|(?:forward|fore|aft|after)\s+perpendicular|v\.?l\.?|h\.?l\.?)?(?![^\W_])"
 )
 _HEIGHT = re.compile(
