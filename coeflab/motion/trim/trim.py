@@ -18,7 +18,7 @@ from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Table, number
 from coeflab.core.texts import remark
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, brief, in_angles
 from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
 from coeflab.law.transforms import incidence
@@ -277,8 +277,7 @@ def _equations(vehicle: Vehicle, speed: float) -> tuple[Equation, ...]:
 STRAIGHT = 1e-9
 
 
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Trim:
     """A steady motion with the commands that keep it.
 
@@ -300,6 +299,27 @@ class Trim:
     others: tuple[tuple[dict[str, float], str], ...]
     refused: tuple[Finding, ...] = ()
 
+    def __repr__(self) -> str:
+        commands = ", ".join(f"{name} {value:.4g}" for name, value in self.commands.items())
+        return in_angles(self, f"{self.point.outcome.value}: {commands}")
+
+    @property
+    def solved(self) -> bool:
+        """Whether commands keep the motion; where none do, commands and figures are not numbers.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> cf.trim("remus100", speed=1.5).solved, cf.trim("huuv", speed=5.0).solved
+        (True, False)
+        """
+        return self.point.outcome.solved
+
+    @property
+    def statements(self) -> tuple[str, ...]:
+        """What was assumed, and what no data cover."""
+        return self.point.statements
+
     @property
     def commands(self) -> dict[str, float]:
         """Thrusters in their units, control angles in rad, ``thrust`` in N where no thruster gives it.
@@ -310,7 +330,7 @@ class Trim:
         >>> cf.trim("remus100", speed=1.5).commands["thrust"] > 0.0
         True
         """
-        return {u.name: self.point.values[u.name] for u in self.motion.command_unknowns}
+        return {u.name: self.point.values[u.name] if self.solved else np.nan for u in self.motion.command_unknowns}
 
     def frame(self) -> pd.DataFrame:
         """A row a figure and a command: value and unit.
@@ -330,7 +350,7 @@ class Trim:
 
     @property
     def figures(self) -> dict[str, tuple[float | None, str]]:
-        """Speed, incidence and radius with their units; None where there is none, as the radius of a straight course."""
+        """Speed, incidence and radius with their units; None where there is none: the radius of a straight course, all of an unsolved one."""
         u, v, w = self.velocity[:3]
         speed = float(np.linalg.norm(self.velocity[:3]))
         alpha, beta = (float(a[0]) for a in incidence(np.array([u]), np.array([v]), np.array([w])))
@@ -339,11 +359,12 @@ class Trim:
         level = float(np.sqrt(max(speed**2 - sinking**2, 0.0)))
         turning = abs(turn) * self.motion.vehicle.length > STRAIGHT * max(level, STRAIGHT)
         p, q, r = (float(x) + 0.0 for x in self.velocity[3:])
-        return {
+        out: dict[str, tuple[float | None, str]] = {
             "speed": (speed, "m/s"), "alpha": (alpha + 0.0, "rad"), "beta": (beta + 0.0, "rad"),
             "climb": (float(-sinking) + 0.0, "m/s"), "p": (p, "rad/s"), "q": (q, "rad/s"), "r": (r, "rad/s"),
             "radius": (level / abs(turn) if turning else None, "m"),
         }  # fmt: skip
+        return out if self.solved else {name: (None, unit) for name, (_, unit) in out.items()}
 
     def figure_table(self) -> Table:
         """What the solution means, angles in degrees."""
