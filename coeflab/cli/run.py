@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from coeflab.report.document import Answer
 
 
+FEW = 2  # tables whose answers stand on the screen
 EXAMPLE = "coeflab run my_study/plan.toml"
 
 
@@ -96,8 +97,11 @@ def summarise(study: Study, folder: Path) -> None:
         show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
-    for line in answers(study):
+    lines = answers(study)
+    for line in lines if show.whole() or len(lines) <= FEW else ():
         show.sentence(line)
+    if len(lines) > FEW and not show.whole():
+        show.sentence(f"A finer grid? --wide answers for {len(lines)} tables.")
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)
