@@ -269,7 +269,17 @@ def filled_in(
 
 
 def stated_of(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Stated:
-    """All that ``--set``, ``--option``, ``--as`` and a saved mapping state, but for columns; complaints at once."""
+    """All that ``--set``, ``--option``, ``--as`` and a saved mapping state, but for columns; complaints at once.
+
+    Parameters
+    ----------
+    mapping : Path, optional
+        A mapping.toml.
+    set_, option : sequence of str
+        ``KEY=VALUE``.
+    as_ : str
+        An importer.
+    """
     out = Stated()
     if mapping is not None:
         out.columns, out.settings, out.importer, out.options = saved_mapping(mapping)
@@ -308,7 +318,15 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
 
 
 def of_runs(name: Sequence[str], runs: Path | None, state: Path | None = None) -> list[str]:
-    """Options of collected runs as ``--option`` takes them."""
+    """Options of collected runs as ``--option`` takes them.
+
+    Parameters
+    ----------
+    name : sequence of str
+        Patterns of the names of runs.
+    runs, state : Path, optional
+        A list of runs; where what was read of them is held.
+    """
     given = {"names": BETWEEN.join(name), "run_list": runs, "state": state}
     return [f"{option}={value}" for option, value in given.items() if value]
 

@@ -32,7 +32,15 @@ __all__ = [
 
 
 def lacks_unit_or_axes(name: str, unit: str = "", axes: str = "") -> bool:
-    """Whether a mesh file is meant whose unit or axes nobody states."""
+    """Whether a mesh file is meant whose unit or axes nobody states.
+
+    Parameters
+    ----------
+    name : str
+        A path, or a shipped body.
+    unit, axes : str
+        As stated.
+    """
     path = located(name, "geometry")
     if path.is_dir() or path.suffix.lower() == ".toml":
         return False

@@ -145,7 +145,7 @@ def test_what_makes_a_light_vehicle_neutral_is_said_where_its_file_states_no_mas
     stated = replace(bare, mass_model=MassModel((part,), 998.2, DISPLACED / 998.2, np.zeros(3)))
     said = weighed(stated, Stated(DISPLACED - 10.0), 998.2).said
     assert "[[mass]]" not in said[0]
-    assert said[1].startswith(f"--mass {DISPLACED - 10.0:.4g} kg stands in the place of the 300 kg of [[mass]]")
+    assert said[1].startswith(f"the stated {DISPLACED - 10.0:.4g} kg stand in the place of the 300 kg of [[mass]]")
 
 
 @pytest.mark.parametrize(("share", "ballasted"), [(1.0, False), (0.9, True)])
