@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.api.estimating import estimate
 from coeflab.api.fitting import fit
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import si
+from coeflab.api.questions import above_zero, share_of
 from coeflab.api.result import Result
 from coeflab.bodies import body as plain
 from coeflab.bodies.simplify.source import names_body
@@ -142,8 +142,9 @@ def next_tests(
     InputError
         A figure without an interval, nothing with U95, a range that is none.
     """
-    largest = [_positive(si(v, "angle", k), k) for k, v in (("angle", angle), ("control", control))]
-    ranges = Ranges(largest[0], largest[1], _positive(rate, "rate"))
+    ranges = Ranges(
+        above_zero(angle, "angle", "angle"), above_zero(control, "angle", "control"), above_zero(rate, "none", "rate")
+    )
     kind = _meant(source)
     held: list[Coefficient]
     parameters: ParameterFile | None = None
@@ -168,30 +169,6 @@ def next_tests(
         figure, list(known.values()), sweeps, ranges, runs, share_of(noise, "noise"), target=goal, computed=computed
     )
     return NextTests(**{f.name: getattr(found, f.name) for f in fields(plain_tests.NextTests)})
-
-
-def share_of(value: float | str, keyword: str) -> float:
-    """A share above zero: 0.1, or "10%".
-
-    Raises
-    ------
-    InputError
-        Neither.
-
-    Examples
-    --------
-    >>> share_of("10 %", "target")
-    0.1
-    """
-    percent = isinstance(value, str) and value.strip().endswith("%")
-    number = si(value.strip().removesuffix("%").strip() if isinstance(value, str) else value, "none", keyword)
-    return _positive(number / 100.0 if percent else number, keyword)
-
-
-def _positive(value: float, keyword: str) -> float:
-    if not (np.isfinite(value) and value > 0.0):
-        raise InputError(f"{value:g}", "a number above zero", column=keyword)
-    return float(value)
 
 
 def _meant(source: Any) -> type:
@@ -222,6 +199,7 @@ def _wanted(
         return plain_tests.of_symbol(max(sized, key=lambda c: float(c.u95 or 0.0) / abs(float(c.value or 1.0))))
     if (c := known.get(name.removesuffix("'"))) is not None:
         return plain_tests.of_symbol(c)
+    name = next((index for index in INDICES if index.casefold() == name.casefold()), name)
     if name in INDICES or name[:1] not in COMPONENTS or not name.endswith("'"):
         if parameters is None:
             raise InputError(

@@ -265,6 +265,35 @@ def above_zero(value: float | str, dimension: str, keyword: str) -> float:
     return found
 
 
+def share_of(value: float | str, keyword: str) -> float:
+    """A share above zero and below one: 0.1, or ``"10 %"``.
+
+    Parameters
+    ----------
+    value : float or str
+    keyword : str
+        For the error.
+
+    Raises
+    ------
+    InputError
+        No such share.
+
+    Examples
+    --------
+    >>> share_of("10 %", "target"), share_of(0.1, "target")
+    (0.1, 0.1)
+    """
+    text = str(value).strip()
+    try:
+        found = float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0) if "_" not in text else 0.0
+    except ValueError:
+        found = 0.0
+    if not 0.0 < found < 1.0:
+        raise InputError(shown(text), "a share above zero and below one, such as 2% or 0.02", column=keyword)
+    return found
+
+
 def three(values: Any, dimension: str, keyword: str) -> Array:
     """Three numbers in SI, each a text with its unit where it is one, such as x, y, z.
 

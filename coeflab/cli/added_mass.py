@@ -48,13 +48,14 @@ def command(
     About its reference point in FRD. With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
     from coeflab.api.body import added_masses, finer_panels, typed_body
+    from coeflab.api.questions import share_of
     from coeflab.cli.fit import further
     from coeflab.core.provenance import work
     from coeflab.report.as_json.shapes import added_mass as as_json
     from coeflab.report.tables import added_mass as tables
     from coeflab.report.tables import nouns as noun_tables
 
-    share = _share(error) if error else ""
+    share = f"{100.0 * share_of(error, '--error'):.10g}%" if error else ""
     with show.narrated():
         given = typed_body(body, unit, axes, repair, fill, sheets)
         if wall or distance:
@@ -79,20 +80,6 @@ def command(
     show.found(cost)
     for citation in found.citations:
         show.text(f"  {work(citation)}")
-
-
-def _share(text: str) -> str:
-    """As per cent, which the option takes; 0.02 is 2 %."""
-    from coeflab.core.errors import InputError, shown
-
-    number = text.strip().removesuffix("%")
-    try:
-        percent = float(number) * (1.0 if text.strip().endswith("%") else 100.0) if "_" not in number else 0.0
-    except ValueError:
-        percent = 0.0
-    if not 0.0 < percent < 100.0:
-        raise InputError(shown(text), "a share above zero and below one, such as 2% or 0.02", column="--error")
-    return f"{percent:.10g}%"
 
 
 def distances_of(wall: str, distance: str, method: str) -> list[float]:

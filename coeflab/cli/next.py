@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import typer
 
 from coeflab.cli import complete, show
 
-if TYPE_CHECKING:
-    from coeflab.api.designing import NextTests
-
 EXAMPLE = 'coeflab next suboff_roddy_2 --for "Nv\'" --runs 4 --target 10%'
+OPTIONS = {
+    "wanted": "--for", **{name: f"--{name}" for name in ("runs", "target", "noise", "angle", "control", "rate")},
+}  # fmt: skip
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
@@ -56,16 +55,23 @@ def command(
     from coeflab.cli.simulate import of_manoeuvre
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import placeable, write_all
+    from coeflab.report.as_json.studies import next_tests as as_json
 
     if to is not None and to.suffix not in (".csv", ".toml"):
         raise InputError(shown(to.name), "a file name that ends in .csv or .toml", column="--to")
     if to is not None:
         placeable(to)
-    with show.narrated():
-        found = cf.next_tests(
-            source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle, control=control, rate=rate,
-            manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
-        )  # fmt: skip
+    try:
+        with show.narrated():
+            found = cf.next_tests(
+                source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle,
+                control=control, rate=rate, manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
+            )  # fmt: skip
+    except InputError as why:
+        if why.column in OPTIONS:
+            why.column = OPTIONS[why.column]
+            why.args = (str(why),)
+        raise
     if to is not None:
         text = found.matrix() if to.suffix == ".toml" else found.frame().to_csv(index=False)
         write_all(to.parent, {to.name: text.encode()})
@@ -80,31 +86,3 @@ def command(
             show.path(to)
     if found.reached is Reached.NO:
         raise typer.Exit(1)
-
-
-def as_json(found: NextTests) -> dict[str, Any]:
-    """Tests, best first; settings in rad, or r' and q'; U95 of the wanted figure after the runs of each test alone."""
-    return {
-        "for": found.wanted,
-        "value": found.value,
-        "u95": found.u95,
-        "target": found.target,
-        "reached": str(found.reached),
-        "u95_after_all": found.best,
-        "noise_assumed": found.noise,
-        "curves_assumed": list(found.assumed),
-        "tests": [
-            {
-                "test": str(t.kind),
-                "variable": t.variable or None,
-                "share_of_variance": t.share,
-                "settings": [float(x) for x in t.angles],
-                "u95_then": t.wanted_then,
-                "coefficients": [
-                    {"symbol": s, "u95_now": now, "u95_then": then}
-                    for s, (now, then) in zip(t.symbols, t.u95, strict=True)
-                ],
-            }
-            for t in found.tests
-        ],
-    }

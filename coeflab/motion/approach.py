@@ -255,6 +255,31 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     return replace(figure, status="extrapolated", why=beyond)
 
 
+def judged_rows(
+    rows: Sequence[tuple[str, float | None, str, float | None, str]], trajectory: Trajectory, lacking: str, rate: str
+) -> tuple[Figure, ...]:
+    """Figures of rows, `judged`; one without a value was not reached in the time that was simulated.
+
+    Parameters
+    ----------
+    rows : sequence of (name, value, unit, time, definition)
+    trajectory : Trajectory
+    lacking, rate : str
+        As of `judged`.
+    """
+    end = f"not within {trajectory.time[-1]:g} s"
+    return tuple(
+        judged(
+            Figure(name, value, unit, text, *(("ok", "") if value is not None else ("not reached", end))),
+            trajectory,
+            when,
+            lacking,
+            rate,
+        )
+        for name, value, unit, when, text in rows
+    )
+
+
 def in_field_terms(name: str) -> str:
     """A variable as people call it: dr is the rudder angle."""
     return ANGLE_NAMES.get(name, name)

@@ -21,7 +21,7 @@ from coeflab.motion.uncertainty.tests import Kind, kind_of
 from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
-from coeflab.vehicle.stability import INDICES, index_gradient
+from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
 PAIR = {"v": "YN", "r": "YN", "dr": "YN", "w": "ZM", "q": "ZM", "ds": "ZM", "db": "ZM"}
 SEEN = 0.01  # of the variance: tests that hold less are left out
@@ -135,6 +135,8 @@ class NextTests:
     def findings(self) -> tuple[Finding, ...]:
         """What the prediction rests on, and whether the target is reached."""
         out = [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
+        if sum(len(t.symbols) for t in self.tests) > 1:
+            out += [Finding.of("design.independent", self.wanted, Severity.NOTE)]
         if self.noise is not None:
             out += [
                 Finding.of(
@@ -191,7 +193,7 @@ def of_symbol(coefficient: Coefficient) -> Wanted:
     name = primed(coefficient.symbol.removesuffix("'"))
     if coefficient.value is None or not coefficient.u95:
         raise InputError(
-            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="--for",
+            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="wanted",
             advice="Give a body, whose estimates have both, or a table with three settings.",
         )  # fmt: skip
     return Wanted(name, coefficient.value, coefficient.u95, {name.removesuffix("'"): (1.0, coefficient.u95)})
@@ -210,7 +212,7 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
     if parameters.mass is None or len(found) < len(symbols):
         raise InputError(
             f"{name} of a file without {'mass' if parameters.mass is None else 'U95 of all four coefficients'}",
-            f"mass, and {', '.join(map(str, symbols))} with U95", column="--for",
+            f"mass, and {', '.join(map(str, symbols))} with U95", column="wanted",
         )  # fmt: skip
     values = [float(c.value or 0.0) for c in found]
     mass = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
@@ -218,8 +220,8 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
         [float(c.u95 or 0.0) for c in found]
     )
     variance = steps**2 / float(steps @ steps)
-    lever = values[1] * (values[2] - mass[0])
-    value = 1.0 - lever / (values[0] * (values[3] - mass[1]))
+    slope, lever, rate, damping = (np.array(v) for v in values)
+    value = float(stability_index(slope, lever, rate, damping, *mass))
     shares = {
         str(s).removesuffix("'"): (float(v), float(c.u95 or 0.0))
         for s, v, c in zip(symbols, variance, found, strict=True)
@@ -242,12 +244,12 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
         figures = ", ".join(s.figure.name for s in carried.spreads)
         raise InputError(
             shown(name), f"a coefficient, {', '.join(INDICES)}, or of {question.manoeuvre}: {figures or 'none'}",
-            column="--for", advice="--manoeuvre takes another.",
+            column="wanted", advice="Another manoeuvre may have it.",
         )  # fmt: skip
     found = near[0]
     if found.low is None or found.high is None or found.figure.value is None:
         raise InputError(
-            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="--for"
+            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="wanted"
         )
     importance = next(i for i in carried.importances if i.figure == found.figure.name)
     shares = {}
@@ -289,7 +291,7 @@ def next_tests(
         Fewer than three runs where nothing was run, or no coefficient that a test gives.
     """
     if not 1 <= runs <= MOST:
-        raise InputError(f"{runs} runs", f"1 to {MOST}", column="--runs")
+        raise InputError(f"{runs} runs", f"1 to {MOST}", column="runs")
     groups: dict[tuple[Kind, str], list[str]] = {}
     for symbol in wanted.shares:
         groups.setdefault(kind_of(symbol), []).append(symbol)
@@ -314,7 +316,7 @@ def next_tests(
             assumed += [] if s in ran else [primed(s)]
         rows = len(responses[0].x)
         if not rows and runs < FEWEST:
-            raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="--runs")
+            raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="runs")
         levels = _levels(variable, ranges, ran.get(slopes[0]))
         settings = designed(responses, runs, levels, distinct=computed)
         equal = _equal(runs, levels, responses[0].odd)
@@ -327,7 +329,7 @@ def next_tests(
         both = tuple((wanted.shares[s][1], a) for s, a in zip(slopes, after, strict=True))
         out.append(ProposedTest(kind, variable, _primed(slopes), share, settings, both, tuple(plain), then, rows))
     if not out:
-        raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
+        raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="wanted")
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
     return NextTests(
         wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed)

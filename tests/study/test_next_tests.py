@@ -89,8 +89,8 @@ def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
 @pytest.mark.parametrize(
     ("source", "wanted", "more", "column"),
     [
-        ("suboff_bare_hull", "G_h", {}, "wanted"), ("suboff_bare_hull", "Ydr'", {}, "wanted"), ("huuv", "G_h", {}, "--for"),
-        ("suboff_bare_hull", "Yr'", {"runs": 2}, "--runs"), ("suboff_bare_hull", "Yr'", {"runs": 25}, "--runs"),
+        ("suboff_bare_hull", "G_h", {}, "wanted"), ("suboff_bare_hull", "Ydr'", {}, "wanted"), ("huuv", "G_h", {}, "wanted"),
+        ("suboff_bare_hull", "Yr'", {"runs": 2}, "runs"), ("suboff_bare_hull", "Yr'", {"runs": 25}, "runs"),
         ("suboff_bare_hull", "Yr'", {"noise": "-1%"}, "noise"), ("suboff_bare_hull", "Yr'", {"angle": 12.0, "rate": 0.0}, "rate"),
         ("nowhere.csv", "", {}, None),
     ],

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, one_of, parse_options
-from coeflab.motion.approach import SURFACES, along, judged, propulsion, turning_sense, within_limit
+from coeflab.motion.approach import SURFACES, along, judged_rows, propulsion, turning_sense, within_limit
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
@@ -96,11 +96,4 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
             f"after {t[-1]:.4g} s, from the start, {'down' if down else 'up'}; planes amidships from time to level, nothing keeps it",
         ),
     )  # fmt: skip
-    return tuple(
-        judged(
-            Figure(name, value, unit, text, "ok" if value is not None else "not reached",
-                   "" if value is not None else f"not within {t[-1]:g} s"),
-            trajectory, when, lacking, "q",
-        )
-        for name, value, unit, when, text in rows
-    )  # fmt: skip
+    return judged_rows(rows, trajectory, lacking, "q")

@@ -10,7 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options
-from coeflab.motion.approach import along, judged, propulsion, turning_sense, within_limit
+from coeflab.motion.approach import along, judged_rows, propulsion, turning_sense, within_limit
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
@@ -114,11 +114,4 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         ("time to level", level, "s", level, "from the jam until pitch passes zero"),
         ("speed at the end", float(np.linalg.norm(trajectory.velocity[-1, :3])), "m/s", float(t[-1]), f"after {t[-1]:.4g} s"),
     )  # fmt: skip
-    return tuple(
-        judged(
-            Figure(name, value, unit, text, "ok" if value is not None else "not reached",
-                   "" if value is not None else f"not within {t[-1]:g} s"),
-            trajectory, when, lacking, "q",
-        )
-        for name, value, unit, when, text in rows
-    )  # fmt: skip
+    return judged_rows(rows, trajectory, lacking, "q")

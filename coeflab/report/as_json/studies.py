@@ -20,6 +20,7 @@ from coeflab.report.as_json.findings import finding, finding_as_data
 from coeflab.report.as_json.motions import accelerations
 from coeflab.report.tables import next_runs as next_tables
 from coeflab.report.tables import results as tables
+from coeflab.study.next_tests import NextTests
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.tables.force_table import ForceTable
@@ -258,3 +259,31 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "statements": list(found.statements),
         "citations": list(found.citations),
     }  # fmt: skip
+
+
+def next_tests(found: NextTests) -> dict[str, Any]:
+    """Tests, best first; settings in rad, or r' and q'; U95 of the wanted figure after the runs of each test alone."""
+    return {
+        "for": found.wanted,
+        "value": found.value,
+        "u95": found.u95,
+        "target": found.target,
+        "reached": str(found.reached),
+        "u95_after_all": found.best,
+        "noise_assumed": found.noise,
+        "curves_assumed": list(found.assumed),
+        "tests": [
+            {
+                "test": str(t.kind),
+                "variable": t.variable or None,
+                "share_of_variance": t.share,
+                "settings": [float(x) for x in t.angles],
+                "u95_then": t.wanted_then,
+                "coefficients": [
+                    {"symbol": s, "u95_now": now, "u95_then": then}
+                    for s, (now, then) in zip(t.symbols, t.u95, strict=True)
+                ],
+            }
+            for t in found.tests
+        ],
+    }
