@@ -24,19 +24,20 @@ def test_a_design_beats_equal_spacing_and_says_by_how_much() -> None:
     for bend, noise in SCENARIOS:
         one = response(bend, noise)
         found, equal = designed([one], RUNS, LEVELS), np.linspace(-LEVELS[-1], LEVELS[-1], RUNS)
-        then, plain = (predicted_u95(one, x, 200, seed=5) for x in (found, equal))
+        then, plain = (predicted_u95(one, x, 100, seed=5) for x in (found, equal))
         gains.append(1.0 - then / plain)
         assert predicted_u95(one, found) == pytest.approx(then, rel=0.15)
     assert min(gains) > 0.05, gains
     assert np.mean(gains) > 0.14, gains
 
 
-def test_the_prediction_is_the_estimators_u95() -> None:
-    """Half of forty real campaigns lie on either side of it."""
-    one, x = response(0.3, 0.003), np.linspace(-0.2, 0.2, 9)
+@pytest.mark.parametrize("bend", [0.0, 0.3])
+def test_the_prediction_is_the_estimators_u95(bend: float) -> None:
+    """The median of 120 campaigns that were read, within a tenth; of a line U95 goes with the noise, so 30 % more noise is seen."""
+    one, x = response(bend, 0.003), np.linspace(-0.2, 0.2, 9)
     rng = np.random.default_rng(11)
-    u95 = [estimate(x, one.curve(x) + rng.normal(0.0, 0.003, 9)).u95 for _ in range(40)]
-    assert 10 <= sum(u < predicted_u95(one, x) for u in u95) <= 30
+    u95 = [estimate(x, one.curve(x) + rng.normal(0.0, 0.003, 9)).u95 for _ in range(120)]
+    assert predicted_u95(one, x, 300) == pytest.approx(np.median(u95), rel=0.1)
 
 
 def test_two_settings_give_nothing() -> None:

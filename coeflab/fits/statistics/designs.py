@@ -46,7 +46,9 @@ class Response:
     odd: bool = False
 
 
-def predicted_u95(response: Response, added: Array, draws: int = FINAL, seed: int = 1) -> float:
+def predicted_u95(
+    response: Response, added: Array, draws: int = FINAL, seed: int = 1, *, deletions: bool = True
+) -> float:
     """U95 of the slope once the added settings are run: the median over simulated readings.
 
     Infinite where fewer than three settings differ.
@@ -57,13 +59,15 @@ def predicted_u95(response: Response, added: Array, draws: int = FINAL, seed: in
     added : (m,) array
     draws, seed : int
         Of the readings' scatter.
+    deletions : bool
+        Let one row be wrong, as the estimator does; without it the search is twice as fast.
     """
     x = np.concatenate([response.x, np.asarray(added, float)])
     if len(np.unique(np.round(x, 12))) < 3:
         return float("inf")
     scatter = np.random.default_rng(seed).normal(0.0, response.noise, (draws, len(added)))
     y = np.hstack([np.tile(response.y, (draws, 1)), response.curve(added) + scatter])
-    return float(np.median(estimate_many(prepare(x, odd=response.odd), y, deletions=draws == FINAL).u95))
+    return float(np.median(estimate_many(prepare(x, odd=response.odd), y, deletions=deletions).u95))
 
 
 def designed(responses: Sequence[Response], count: int, levels: Array, *, distinct: bool = False) -> Array:
@@ -99,7 +103,7 @@ def designed(responses: Sequence[Response], count: int, levels: Array, *, distin
         return np.sort(np.concatenate([*sides, levels[list(single)]]))
 
     def cost(x: Array, draws: int = DRAWS) -> float:
-        return sum(r.weight * predicted_u95(r, x, draws) ** 2 for r in responses)
+        return sum(r.weight * predicted_u95(r, x, draws, deletions=draws == FINAL) ** 2 for r in responses)
 
     start = at = [round(float(k)) for k in np.linspace(0.0, len(levels) - 1.0, pairs + 1)[1:]]
     best, tried = cost(settings(at)), {tuple(at)}
