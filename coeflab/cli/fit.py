@@ -57,7 +57,7 @@ def command(
     speed: str = typer.Option(
         "", metavar="SPEED", help="Only rows of this speed, such as 1.3 m/s: one fit a speed.", show_default=False
     ),
-    next_runs: str = typer.Option("", "--next", hidden=True),
+    next_runs: str | None = typer.Option(None, "--next", hidden=True),
     diagnostics: bool = typer.Option(
         False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
     ),
@@ -85,7 +85,7 @@ def command(
     import coeflab as cf
     from coeflab.api.campaigns import fit_campaigns, suited_fit
 
-    if next_runs:  # goes in 0.4
+    if next_runs is not None:  # goes in 0.4
         raise InputError(f"fit --next {shown(next_runs)}", "coeflab next TABLE", column="--next")
     names, of_fit = given([*table, *ctx.args], constraint)
     if not names:
