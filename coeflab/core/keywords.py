@@ -18,18 +18,17 @@ _COMMAND = re.compile(r"coeflab [a-z][a-z-]*\b[^`;]*?(?=`|; |, or |[.:,](?:\s|$)
 _PROSE = "(?:all|and|around|as|at|by|closes|for|if|is|lists|makes|nothing|of|on|one|or|says|shows|states|tells|that|the|to|uses|with)"
 _VALUE = """'(?P<single>[^']*)'|"(?P<double>[^"]*)"|(?P<bare>[\\w*/?](?:[^\\s,;).]|[,.](?=\\S))*)"""
 _OPTION = re.compile(rf"(?<![\w\"-])--(?P<option>[a-z][a-z-]*)(?![\w-])(?:[ ](?!{_PROSE}\b)(?:{_VALUE}))?")
-_shell = False
+_speaks = {"shell": False}
 
 
 @contextmanager
 def in_shell() -> Iterator[None]:
     """Within it messages name options."""
-    global _shell
-    before, _shell = _shell, True
+    before, _speaks["shell"] = _speaks["shell"], True
     try:
         yield
     finally:
-        _shell = before
+        _speaks["shell"] = before
 
 
 def spoken(text: str) -> str:
@@ -46,7 +45,7 @@ def spoken(text: str) -> str:
     >>> spoken("`coeflab fit TABLE --next 3`, or --map 'Fy=Y [kN]'")
     '`coeflab fit TABLE --next 3`, or columns={"Fy": "Y [kN]"}'
     """
-    if _shell or "--" not in text:
+    if _speaks["shell"] or "--" not in text:
         return text
     text = text.replace(", or by --words FILE.toml", "")  # of the shell alone
     out, end = [], 0
