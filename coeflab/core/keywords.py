@@ -74,7 +74,6 @@ def _keyword(found: re.Match[str]) -> str:
     key, equals, rest = value.partition("=")
     if option == "set" and equals:
         return value
-    if equals:
-        return f'{name}={{"{key}": "{rest}"}}'
-    number = re.fullmatch(r"-?[\d.]+(?:e-?\d+)?", value)
-    return f"{name}={value}" if number else f'{name}="{value}"'
+    typed = rest if equals else value
+    typed = typed if re.fullmatch(r"-?[\d.]+(?:e-?\d+)?", typed) else f'"{typed}"'
+    return f'{name}={{"{key}": {typed}}}' if equals else f"{name}={typed}"
