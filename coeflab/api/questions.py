@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -216,7 +217,7 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     Raises
     ------
     InputError
-        Neither.
+        Neither; a bare angle of more than half a turn, which can only be degrees.
 
     Examples
     --------
@@ -225,9 +226,16 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     """
     try:
         number = value if isinstance(value, str) else _number(value)
-        return with_unit(number, dimension) if isinstance(value, str) or dimension == "density" else float(number)
+        typed = isinstance(value, str) or dimension == "density"
+        found = with_unit(number, dimension) if typed else float(number)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=option(keyword), advice=why.advice) from None
+    if dimension == "angle" and not typed and abs(found) > math.pi:
+        raise InputError(
+            f"{found:g} rad, beyond half a turn", "an angle in rad, or with its unit", column=option(keyword),
+            advice=f'Degrees are written "{found:g} deg".',
+        )  # fmt: skip
+    return found
 
 
 def above_zero(value: float | str, dimension: str, keyword: str) -> float:

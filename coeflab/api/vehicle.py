@@ -158,7 +158,7 @@ class Vehicle:
         *,
         also: Sequence[str] = (),
         lags: Mapping[str, float] | None = None,
-        commands: Mapping[str, float] | None = None,
+        commands: Mapping[str, float | str] | None = None,
         plane: str = "",
         free: Sequence[str] = (),
         tables: bool = False,
