@@ -24,6 +24,7 @@ from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import VectorSet, compared, vector_sets
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
+from tests.vehicle.make_conformance import actual_commands
 from tests.formats import files as made
 from tests.formats.massed import torpedo, with_mass
 from tests.formats.of_a_vehicle import driven
@@ -85,7 +86,7 @@ def test_it_gives_the_conformance_vectors(tmp_path: Path, name: str) -> None:
     free = "".join(MOTIONS[k] for k in flat_law(file).free)
     driver, rows = compiled(tmp_path, file, DRIVER), []
     for s in given.states:
-        commands = s.get("commands", {})
+        commands = actual_commands(file, s)
         orders = [x for t in file.thrusters for x in (commands.get(t.name, 0.0), commands.get(f"{t.name}.tilt", 0.0))]
         rows.append(
             [
