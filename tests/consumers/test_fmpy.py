@@ -23,12 +23,12 @@ from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import compared, vector_sets
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from tests.vehicle.make_conformance import actual_commands
 from tests.formats import files as made
 from tests.formats.files import control_force
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo, with_mass
 from tests.formats.of_a_vehicle import driven, floating, quaternion, restoring
 from tests.rigid_motion import motion
+from tests.vehicle.make_conformance import actual_commands
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
 SECONDS, STEP = 20.0, 0.1  # s

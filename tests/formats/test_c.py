@@ -24,11 +24,11 @@ from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import VectorSet, compared, vector_sets
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
-from tests.vehicle.make_conformance import actual_commands
 from tests.formats import files as made
 from tests.formats.massed import torpedo, with_mass
 from tests.formats.of_a_vehicle import driven
 from tests.vehicle.hybrid import hybrid
+from tests.vehicle.make_conformance import actual_commands
 
 GCC, GXX = shutil.which("gcc"), shutil.which("g++")
 needs_gcc = pytest.mark.skipif(GCC is None or GXX is None, reason="no gcc")

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.formats.exporting import export
 from coeflab.formats.c import write as c
 from coeflab.formats.c_program.program import name_of
+from coeflab.formats.exporting import export
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.motion.dynamics import rates_of_one
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
