@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from coeflab.formats.c import write as c
 from coeflab.formats.c_program.program import name_of
@@ -17,8 +18,11 @@ from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.motion.dynamics import rates_of_one
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.marching import alone, march, march_by_tolerance
+from coeflab.motion.trim.linear_model import linear_model
+from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import vehicle
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_parts import ParameterThruster
 from tests.formats.test_coded_thrusters import file
 
 LAG = 0.4
@@ -95,3 +99,28 @@ def test_a_lag_that_a_target_has_no_place_for_is_a_loss(target: str, lost: int) 
     loss = export(late(), target).loss
     assert loss is not None
     assert len([x for x in loss.lost if x.what == "lag of left: commands are taken at once"]) == lost
+
+
+def test_the_linear_model_moves_as_simulate() -> None:
+    """One newton more of a thruster with a lag, ahead of REMUS 100: surge after a second by exp(A t) and by `simulate`."""
+    main = {"name": "main", "position": (0, 0, 0), "direction": (1, 0, 0), "lag": LAG, "curve": {
+        "command": "thrust", "unit": "N", "segments": [{"low": -99.0, "high": 99.0, "coefficients": [0.0, 1.0]}]}}  # fmt: skip
+    remus = read_parameter_file(Path("remus100")).model_copy(
+        update={"thrusters": (ParameterThruster.model_validate(main),)}
+    )
+    v = vehicle(remus, ("u", "v", "r"))
+    model = linear_model(trim(v, {"u": 1.5, "yaw_rate": 0.0}, starts=2))
+    states, commands = [s.name for s in model.states], [c.name for c in model.commands]
+    assert states[-1] == "main_lagged"
+    k, step = commands.index("main"), 1e-3
+    whole = np.zeros((len(states) + 1, len(states) + 1))
+    whole[:-1, :-1], whole[:-1, -1] = model.a.matrix, model.b.matrix[:, k] * step
+    due = scipy.linalg.expm(whole)[:-1, -1]
+    steady = model.commands[k].value
+    start = np.array([1.5, 0, 0, 0, 0, 0])
+    moved = march_by_tolerance(
+        v, Manoeuvre("step", (Phase("on", {"main": steady + step}, 1.0),), start, orders={"main": steady})
+    ).trajectory()
+    assert due[0] > 0.0
+    assert moved.velocity[-1, 0] - 1.5 == pytest.approx(due[0], rel=2e-3)
+    assert moved.controls["main"][-1] - steady == pytest.approx(due[-1], rel=1e-6)
