@@ -291,6 +291,8 @@ def _links(
 
 def _arrays(vehicle: Vehicle, manoeuvre: Manoeuvre) -> dict[str, Any]:
     """A vehicle and a manoeuvre as `coeflab.motion.marching` marches them."""
+    at_once = tuple(t.model_copy(update={"lag": None}) for t in vehicle.thrusters)  # the page's march has no lag
+    vehicle = replace(vehicle, thrusters=at_once)
     ensemble, orders = alone(vehicle), orders_of(vehicle, manoeuvre)
     dynamics, law = ensemble.dynamics(np.zeros(3)), vehicle.law
     start = np.concatenate(

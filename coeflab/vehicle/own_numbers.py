@@ -327,7 +327,7 @@ def typed_rudder(text: str) -> ParameterSurface:
     )  # fmt: skip
 
 
-NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit")
+NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit", "lag")
 VECTORS = ("place", "axis", "tilt_axis")
 WORDS = ("command", "unit")
 
