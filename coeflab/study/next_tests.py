@@ -23,7 +23,6 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
-PAIR = {"v": "YN", "r": "YN", "dr": "YN", "w": "ZM", "q": "ZM", "ds": "ZM", "db": "ZM"}
 SEEN = 0.01  # of the variance: tests that hold less are left out
 LEVELS = 12
 MEMBERS = 200
@@ -85,6 +84,8 @@ class ProposedTest:
         U95 of the wanted figure after these runs alone.
     rows : int
         That were run already.
+    fixed : tuple of float
+        Of U95 squared of every symbol what no run of its sweep narrows: grid, other studies, declared inputs.
     """
 
     kind: Kind
@@ -96,6 +97,7 @@ class ProposedTest:
     equal: tuple[float, ...]
     wanted_then: float
     rows: int = 0
+    fixed: tuple[float, ...] = ()
 
     @property
     def angles(self) -> Array:
@@ -137,6 +139,10 @@ class NextTests:
         out = [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
         if sum(len(t.symbols) for t in self.tests) > 1:
             out += [Finding.of("design.independent", self.wanted, Severity.NOTE)]
+        out += [
+            Finding.of("design.fixed", symbol, Severity.WARN, statistic=share, threshold=0.5)
+            for t in self.tests for symbol, share in zip(t.symbols, t.fixed) if share > 0.5
+        ]  # fmt: skip
         if self.noise is not None:
             out += [
                 Finding.of(
@@ -327,7 +333,10 @@ def next_tests(
         gone = sum(wanted.shares[s][0] * (1.0 - (a / wanted.shares[s][1]) ** 2) for s, a in zip(slopes, after))
         then = wanted.u95 * float(np.sqrt(max(1.0 - gone, 0.0)))
         both = tuple((wanted.shares[s][1], a) for s, a in zip(slopes, after, strict=True))
-        out.append(ProposedTest(kind, variable, _primed(slopes), share, settings, both, tuple(plain), then, rows))
+        fixed = tuple(_fixed(wanted.shares[s][1], ran.get(s)) / wanted.shares[s][1] ** 2 for s in slopes)
+        out.append(
+            ProposedTest(kind, variable, _primed(slopes), share, settings, both, tuple(plain), then, rows, fixed)
+        )
     if not out:
         raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
@@ -385,7 +394,9 @@ def _equal(runs: int, levels: Array, one_sided: bool) -> Array:
 
 def _after(now: float, response: Response, sweep: Sweep | None, settings: Array) -> float:
     """U95 after the runs: of the scatter and form alone, with what a budget adds to it kept; never above that of now."""
-    then = predicted_u95(response, settings)
-    if sweep is not None and sweep.u95 is not None:
-        then = float(np.sqrt(max(now**2 - sweep.u95**2, 0.0) + then**2))
-    return min(now, then)
+    return min(now, float(np.sqrt(_fixed(now, sweep) + predicted_u95(response, settings) ** 2)))
+
+
+def _fixed(now: float, sweep: Sweep | None) -> float:
+    """Of U95 squared what is no scatter and form of a sweep that was run."""
+    return 0.0 if sweep is None or sweep.u95 is None else max(now**2 - sweep.u95**2, 0.0)

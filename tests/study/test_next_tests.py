@@ -77,6 +77,18 @@ def test_rows_that_were_run_are_taken_from_the_table() -> None:
     assert found.best < found.u95
 
 
+def test_what_no_run_of_the_sweep_narrows_stays_and_is_found() -> None:
+    """A U95 twice that of the sweep: three quarters of its square are grid or declared inputs."""
+    fit = cf.fit("suboff_roddy_2").fits[0]
+    sweep = next(s for s in fit.sweeps if s.symbol == "Nv")
+    for times, fixed, codes in ((1.0, 0.0, set()), (2.0, 0.75, {"design.fixed"})):
+        now = times * (sweep.u95 or 0.0)
+        found = next_tests(Wanted("Nv'", sweep.value or 0.0, now, {"Nv": (1.0, now)}), (), (sweep,), Ranges(), 4, 0.01)
+        assert found.tests[0].fixed == pytest.approx((fixed,))
+        assert fixed <= (found.best / now) ** 2 < 1.0
+        assert {f.code for f in found.findings} & {"design.fixed"} == codes
+
+
 def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
     found = cf.next_tests("suboff_bare_hull", "Yr'", runs=4)
     settings = found.tests[0].settings
