@@ -123,7 +123,7 @@ def new(
         [],
         "--set",
         metavar="SYMBOL=VALUE",
-        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %"; again for each.',
+        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %", which goes with the speed unless constant stands behind it; again for each.',
         show_default=False,
     ),
     length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
@@ -200,6 +200,7 @@ def new(
         })  # fmt: skip
     else:
         show.table(contents(result, "coeflab"))
+        show.found(result.findings)
         show.path(path)
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
         show.file_findings(result.name, found)
