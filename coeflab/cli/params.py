@@ -163,6 +163,8 @@ def new(
     rudder: str = typer.Option(
         "", metavar="ANGLE,RATE", help='Its limit and rate: "30 deg, 30 deg/s".', show_default=False
     ),
+    stern_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of ds."),
+    bow_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of db."),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -184,6 +186,7 @@ def new(
     result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
         inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster, rudder=rudder,
+        stern_planes=stern_planes, bow_planes=bow_planes,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")

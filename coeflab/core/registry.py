@@ -143,7 +143,8 @@ class Registry(Generic[Port]):
             another package cannot be imported.
         """
         if name not in self.names():
-            near = difflib.get_close_matches(name, self.names(), n=3) or self._described_by(name)
+            short = [n for n in self.names() if "_" in n and "".join(w[:1] for w in n.split("_")) == name.casefold()]
+            near = short or difflib.get_close_matches(name, self.names(), n=3) or self._described_by(name)
             hint = f": did you mean {' or '.join(near)}?" if near else "."
             known = ", ".join(self.names()) or "none in this release"
             refused = "".join(f" {reason[0].upper()}{reason[1:]}." for n, reason in self._claims[1] if n == name)

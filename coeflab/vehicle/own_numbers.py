@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -274,6 +275,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
 def typed_file(
     name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
     cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (), rudder: str = "",
+    stern_planes: str = "", bow_planes: str = "",
 ) -> ParameterFile:  # fmt: skip
     """A parameter file of what a person typed behind the options of ``coeflab params new``; empty: not stated.
 
@@ -293,7 +295,7 @@ def typed_file(
         About the centre of gravity, one or three numbers, kg m^2.
     thrusters : sequence of str
         As `typed_thruster` reads them.
-    rudder : str
+    rudder, stern_planes, bow_planes : str
         Limit of its angle, and its rate: ``30 deg, 30 deg/s``; without a rate it moves at once.
 
     Raises
@@ -347,11 +349,13 @@ def typed_file(
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
-    return result.model_copy(update={"thrusters": driven, "surfaces": (typed_rudder(rudder),) if rudder else ()})
+    fins = (("dr", rudder, "--rudder"), ("ds", stern_planes, "--stern-planes"), ("db", bow_planes, "--bow-planes"))
+    surfaces = tuple(typed_surface(control, text, option) for control, text, option in fins if text)
+    return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
 
 
-def typed_rudder(text: str) -> ParameterSurface:
-    """Read ``30 deg, 30 deg/s``: the limit of the rudder's angle, and its rate.
+def typed_surface(control: Literal["dr", "ds", "db"], text: str, option: str) -> ParameterSurface:
+    """Read ``30 deg, 30 deg/s``: the limit of a control's angle, and its rate.
 
     Raises
     ------
@@ -359,8 +363,8 @@ def typed_rudder(text: str) -> ParameterSurface:
     """
     limit, comma, rate = text.partition(",")
     return ParameterSurface(
-        control="dr", limit=positive_typed(limit.strip(), "angle", "--rudder"),
-        rate=positive_typed(rate.strip(), "rate", "--rudder") if comma else None,
+        control=control, limit=positive_typed(limit.strip(), "angle", option),
+        rate=positive_typed(rate.strip(), "rate", option) if comma else None,
     )  # fmt: skip
 
 

@@ -96,6 +96,12 @@ def test_a_rudder_has_its_limit_and_rate() -> None:
     (found,) = typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg, 20 deg/s").surfaces
     assert (found.control, found.limit, found.rate) == ("dr", pytest.approx(np.pi / 6), pytest.approx(np.pi / 9))
     assert typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg").surfaces[0].rate is None
+    planes = typed_file("own", ["Zds'=-0.01"], **WANTED, bow_planes="10 deg", stern_planes="20 deg, 30 deg/s").surfaces
+    assert [(s.control, s.limit, s.rate) for s in planes] == [
+        ("ds", pytest.approx(np.pi / 9), pytest.approx(np.pi / 6)), ("db", pytest.approx(np.pi / 18), None),
+    ]  # fmt: skip
+    with pytest.raises(InputError, match="--stern-planes"):
+        typed_file("own", ["Ydr'=0.01"], **WANTED, stern_planes="30")
     with pytest.raises(InputError, match="--rudder"):
         typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30")
 
@@ -259,14 +265,27 @@ def test_a_new_number_takes_the_place_of_the_terms_in_its_motions() -> None:
     assert [c.symbol for c in made.parameters.coefficients] == ["Yv'", "Yv|v|'", "Yvvv'", "X0'"]
 
 
-DAMPING = {"Xu": -4.0, "Yv": -40.0, "Zw": -40.0, "Kp": -1.5, "Mq": -12.0, "Nr": -12.0, "Yr": 3.0, "Mw": 25.0, "Nv": -25.0, "Zq": 2.0}
+DAMPING = {
+    "Xu": -4.0,
+    "Yv": -40.0,
+    "Zw": -40.0,
+    "Kp": -1.5,
+    "Mq": -12.0,
+    "Nr": -12.0,
+    "Yr": 3.0,
+    "Mw": 25.0,
+    "Nv": -25.0,
+    "Zq": 2.0,
+}
 
 
 def test_a_constant_acts_alike_at_every_speed_and_a_scaled_one_does_not() -> None:
     """Fossen's D: slopes of the water's force at 1, 1.5 and 2 m/s beside the typed numbers, by central differences."""
     units = {s: derivative(s).unit for s in DAMPING}
     for word, power in (("constant", 0), ("scaled", 1)):
-        made = typed_file("own", [f"{s}={v} {units[s]} {word} +- 10 %" for s, v in DAMPING.items()], **{**WANTED, "speed": "1.5"})
+        made = typed_file(
+            "own", [f"{s}={v} {units[s]} {word} +- 10 %" for s, v in DAMPING.items()], **{**WANTED, "speed": "1.5"}
+        )
         assert not made.findings
         law = force_law(made)
         for speed in (1.0, 1.5, 2.0):
@@ -282,7 +301,10 @@ def test_si_values_say_what_they_do_at_other_speeds() -> None:
     numbers = ["Yv=-40 N/(m/s)", "Nr=-12 N*m/(rad/s)", "Zw=-40 N/(m/s) constant", "Mq=-12 N*m/(rad/s) scaled", "Ydr=100 N/rad",
                "Yv|v|=-150 N/(m/s)^2", "Yvdot=-36 N/(m/s^2)", "Kp'=-0.01"]  # fmt: skip
     made = typed_file("own", numbers, **WANTED)
-    assert [(f["symbols"], f["power"], f["twice"]) for f in made.findings] == [(("Yv", "Nr"), "U", 2.0), (("Ydr",), "U^2", 4.0)]
+    assert [(f["symbols"], f["power"], f["twice"]) for f in made.findings] == [
+        (("Yv", "Nr"), "U", 2.0),
+        (("Ydr",), "U^2", 4.0),
+    ]
     assert {c.symbol for c in made.coefficients if c.law == "rest"} == {"Zw'"}
     assert sum("scaled" in remark for remark in made.remarks) == 2
     assert sum(c.severity is Severity.NOTE and "Yv and Nr" in c.subject for c in plausibility(made)) == 1
