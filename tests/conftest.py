@@ -21,6 +21,7 @@ import pytest
 from hypothesis import settings
 
 from coeflab.core.files import shipped
+from coeflab.core.keywords import in_shell
 from coeflab.core.types import locked
 from tests.cli.forked import COEFLAB, Forks
 from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
@@ -273,3 +274,10 @@ def visit(browser: Any) -> Iterator[Callable[..., Any]]:
     yield open_page
     for page in pages:
         page.close()
+
+
+@pytest.fixture
+def in_a_shell() -> Iterator[None]:
+    """Messages name options, as where a command runs."""
+    with in_shell():
+        yield

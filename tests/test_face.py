@@ -29,7 +29,7 @@ atexit.register(lambda: print([m for m in {heavy} if m in sys.modules], {ours}))
 main()"""
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert "uncertainty  Give intervals for the quantities of a manoeuvre" in shown
-    loaded = ["cards", "version", "text", "errors", "limits", "text.bounded", "applications"]
+    loaded = ["cards", "version", "text", "keywords", "errors", "limits", "text.bounded", "applications"]
     assert shown.endswith(f"[] {[f'coeflab.core.{name}' for name in loaded]}\n")
 
 

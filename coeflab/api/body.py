@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
 MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
-KEYWORDS = {"--unit": "unit", "--axes": "axes", "--repair": "repair", "--fill": "fill", "--sheets": "sheets"}
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -277,16 +276,7 @@ def read_body(
         return source if isinstance(source, Body) else body_of(source)
     if not isinstance(source, str | Path):
         raise InputError(f"a {type(source).__name__}", "a path, or the name of a shipped body", column="source")
-    try:
-        return typed_body(str(source), unit or units, axes or frame, repair, fill, sheets, centred=True)
-    except InputError as why:
-        for one in (why, *why.others):
-            for option, keyword in KEYWORDS.items():
-                one.expected = one.expected.replace(f"{option} ", f"{keyword}=") if option != one.expected else keyword
-                one.found = one.found.replace(option, keyword)
-            one.column = KEYWORDS.get(one.column or "", one.column)
-            one.args = (str(one),)
-        raise
+    return typed_body(str(source), unit or units, axes or frame, repair, fill, sheets, centred=True)
 
 
 def typed_body(

@@ -195,7 +195,7 @@ def _wanted(
     if not name:
         sized = [c for s in SHORT if (c := known.get(s)) is not None and c.value and c.u95]
         if not sized:
-            raise InputError(f"none of {', '.join(map(primed, SHORT))} with U95", "one, or a figure", column="wanted")
+            raise InputError(f"none of {', '.join(map(primed, SHORT))} with U95", "one, or a figure", column="--for")
         return plain_tests.of_symbol(max(sized, key=lambda c: float(c.u95 or 0.0) / abs(float(c.value or 1.0))))
     if (c := known.get(name.removesuffix("'"))) is not None:
         return plain_tests.of_symbol(c)
@@ -203,10 +203,10 @@ def _wanted(
     if name in INDICES or name[:1] not in COMPONENTS or not name.endswith("'"):
         if parameters is None:
             raise InputError(
-                f"{name} of what has no mass", "a parameter file", column="wanted",
+                f"{name} of what has no mass", "a parameter file", column="--for",
                 advice="coeflab vehicle BODY --mass KG, or coeflab merge, writes one.",
             )  # fmt: skip
         if name in INDICES:
             return plain_tests.of_index(parameters, name)
         return plain_tests.of_manoeuvre(parameters, name, Question(manoeuvre, options, members=MEMBERS))
-    raise InputError(f"{name}, of which nothing is known", f"one of {', '.join(map(primed, known))}", column="wanted")
+    raise InputError(f"{name}, of which nothing is known", f"one of {', '.join(map(primed, known))}", column="--for")

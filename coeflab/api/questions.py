@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.keywords import option
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.tables.form import Group, Line
@@ -117,12 +118,8 @@ def in_signs(place: str) -> str:
 
 
 _AS_TYPED = (
-    (re.compile(r"""--map ["']?([^\s=]+)=([^"']+)["']"""), r'columns={"\1": "\2"}'),
     (re.compile(r"(?<![\w\"])(\w+)=([A-Z]\w*'? \[[^\]]*\])"), r'columns={"\1": "\2"}'),
-    (re.compile(r",? or by --words FILE\.toml"), ""),
-    (re.compile(r"--as\b"), "importer ="),
     (re.compile(r", \.(?=centre_of_gravity|inertia)"), ", inertia."),
-    (re.compile(r"--set (?=[\w./]+=)"), ""),
 )
 
 
@@ -206,20 +203,6 @@ def in_keywords(why: InputError, source: str) -> InputError:
     return why
 
 
-@contextmanager
-def keyword_of(**options: str) -> Iterator[None]:
-    """Complaints about options of the shell as ones about keywords: ``keyword_of(mass="--mass")``."""
-    try:
-        yield
-    except InputError as why:
-        for one in (why, *why.others):
-            for keyword, option in options.items():
-                one.column = keyword if one.column == option else one.column
-            one.args = (str(one),)
-        why.args = (str(why),)
-        raise
-
-
 def si(value: float | str, dimension: str, keyword: str) -> float:
     """A number in SI, or a text with its unit.
 
@@ -234,7 +217,7 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     Raises
     ------
     InputError
-        Neither.
+        Neither; a bare angle of more than half a turn, which can only be degrees.
 
     Examples
     --------
@@ -243,9 +226,16 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     """
     try:
         number = value if isinstance(value, str) else _number(value)
-        return with_unit(number, dimension) if isinstance(value, str) or dimension == "density" else float(number)
+        typed = isinstance(value, str) or dimension == "density"
+        found = with_unit(number, dimension) if typed else float(number)
     except InputError as why:
-        raise type(why)(why.found, why.expected, column=keyword, advice=why.advice) from None
+        raise type(why)(why.found, why.expected, column=option(keyword), advice=why.advice) from None
+    if dimension == "angle" and not typed and abs(found) > math.pi:
+        raise InputError(
+            f"{found:g} rad, beyond half a turn", "an angle in rad, or with its unit", column=option(keyword),
+            advice=f'Degrees are written "{found:g} deg".',
+        )  # fmt: skip
+    return found
 
 
 def above_zero(value: float | str, dimension: str, keyword: str) -> float:
@@ -261,7 +251,7 @@ def above_zero(value: float | str, dimension: str, keyword: str) -> float:
     """
     found = si(value, dimension, keyword)
     if not found > 0.0:
-        raise InputError(shown(str(value)), f"a {dimension} above zero", column=keyword)
+        raise InputError(shown(str(value)), f"a {dimension} above zero", column=option(keyword))
     return found
 
 
@@ -290,7 +280,7 @@ def share_of(value: float | str, keyword: str) -> float:
     except ValueError:
         found = 0.0
     if not 0.0 < found < 1.0:
-        raise InputError(shown(text), "a share above zero and below one, such as 2% or 0.02", column=keyword)
+        raise InputError(shown(text), "a share above zero and below one, such as 2% or 0.02", column=option(keyword))
     return found
 
 
@@ -316,7 +306,7 @@ def three(values: Any, dimension: str, keyword: str) -> Array:
     [0.1, 0.0, 0.02]
     """
     if isinstance(values, str) or np.shape(values) != (3,):
-        raise InputError(shown(str(values)), "three numbers", column=keyword)
+        raise InputError(shown(str(values)), "three numbers", column=option(keyword))
     return np.array([si(v, dimension, keyword) for v in values])
 
 

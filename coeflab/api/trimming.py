@@ -26,7 +26,7 @@ __all__ = ["AXES", "CONTROLS", "LinearModel", "LinearSchedule", "Trim", "linear_
 def trim(
     vehicle: HasParameters | ParameterFile | str | Path,
     *,
-    commands: Mapping[str, float] | None = None,
+    commands: Mapping[str, float | str] | None = None,
     near: Mapping[str, float] | None = None,
     plane: str = "",
     free: Sequence[str] = (),
@@ -43,7 +43,7 @@ def trim(
     vehicle : Vehicle, str or Path
         A parameter file, or the name of a shipped one.
     commands : mapping of str to float, optional
-        Held: thrusters in their units, controls and tilts in rad.
+        Held: thrusters in their units, controls and tilts in rad or with a unit.
     near : mapping of str to float, optional
         Among several solutions the one nearest to this.
     plane : {"", "horizontal", "vertical"}
@@ -76,7 +76,9 @@ def trim(
     if strange := [name for name in motion if name not in MOTION]:
         raise InputError(f"the motion {strange[0]}", f"one of {', '.join(MOTION)}", column=strange[0])
     asked = {AXES.get(k, k): si(v, MOTION[k], k) for k, v in motion.items()}
-    orders = dict(commands or {})
+    orders = {
+        k: si(v, "angle" if k in CONTROLS or k.endswith(".tilt") else "none", k) for k, v in (commands or {}).items()
+    }
     chosen = plane or ("vertical" if UPRIGHT & {*asked, *orders} else "horizontal")
     craft = moving(parameters_of(vehicle), tuple(free), chosen, tables, accelerations)
     return found(craft, asked, orders, dict(near or {}), starts, seed)

@@ -16,7 +16,7 @@ from coeflab.api.exporting import export as exported
 from coeflab.api.motion import Motion
 from coeflab.api.motion import simulate as simulated
 from coeflab.api.parameters import parameters_of
-from coeflab.api.questions import above_zero, keyword_of, si, three
+from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
@@ -158,7 +158,7 @@ class Vehicle:
         *,
         also: Sequence[str] = (),
         lags: Mapping[str, float] | None = None,
-        commands: Mapping[str, float] | None = None,
+        commands: Mapping[str, float | str] | None = None,
         plane: str = "",
         free: Sequence[str] = (),
         tables: bool = False,
@@ -349,8 +349,7 @@ def vehicle(
         None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
     )
     called = stem(name or hull.name)
-    with keyword_of(mass="--mass", centre_of_gravity="--cg", inertia="--inertia", speed="--speed", density="--density"):
-        result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
+    result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
     base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
     if coefficients is None:
         return Vehicle(base)

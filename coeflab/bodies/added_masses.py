@@ -92,13 +92,14 @@ def added_masses(
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
         options = dict(plugin.reproducible if reproducible else {})
         options |= {**(known[preset] if preset else {}), **(given or {})}
-        options |= {"error": error} if error and plugin_name == "panel" else {}
+        options |= {"error": error} if error and hasattr(plugin.Options, "error") else {}
         subjects = [body]
         if original is not None and plugin.takes_surface:
             subjects = [original, body] if method == "all" else [original]
         for subject in subjects:
             try:
-                _require_solid(subject, plugin_name)
+                if not plugin.takes_sheets:
+                    _require_solid(subject)
                 found = plugin.added_mass(subject, density, options)
             except InputError as why:
                 if method != "all":
@@ -226,10 +227,10 @@ def beside_walls(
     return tuple(method.added_mass(subject, density, {**options, "distance": d}) for d in sorted(set(distances)))
 
 
-def _require_solid(body: Body, method: str) -> None:
+def _require_solid(body: Body) -> None:
     """Refuse sheets of a mesh for methods that would leave them out."""
     shape = body.require_shape()
-    if isinstance(shape, TriangleMesh) and len(shape.sheets) and method != "panel":
+    if isinstance(shape, TriangleMesh) and len(shape.sheets):
         raise InputError(
             "a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets."
         )

@@ -116,6 +116,8 @@ class Thruster:
         What the axis turns about, of length one, FRD.
     tilt : (float, float)
         Lowest and highest, rad.
+    lag : float or None
+        Time constant from the command to what the rotor does, s.
     """
 
     name: str
@@ -130,6 +132,7 @@ class Thruster:
     handedness: Literal[-1, 1] = 1
     tilt_axis: Array | None = None
     tilt: tuple[float, float] = (0.0, 0.0)
+    lag: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("place", "axis", "curve", "tilt_axis"):
@@ -304,6 +307,8 @@ class ThrusterKeys(takes.Declaration):
         [x, y, z], FRD, that the axis turns about, right-handed.
     tilt_limit : float
         Largest tilt either way, "30 deg".
+    lag : float
+        Time constant, "0.2 s", in which the rotor goes to its command; at once unless given.
     """
 
     name: takes.Text
@@ -327,6 +332,7 @@ class ThrusterKeys(takes.Declaration):
     handedness: takes.Pure | None = None
     tilt_axis: Direction | None = None
     tilt_limit: takes.Angle | None = None
+    lag: takes.Time | None = None
 
     def check(self) -> None:
         """It pushes somewhere, and one thing gives its thrust."""
@@ -377,6 +383,8 @@ class ThrusterKeys(takes.Declaration):
                     raise InputError(f"{value:g}", "zero or more", column=name)
         if self.handedness not in (None, 1.0, -1.0):
             raise InputError(f"{self.handedness:g}", "1 or -1", column="handedness")
+        if self.lag is not None and not self.lag > 0.0:
+            raise InputError(f"{self.lag:g} s", "a time constant above zero", column="lag")
         if (self.tilt_axis is None) != (self.tilt_limit is None):
             raise InputError(
                 "one of them",
@@ -402,5 +410,5 @@ class ThrusterKeys(takes.Declaration):
         limit = self.tilt_limit or 0.0
         return Thruster(
             self.name, self.place, axis, self.curve, self.command, self.unit, screw, squares, torque,
-            -1 if self.handedness == -1.0 else 1, tilting, (-limit, limit),
+            -1 if self.handedness == -1.0 else 1, tilting, (-limit, limit), self.lag,
         )  # fmt: skip

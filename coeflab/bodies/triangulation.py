@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, mirrors, vanishing
 from coeflab.bodies.rough_guide import rough_finding, rough_u95, unresolved_finding
@@ -17,6 +18,18 @@ from coeflab.core.finding import Finding
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.symbols import COMPONENTS, MOTIONS
+
+
+def _place(method: str) -> float:
+    """A method's place in the recommendation."""
+    name, _, preset = method.partition(":")
+    return ADDED_MASS.load(name).places.get(preset, np.inf)
+
+
+def _exact(ellipsoids: int) -> tuple[str, ...]:
+    """Methods that are exact for so many ellipsoids, the narrowest first."""
+    limits = {name: ADDED_MASS.load(name).exact_ellipsoids for name in ADDED_MASS.usable()}
+    return tuple(sorted((n for n in limits if limits[n] >= ellipsoids), key=lambda n: limits[n]))
 
 
 def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
@@ -44,7 +57,6 @@ CAUTION_PARTS = (
     "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide, as parts are poor stand-ins for a mesh: {}. Take the panel "
     "method on the mesh itself, or replace these parts"
 )
-ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
 SILENT = 1e-6  # of the largest diagonal entry: a motion that moves no water
 APART = 1e-3  # of a sphere's added mass, by what the others induce: as exact as the panel method gets
@@ -105,13 +117,10 @@ class Triangulation:
         InputError
             None of them is.
         """
-        alone, order = () if self._parts else _ellipsoids(self.body.require_shape()), ORDER
-        if alone and _felt(alone) < APART:
-            exact = ("ellipsoid", "primitives") if len(alone) == 1 else ("primitives",)
-            order = (*exact, *(m for m in ORDER if m not in exact))
-        ranked = sorted(
-            self.results, key=lambda r: (r.rough, order.index(r.method) if r.method in order else len(order))
-        )
+        alone = () if self._parts else _ellipsoids(self.body.require_shape())
+        exact = _exact(len(alone)) if alone and _felt(alone) < APART else ()
+        order = {name: place - len(exact) for place, name in enumerate(exact)}
+        ranked = sorted(self.results, key=lambda r: (r.rough, order.get(r.method, _place(r.method))))
         found = next((r for r in ranked if r.definiteness.holds), None)
         if found is None:
             raise InputError(
@@ -131,7 +140,7 @@ class Triangulation:
         if found.rough:
             out.append(rough_finding(found, "--method panel" if "panel" not in self._tried else "coeflab simplify"))
         why = self.refused.get("panel on the mesh", self.refused.get("panel", ""))
-        if why and "panel" not in self._used and not self._exact(found):
+        if why and "panel" not in self._used and not self._is_exact(found):
             out.append(unresolved_finding(found.body, found.method, why, "coeflab simplify"))
         return tuple(out)
 
@@ -143,9 +152,9 @@ class Triangulation:
     def _tried(self) -> set[str]:
         return self._used | set(self.refused) | {"panel" for name in self.refused if name.startswith("panel")}
 
-    def _exact(self, found: AddedMass) -> bool:
+    def _is_exact(self, found: AddedMass) -> bool:
         """Lamb's form for one ellipsoid."""
-        return found.method in ("ellipsoid", "primitives") and len(_ellipsoids(self.body.require_shape())) == 1
+        return found.method in _exact(1) and len(_ellipsoids(self.body.require_shape())) == 1
 
     def _caution(self, found: AddedMass) -> str:
         """What must be said first: none is good, or the parts that it is of were not compared with their mesh."""

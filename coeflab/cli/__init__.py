@@ -99,6 +99,13 @@ class Commands(TyperGroup):
         super().__init__(**settings)
         self.commands = {name: TyperCommand(name) for name in ORDER}
 
+    def main(self, *args: Any, **settings: Any) -> Any:
+        """Run a command line, whose messages name options."""
+        from coeflab.core.keywords import in_shell
+
+        with in_shell():
+            return super().main(*args, **settings)
+
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Refuse a blank value of any option or argument: it is no way to leave one out."""
         from coeflab.core.errors import InputError

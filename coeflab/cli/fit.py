@@ -57,15 +57,7 @@ def command(
     speed: str = typer.Option(
         "", metavar="SPEED", help="Only rows of this speed, such as 1.3 m/s: one fit a speed.", show_default=False
     ),
-    next_runs: int = typer.Option(
-        0,
-        "--next",
-        metavar="COUNT",
-        min=0,
-        max=20,
-        show_default=False,
-        help="Name the runs that would narrow each slope most.",
-    ),
+    next_runs: str | None = typer.Option(None, "--next", hidden=True),
     diagnostics: bool = typer.Option(
         False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
     ),
@@ -93,6 +85,8 @@ def command(
     import coeflab as cf
     from coeflab.api.campaigns import fit_campaigns, suited_fit
 
+    if next_runs is not None:  # goes in 0.4
+        raise InputError(f"fit --next {shown(next_runs)}", "coeflab next TABLE", column="--next")
     names, of_fit = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
@@ -100,8 +94,6 @@ def command(
         raise InputError(shown(figure.name), "a file name that ends in .svg, .pdf or .png", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
     fit = fit or suited_fit(paths[0])
-    if next_runs and fit != DEFAULT:
-        raise InputError(f"--next with --fit {shown(fit)}", f"--fit {DEFAULT}", column="--next")
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
     at = positive_typed(speed, "speed", "--speed") if speed else None
@@ -117,12 +109,9 @@ def command(
     if json:
         from coeflab.report.as_json import studies as as_json
 
-        out = _only(as_json.study(study, []), wanted)
-        if next_runs:
-            out["next"] = as_json.next_runs(study, wanted, next_runs)
-        show.json_object(out)
+        show.json_object(_only(as_json.study(study, []), wanted))
     else:
-        _print(study, wanted, next_runs)
+        _print(study, wanted)
         if diagnostics:
             _diagnose(study)
         if figure is not None:
@@ -231,13 +220,12 @@ def _diagnose(study: Study) -> None:
         show.table(model_tables.correlations(model))
 
 
-def _print(study: Study, symbols: list[str], count: int) -> None:
+def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
     from coeflab.report.tables import uncertainty as budget_tables
-    from coeflab.report.tables.next_runs import next_points
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
@@ -260,8 +248,6 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
         for each in model_tables.qualities(models):
             show.table(each)
         show.table(model_tables.campaigns(study.fits))
-    for f in study.fits if count else ():
-        show.table(next_points(study, f, count, symbols))
     show.findings(study.checks)
 
 

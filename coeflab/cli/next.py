@@ -9,9 +9,6 @@ import typer
 from coeflab.cli import complete, show
 
 EXAMPLE = 'coeflab next suboff_roddy_2 --for "Nv\'" --runs 4 --target 10%'
-OPTIONS = {
-    "wanted": "--for", **{name: f"--{name}" for name in ("runs", "target", "noise", "angle", "control", "rate")},
-}  # fmt: skip
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
@@ -61,17 +58,11 @@ def command(
         raise InputError(shown(to.name), "a file name that ends in .csv or .toml", column="--to")
     if to is not None:
         placeable(to)
-    try:
-        with show.narrated():
-            found = cf.next_tests(
-                source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle,
-                control=control, rate=rate, manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
-            )  # fmt: skip
-    except InputError as why:
-        if why.column in OPTIONS:
-            why.column = OPTIONS[why.column]
-            why.args = (str(why),)
-        raise
+    with show.narrated():
+        found = cf.next_tests(
+            source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle, control=control, rate=rate,
+            manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
+        )  # fmt: skip
     if to is not None:
         text = found.matrix() if to.suffix == ".toml" else found.frame().to_csv(index=False)
         write_all(to.parent, {to.name: text.encode()})

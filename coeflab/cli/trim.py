@@ -58,7 +58,7 @@ def command(
         [],
         "--lag",
         metavar="NAME=VALUE",
-        help="Time constant in s with which a thruster or a control follows its command; repeatable.",
+        help="Time constant in s with which a thruster or a control follows its command, in place of the file's; repeatable.",
     ),
     out: Path | None = typer.Option(
         None,

@@ -17,6 +17,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from coeflab.core.keywords import spoken
+
 SHOWN, LONGEST, MOST_LISTED, MOST_LETTERS = 60, 400, 50, 1500
 
 
@@ -45,7 +47,13 @@ _LETTER = re.compile(r"character \d+")  # where on its line a text breaks
 
 
 class CoeflabError(Exception):
-    """Base of all errors raised on purpose; the command line turns it into exit code 2."""
+    """Base of all errors raised on purpose; the command line turns it into exit code 2.
+
+    Options of the shell that a message names are keywords unless a command runs (`coeflab.core.keywords`).
+    """
+
+    def __init__(self, *told: str) -> None:
+        super().__init__(*map(spoken, told))
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -90,8 +98,9 @@ class InputError(CoeflabError):
         key: str | None = None,
         advice: str = "",
     ) -> None:
-        self.found, self.expected = _bounded(found), _bounded(expected)
-        self.file, self.line, self.column, self.advice = file, line, column if key is None else key, advice
+        self.found, self.expected = _bounded(spoken(found)), _bounded(spoken(expected))
+        place = column if key is None else key
+        self.file, self.line, self.column, self.advice = file, line, place and spoken(place), spoken(advice)
         self.keyed = key is not None
         self.others: tuple[InputError, ...] = ()
         self.example = ""

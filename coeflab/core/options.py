@@ -56,7 +56,9 @@ def measured(default: float, low: float, high: float, dimension: str, frequency:
     def read(value: Any, _file: Path) -> float:
         number = quantity(value, dimension)
         if not low <= number <= high:
-            raise InputError(shown(value), f"{low:g} to {high:g} {SI[dimension]}".rstrip())
+            degrees = dimension == "angle" and not isinstance(value, str) and low <= math.radians(number) <= high
+            advice = f'Degrees are written "{value:g} deg".' if degrees else ""
+            raise InputError(shown(value), f"{low:g} to {high:g} {SI[dimension]}".rstrip(), advice=advice)
         return number
 
     turns = dimension in TURNING and not frequency

@@ -98,6 +98,8 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
         out.append(
             f"thruster {names}: add its force yourself" if alone else f"thrusters {names}: add their forces yourself"
         )
+    elif "lags" not in holds and (late := [t.name for t in parameters.thrusters if t.lag is not None]):
+        out.append(f"lag of {', '.join(late)}: commands are taken at once")
     if parameters.surfaces and "surfaces" not in holds:
         out.append(
             f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"

@@ -6,6 +6,8 @@ import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
@@ -15,6 +17,7 @@ from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
 from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file, refuse_shape
+from coeflab.vehicle.parameter_refusals import first_complaint
 from coeflab.vehicle.plausibility import plausibility
 
 OWN = "coeflab"
@@ -99,6 +102,10 @@ def read_model_file(path: Path, density: float | None = None) -> ModelFile:
         return ModelFile(kind, parameters, plausibility(parameters))
     try:
         return _imported(path, kind, density)
+    except ValidationError as why:  # a number beyond what a parameter file may hold
+        refused = first_complaint(why, kind)
+        refused.file = path
+        raise refused from None
     except InputError as why:
         if why.file is None:
             why.file = path

@@ -87,7 +87,8 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
     """Read a time series.
 
     Columns ``t`` and ``u`` are needed, or ``x``, ``y`` and ``psi``, of which u, v and r follow; v w p q r, phi and theta, dr ds db,
-    ``thrust`` and the thrusters of the vehicle (with ``.tilt``) are taken where they are, others are passed over.
+    ``thrust`` and the thrusters of the vehicle (with ``.tilt``) are taken where they are, others are passed over. A thruster's column
+    is what it does: no lag of the file is applied to it.
 
     Parameters
     ----------
@@ -146,6 +147,9 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
     zero = np.zeros(n)
     roll, pitch = (found.get(a, zero) for a in ANGLES)
     commands = {k: v for k, v in found.items() if k not in ("t", *MOTIONS, *CONTROLS, *ANGLES, *PLACES)}
+    for thruster in vehicle.thrusters:
+        if thruster.lag is not None and thruster.name in commands:
+            findings.append(Finding.of("record.lag", thruster.name, Severity.NOTE, statistic=thruster.lag))
     return MotionSeries(
         path.name, time, np.column_stack([found.get(m, zero) for m in MOTIONS]),
         _attitude(roll, pitch), np.column_stack([found.get(c, zero) for c in CONTROLS]),

@@ -42,8 +42,8 @@ class Status(StrEnum):
         """What to do about it."""
         return {
             Status.OK: "",
-            Status.SIGN_OPEN: "The 95 % interval contains zero: the sign is open. `coeflab fit TABLE --next 3` names the "
-            "three runs that narrow it most.",
+            Status.SIGN_OPEN: "The 95 % interval contains zero: the sign is open. `coeflab next TABLE` names the runs that "
+            "narrow it most.",
             Status.NO_TABLE: "No table varies this motion. Add a campaign that does.",
             Status.TOO_FEW_POINTS: "Too few different settings to determine it. Run more angles or rates.",
             Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "

@@ -77,7 +77,7 @@ def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> f
 def _instead(vehicle: Vehicle) -> str:
     """What a vehicle without control surfaces can do."""
     if not vehicle.thrusters:
-        return "The file has neither control surfaces nor thrusters: --manoeuvre stop and straight_run need none."
+        return "The file has neither control surfaces nor thrusters: the manoeuvres stop and straight_run need none."
     orders = " ".join(f"{t.name}={t.curve.segments[-1].high:g}" for t in vehicle.thrusters)
     return f'Turning circle and zigzag take thrusters in its place: --commands "{orders}", unequal.'
 

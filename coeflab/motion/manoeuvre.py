@@ -12,7 +12,7 @@ The orders of a manoeuvre as arrays, checked against the vehicle that has to fol
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
@@ -30,6 +30,7 @@ from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.inertia import MEASURED
+from coeflab.vehicle.parameter_parts import ParameterCurve
 
 Quantity = Literal["heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed", "turned"]
 QUANTITIES: dict[Quantity, str] = {
@@ -309,6 +310,78 @@ class PlannedManoeuvre:
         return f"{self.place}.{name}"
 
 
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Late:
+    """Thrusters that follow their commands with a lag, k of them, of members in phases.
+
+    Attributes
+    ----------
+    names : tuple of str
+    lag : (k,) array
+        s.
+    curves : tuple
+        Of thrust, and of torque or None, of each.
+    begin : (1 or m, k) array
+        What they do at the start.
+    ordered : (1 or m, p, k) array
+    levers : (1 or m, p, k, 2, 6) array
+        Force and moment of one newton of thrust and of one newton metre of torque.
+    """
+
+    names: tuple[str, ...]
+    lag: Array
+    curves: tuple[tuple[ParameterCurve, ParameterCurve | None], ...]
+    begin: Array
+    ordered: Array
+    levers: Array
+
+    def actual(self, before: Array, who: Ints, phase: Ints, since: Array) -> Array:
+        """(n, k) what each does a time (n,) after its order, from what it did before (n, k)."""
+        return lagged(before, self.ordered[who % len(self.ordered), phase], self.lag, since[:, None])
+
+    def course(self, member: int, time: Array, phase: Ints, switches: Array) -> dict[str, Array]:
+        """What each does over time, by name, of a member whose phases end at these times."""
+        who, since = np.array([member]), 0.0
+        before, out = self.begin[who % len(self.begin)], np.zeros((len(time), len(self.lag)))
+        for k, end in enumerate(switches.tolist()):
+            at, here = phase == k, np.array([k])
+            out[at] = self.actual(before, who, here, time[at] - since)
+            if not math.isfinite(end):
+                break
+            before, since = self.actual(before, who, here, np.array([end - since])), end
+        return dict(zip(self.names, out.T, strict=True))
+
+    def wrench(self, actual: Array, who: Ints, phase: Ints) -> Array:
+        """(6, n) force and moment at what they do (n, k)."""
+        given = [
+            [[c.at(x) if c else 0.0 for c in pair] for pair, x in zip(self.curves, row, strict=True)]
+            for row in actual.tolist()
+        ]
+        return np.asarray(np.einsum("nkc,nkci->in", np.array(given), self.levers[who % len(self.levers), phase]))
+
+    def knots(self, before: Array, who: Ints, phase: Ints) -> Array:
+        """(j, n) times from the order at which an end of a segment is passed; infinite where it is not."""
+        target = self.ordered[who % len(self.ordered), phase]
+        times = [np.full((1, len(who)), np.inf)]
+        for k, pair in enumerate(self.curves):
+            ends = np.unique([x for c in pair if c for s in c.segments for x in (s.low, s.high)])[:, None]
+            share = np.divide(
+                target[:, k] - ends,
+                target[:, k] - before[:, k],
+                out=np.ones((len(ends), len(who))),
+                where=target[:, k] != before[:, k],
+            )
+            between = (share > 0.0) & (share < 1.0)
+            times.append(np.where(between, -self.lag[k] * np.log(np.where(between, share, 1.0)), np.inf))
+        return np.vstack(times)
+
+
+def lagged(before: Array, command: Array, lag: Array, since: Array) -> Array:
+    """What follows a command by ``lag d(actual)/dt = command - actual`` a time after it was given."""
+    return np.asarray(command + (before - command) * np.exp(-np.maximum(since, 0.0) / lag))
+
+
 WATCHED = ("heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed", "turned")
 COMPLETE, NOT_FINITE, TOO_FAST, STEP_TOO_SMALL = range(4)
 NEAR = 1e-9
@@ -336,6 +409,8 @@ class Orders:
     value : (p,) array
     longest : (p,) array
         s, positive.
+    late : Late or None
+        Thrusters that follow new commands with a lag; what they give is not in ``wrench``.
     """
 
     angles: Array
@@ -346,6 +421,7 @@ class Orders:
     sign: Array
     value: Array
     longest: Array
+    late: Late | None = None
 
     @property
     def count(self) -> int:
@@ -476,6 +552,8 @@ def orders_of(vehicle: Vehicle, manoeuvre: Manoeuvre) -> Orders:
     rates = [surfaces[c].rate if c in surfaces else None for c in CONTROLS]
     untils = [p.until for p in manoeuvre.phases]
     commands = [{k: v for k, v in stands.items() if k not in CONTROLS} for stands in standing]
+    late = _late(vehicle, manoeuvre.orders, commands)
+    commands = [{k: v for k, v in stands.items() if not late or k not in late.names} for stands in commands]
     return Orders(
         angles=np.array([[stands.get(c, 0.0) for c in CONTROLS] for stands in standing]),
         begin=np.array([manoeuvre.orders.get(c, 0.0) for c in CONTROLS], dtype=np.float64),
@@ -484,8 +562,26 @@ def orders_of(vehicle: Vehicle, manoeuvre: Manoeuvre) -> Orders:
         watched=np.array([-1 if u is None else WATCHED.index(u.quantity) for u in untils], dtype=np.int64),
         sign=np.array([1.0 if u is None or u.rises else -1.0 for u in untils]),
         value=np.array([0.0 if u is None else u.value for u in untils]),
-        longest=np.array([p.longest for p in manoeuvre.phases], dtype=np.float64),
-    )
+        longest=np.array([p.longest for p in manoeuvre.phases], dtype=np.float64), late=late,
+    )  # fmt: skip
+
+
+def _late(vehicle: Vehicle, begin: Mapping[str, float], commands: Sequence[Mapping[str, float]]) -> Late | None:
+    """Thrusters with a lag whose commands change."""
+    names = [t.name for t in vehicle.thrusters]
+    selected = [
+        t for t in vehicle.thrusters
+        if t.lag is not None and any(c.get(t.name, 0.0) != begin.get(t.name, 0.0) for c in commands)
+    ]  # fmt: skip
+    if not selected:
+        return None
+    levers = [[vehicle.levers(names.index(t.name), c.get(f"{t.name}.tilt", 0.0)) for t in selected] for c in commands]
+    return Late(
+        names=tuple(t.name for t in selected), lag=np.array([t.lag for t in selected], dtype=np.float64),
+        curves=tuple((t.curve, t.torque_curve) for t in selected),
+        begin=np.array([[begin.get(t.name, 0.0) for t in selected]], dtype=np.float64),
+        ordered=np.array([[[c.get(t.name, 0.0) for t in selected] for c in commands]], dtype=np.float64), levers=np.array([levers]),
+    )  # fmt: skip
 
 
 def _check(vehicle: Vehicle, orders: Mapping[str, float], where: str) -> None:

@@ -21,7 +21,17 @@ from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs, rates_of
 from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
-from coeflab.motion.manoeuvre import NEAR, Manoeuvre, Marching, Orders, beyond_curves, orders_of, ramp, standing_orders
+from coeflab.motion.manoeuvre import (
+    NEAR,
+    Late,
+    Manoeuvre,
+    Marching,
+    Orders,
+    beyond_curves,
+    orders_of,
+    ramp,
+    standing_orders,
+)
 from coeflab.motion.trajectory import Ended, Trajectory, ended_by_tables, outside
 from coeflab.motion.vehicle import Vehicle
 
@@ -231,6 +241,8 @@ class Marched:
         ends = np.where(done, switches, np.inf)
         phase = np.minimum(np.searchsorted(ends, time, side="right"), phases - 1)
         controls = self._controls(manoeuvre, time, phase, switches)
+        if self.orders.late is not None:
+            controls |= self.orders.late.course(i, time, phase, switches)
         how = ENDED[int(found.ended[i])]
         flags = outside(member, rows[:, 7:13], {c: x for c, x in controls.items() if c in CONTROLS})
         motion = Trajectory(
@@ -361,8 +373,25 @@ def _arrays(ensemble: Ensemble, manoeuvres: tuple[Manoeuvre, ...]) -> tuple[Orde
     start[:, 7:13] = [m.velocity for m in manoeuvres]
     if not np.isfinite(start).all():
         raise InputError("a start that is not finite", "velocities and an attitude", column=manoeuvres[0].name)
-    wrench = np.array([o.wrench for o in each]) if len(each) > 1 else each[0].wrench
-    return replace(each[0], wrench=wrench), np.repeat(start, ensemble.count // len(manoeuvres), axis=0)
+    wrench, late = each[0].wrench, each[0].late
+    if len(each) > 1:
+        wrench = np.array([o.wrench for o in each])
+        if late is not None or any(o.late for o in each):
+            late = _together([o.late for o in each])
+    return replace(each[0], wrench=wrench, late=late), np.repeat(start, ensemble.count // len(manoeuvres), axis=0)
+
+
+def _together(each: Sequence[Late | None]) -> Late:
+    """Thrusters with a lag of all members."""
+    alike = [late for late in each if late is not None]
+    if len(alike) < len(each) or len({late.names for late in alike}) > 1:
+        raise InputError(
+            "thrusters with a lag that change their command in some members", "the same in all", column="lag"
+        )
+    begin, ordered, levers = (
+        np.concatenate([getattr(late, n) for late in alike]) for n in ("begin", "ordered", "levers")
+    )
+    return replace(alike[0], begin=begin, ordered=ordered, levers=levers)
 
 
 def _fastest(ensemble: Ensemble, start: Array) -> float:
@@ -385,6 +414,8 @@ def _step(ensemble: Ensemble, dynamics: Dynamics, orders: Orders, start: Array, 
         )
     most = largest_step(np.array(found))
     fastest = float(np.max(np.abs(found)))
+    if orders.late is not None:
+        fastest = max(fastest, 1.0 / float(np.min(orders.late.lag)))
     if asked > most:
         raise InputError(
             f"a step of {asked:g} s", f"at most {most:.3g} s: the fastest small motion, {fastest:.3g} 1/s, grows beyond that",

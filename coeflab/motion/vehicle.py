@@ -174,10 +174,7 @@ class Vehicle:
         out[0] = commands.get(THRUST, 0.0)
         for t in self.thrusters:
             command = commands.get(t.name, 0.0)
-            along = np.array(t.direction)
-            if t.tilt_axis is not None:
-                tilt = min(max(commands.get(f"{t.name}.tilt", 0.0), t.tilt_low), t.tilt_high)
-                along = turned_about(np.array(t.tilt_axis), tilt) @ along
+            along = _along(t, commands.get(f"{t.name}.tilt", 0.0))
             force = t.curve.at(command) * along
             out[:3] += force
             out[3:] += np.cross(np.array(t.position), force)
@@ -185,11 +182,25 @@ class Vehicle:
                 out[3:] += t.handedness * t.torque_curve.at(command) * along
         return out
 
+    def levers(self, k: int, tilt: float) -> Array:
+        """(2, 6) force and moment of one newton of thrust, and of one newton metre of torque, of a thruster at a tilt."""
+        t = self.thrusters[k]
+        along = _along(t, tilt)
+        return np.array([[*along, *np.cross(np.array(t.position), along)], [0.0, 0.0, 0.0, *(t.handedness * along)]])
+
     def resistance(self, speed: float) -> float:
         """Thrust that a straight course ahead takes, N, at no angle and no control."""
         nu = np.zeros((1, 6))
         nu[0, 0] = speed
         return -float(self.force(nu, np.zeros((1, 3)))[0, 0])
+
+
+def _along(t: ParameterThruster, tilt: float) -> Array:
+    """(3,) direction of thrust at a tilt, held within its limits."""
+    along = np.array(t.direction)
+    if t.tilt_axis is None:
+        return along
+    return np.asarray(turned_about(np.array(t.tilt_axis), min(max(tilt, t.tilt_low), t.tilt_high)) @ along)
 
 
 def vehicle(

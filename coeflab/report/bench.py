@@ -95,6 +95,8 @@ def bench_of(study: Study) -> BenchData | None:
     many = [f"{primed(s.symbol)} of {s.campaign}" for f in fits for s in f.sweeps if _slope(s) and len(s.x) > EACH_ROW]
     left_out = [f"{name}: swept about another point and moved back" for name in moved_back]
     left_out += [f"{name}: over {EACH_ROW} rows" for name in many]
+    lags = [p.name for p in study.parameter_files.values() if any(t.lag is not None for t in p.thrusters)]
+    left_out += [f"{name}: lag of its thrusters" for name in lags]
     return BenchData(sweeps, campaigns, files, tuple(left_out))
 
 
@@ -291,6 +293,8 @@ def _links(
 
 def _arrays(vehicle: Vehicle, manoeuvre: Manoeuvre) -> dict[str, Any]:
     """A vehicle and a manoeuvre as `coeflab.motion.marching` marches them."""
+    at_once = tuple(t.model_copy(update={"lag": None}) for t in vehicle.thrusters)  # the page's march has no lag
+    vehicle = replace(vehicle, thrusters=at_once)
     ensemble, orders = alone(vehicle), orders_of(vehicle, manoeuvre)
     dynamics, law = ensemble.dynamics(np.zeros(3)), vehicle.law
     start = np.concatenate(

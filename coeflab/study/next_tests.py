@@ -193,7 +193,7 @@ def of_symbol(coefficient: Coefficient) -> Wanted:
     name = primed(coefficient.symbol.removesuffix("'"))
     if coefficient.value is None or not coefficient.u95:
         raise InputError(
-            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="wanted",
+            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="--for",
             advice="Give a body, whose estimates have both, or a table with three settings.",
         )  # fmt: skip
     return Wanted(name, coefficient.value, coefficient.u95, {name.removesuffix("'"): (1.0, coefficient.u95)})
@@ -212,7 +212,7 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
     if parameters.mass is None or len(found) < len(symbols):
         raise InputError(
             f"{name} of a file without {'mass' if parameters.mass is None else 'U95 of all four coefficients'}",
-            f"mass, and {', '.join(map(str, symbols))} with U95", column="wanted",
+            f"mass, and {', '.join(map(str, symbols))} with U95", column="--for",
         )  # fmt: skip
     values = [float(c.value or 0.0) for c in found]
     mass = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
@@ -244,12 +244,12 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
         figures = ", ".join(s.figure.name for s in carried.spreads)
         raise InputError(
             shown(name), f"a coefficient, {', '.join(INDICES)}, or of {question.manoeuvre}: {figures or 'none'}",
-            column="wanted", advice="Another manoeuvre may have it.",
+            column="--for", advice="Another manoeuvre may have it.",
         )  # fmt: skip
     found = near[0]
     if found.low is None or found.high is None or found.figure.value is None:
         raise InputError(
-            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="wanted"
+            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="--for"
         )
     importance = next(i for i in carried.importances if i.figure == found.figure.name)
     shares = {}
@@ -291,7 +291,7 @@ def next_tests(
         Fewer than three runs where nothing was run, or no coefficient that a test gives.
     """
     if not 1 <= runs <= MOST:
-        raise InputError(f"{runs} runs", f"1 to {MOST}", column="runs")
+        raise InputError(f"{runs} runs", f"1 to {MOST}", column="--runs")
     groups: dict[tuple[Kind, str], list[str]] = {}
     for symbol in wanted.shares:
         groups.setdefault(kind_of(symbol), []).append(symbol)
@@ -316,7 +316,7 @@ def next_tests(
             assumed += [] if s in ran else [primed(s)]
         rows = len(responses[0].x)
         if not rows and runs < FEWEST:
-            raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="runs")
+            raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="--runs")
         levels = _levels(variable, ranges, ran.get(slopes[0]))
         settings = designed(responses, runs, levels, distinct=computed)
         equal = _equal(runs, levels, responses[0].odd)
@@ -329,7 +329,7 @@ def next_tests(
         both = tuple((wanted.shares[s][1], a) for s, a in zip(slopes, after, strict=True))
         out.append(ProposedTest(kind, variable, _primed(slopes), share, settings, both, tuple(plain), then, rows))
     if not out:
-        raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="wanted")
+        raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
     return NextTests(
         wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed)

@@ -21,7 +21,7 @@ from coeflab.core.text.bounded import leading_bytes
 from coeflab.core.types import Array
 from coeflab.law.symbols import FORCES
 from coeflab.tables.campaign import HALVES, PORT_STARBOARD, Cut
-from coeflab.tables.raw_table import Stated
+from coeflab.tables.raw_table import HALF_MODEL, Stated
 
 # A forbidden component, of the largest force or moment of the table. To half of a body the pressure on the other side of the
 # cut is missing, a force of the order of the others; meshes and balances of whole bodies stay well below a twentieth.
@@ -115,8 +115,8 @@ def _size(along: Along, component: str, declared: bool) -> float:
 # ------------------------------------------------------------------------------------------------------- files of a solver
 
 
-def stated_plane(places: Sequence[str]) -> Stated | None:
-    """What an importer states of the half model, from the places of symmetry planes in its files; None without any.
+def stated_plane(places: Sequence[str]) -> dict[str, Stated]:
+    """What an importer states of the half model, from the places of symmetry planes in its files; nothing without any.
 
     Parameters
     ----------
@@ -124,14 +124,15 @@ def stated_plane(places: Sequence[str]) -> Stated | None:
         Each with file and line: ``run.cfg:9: marker midplane is a symmetry plane``.
     """
     if not places:
-        return None
-    return Stated("symmetry plane", places[0].partition(": ")[0], offered=True, contradicted="; ".join(places))
+        return {}
+    where = places[0].partition(": ")[0]
+    return {HALF_MODEL: Stated("symmetry plane", where, offered=True, contradicted="; ".join(places))}
 
 
 def planes_beside(
     path: Path, suffixes: Sequence[str], kind: re.Pattern[str], name: re.Pattern[str] | None = None
-) -> tuple[list[str], list[Path]]:
-    """Symmetry planes that texts beside a monitor name, each with its place; and the files that name them.
+) -> tuple[dict[str, Stated], list[Path]]:
+    """What texts beside a monitor state of the half model by a symmetry plane that they name; and the files that name one.
 
     One setup often serves a whole folder of runs: where a run has a folder of its own without such a text, the folder of runs counts.
 
@@ -146,10 +147,10 @@ def planes_beside(
     name : pattern, optional
         Of an earlier line that names the boundary, its first group.
     """
-    if not path.is_dir():
-        return _planes_of(path.parent, suffixes, kind, name)
-    own = _planes_of(path, suffixes, kind, name)
-    return own if own[0] else _planes_of(path.parent, suffixes, kind, name)
+    folders = (path, path.parent) if path.is_dir() else (path.parent,)
+    found = (_planes_of(folder, suffixes, kind, name) for folder in folders)
+    places, files = next((planes for planes in found if planes[0]), ([], []))
+    return stated_plane(places), files
 
 
 def _planes_of(

@@ -18,6 +18,7 @@ from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, SAME_DENSITY, Columns, force_table, speed_of_rows
 from coeflab.tables.words.axes import BODY_AXES
@@ -380,7 +381,8 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     if abs(density - given.value) <= SAME_DENSITY * abs(given.value):
         return None
     advice = f"Leave conditions.density at {given.value:g}: primes are right with the density of the forces."
-    if raw.dialect.get("importer") == "openfoam":
+    importer = raw.dialect.get("importer")
+    if importer and hasattr(IMPORTERS.load(importer).Options, "density"):
         advice = (
             f"Leave it out, primes are right with {given.value:g}; or turn the forces: --option density={density:g}."
         )

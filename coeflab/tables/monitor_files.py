@@ -5,32 +5,18 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
+from coeflab.core.errors import InputError
 from coeflab.core.limits import MONITOR_FILES
 from coeflab.core.text.bounded import stream_of
+from coeflab.tables.importers import IMPORTERS
 
 HEAD = 1 << 16
 SUFFIXES = (".csv", ".dat", ".out", ".txt", ".frp", ".trn")
 # Folders and files that say that a folder is no run of a monitor alone: a case of OpenFOAM, a campaign.
 OTHERS = ("system", "constant", "postProcessing", "campaign.toml")
-FORCE_TABLE = re.compile(
-    r"^(?P<title>(?:Forces|Moments)\b.*)\n.*\n[ \t]*Zone[ \t]+Pressure[ \t]+Viscous[ \t]+Total\b", re.M
-)
-_QUOTED = re.compile(r'"([^"]*)"')
-_TITLE, _NAMES = re.compile(r'"[^"]*"'), re.compile(r'\(?\s*"[^"]+"(?:\s+"[^"]*")+\s*\)?')
-_FLUENT_INDEX = re.compile(r"iterations?|time[ -]step|flow[ -]time", re.I)
-_SU2_NAME = re.compile(r"(?:Time|Outer|Inner)_Iter|rms\[.*|bgs\[.*")
-_SU2_OLD = {"CL", "CD", "CLift", "CDrag"}
-CFX_INDEX = b'"ACCUMULATED TIMESTEP"'
-FIRST_LINES = 64  # in which the names of a captive test are looked for
-SIMMAN = frozenset(("X", "Y", "N", "u", "v", "r", "udot", "vdot", "rdot"))
-_CAPTIVE = re.compile(r"(?P<name>[A-Za-z]+(?:_?dot)?)\s*(?P<unit>\[[^\[\]]*\]|\([^()]*\))?")
-# A row a condition, of reports in the place of a history.
-_CONDITION = re.compile(
-    r"(?i)\b(?:run|case|design\s*#?|drift|beta|alpha|angle|yaw angle|incidence|speed)(?!.* Monitor\b)"
-)
-_STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 
 
 def head(path: Path) -> bytes:
@@ -71,77 +57,32 @@ def header_cells(line: str, delimiter: str) -> list[str]:
 
 
 def kind_of(raw: bytes) -> str:
-    """Which solver or tank wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, ``cfx``, ``simman``, or empty.
+    """Name of the importer whose solver or tank wrote the file that begins so; empty where none did.
 
     Parameters
     ----------
     raw : bytes
         Its first 64 KiB.
-
-    Notes
-    -----
-    Layouts: STAR-CCM+ names a column ``NAME Monitor: WHAT (UNIT)`` or begins with ``Iteration: Iteration`` or ``Physical
-    Time: Physical Time (s)``. Fluent's report files have a quoted title, quoted names, names in parentheses; its force
-    reports a table with Zone, Pressure, Viscous, Total below a line that begins with Forces or Moments. SU2 quotes its
-    names and has Time_Iter, Outer_Iter, Inner_Iter or residuals ``rms[...]`` (7, 8), or Iteration and CL (6 and before). CFX's cfx5mondata begins
-    with ACCUMULATED TIMESTEP. A captive test as SIMMAN 2014 asks for it has forces X Y N, velocities u v r and accelerations
-    udot vdot rdot.
     """
-    if not raw or b"\0" in raw:
-        return ""
-    if raw.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(CFX_INDEX + b","):
-        return "cfx"
-    text = decoded(raw)[0]
-    lines = [line.strip() for line in lines_of(text[:HEAD]) if line.strip()][:4]
-    if len(lines) > 1 and _TITLE.fullmatch(lines[0]):
-        named = next((line for line in reversed(lines[1:3]) if _NAMES.fullmatch(line)), "")
-        if named and _FLUENT_INDEX.fullmatch(_QUOTED.findall(named)[0]):
-            return "fluent"
-    if FORCE_TABLE.search("\n".join(lines_of(text))):
-        return "fluent"
-    names = su2_names(lines)
-    if any(_SU2_NAME.fullmatch(n) for n in names) or (names[:1] == ("Iteration",) and not _SU2_OLD.isdisjoint(names)):
-        return "su2"
-    for delimiter in (d for d in ",;\t" if lines and d in lines[0]):
-        cells = header_cells(lines[0], delimiter)
-        if any(map(_STAR_MONITOR.fullmatch, cells)) and not _CONDITION.search(cells[0]):
-            return "starccm"
-    if any(captive_names(line)[0] for line in lines_of(text)[:FIRST_LINES]):
-        return "simman"
-    return ""
+    lines = [] if b"\0" in raw else lines_of(decoded(raw)[0])
+    writers = ((name, IMPORTERS.load(name).wrote) for name in IMPORTERS.usable() if any(lines))
+    return next((name for name, wrote in writers if wrote and wrote(lines)), "")
 
 
-def captive_names(line: str) -> tuple[tuple[str, ...], tuple[str, ...], str]:
-    """Names, units and delimiter of a line that names the columns of a SIMMAN captive test; empty where it does not.
+def first_filled(lines: Sequence[str], most: int) -> list[tuple[int, str]]:
+    """The first lines that are not blank, stripped, with their numbers from 1."""
+    return list(islice(((n, line.strip()) for n, line in enumerate(lines, start=1) if line.strip()), most))
 
-    Parameters
-    ----------
-    line : str
-        A comment mark before the names is no part of them.
+
+def require(raw: bytes, path: Path, kind: str, expected: str) -> None:
+    """Refuse a file that the solver of another importer wrote, or none.
+
+    Raises
+    ------
+    InputError
     """
-    bare = line.strip().lstrip("#%!").strip()
-    delimiter = next((d for d in "\t;," if d in bare), " ")
-    # A blank separates columns only where none stands before a unit.
-    cells = re.sub(r"\s+([\[(])", r"\1", bare).split() if delimiter == " " else header_cells(bare, delimiter)
-    parts = [_CAPTIVE.fullmatch(cell) for cell in cells]
-    names = tuple(m["name"].replace("_", "") if m else cell for m, cell in zip(parts, cells, strict=True))
-    if not set(names) >= SIMMAN or len(set(names)) < len(names):
-        return (), (), ""
-    return names, tuple((m["unit"] or "").strip("[]()") if m else "" for m in parts), delimiter
-
-
-def su2_names(lines: Sequence[str]) -> tuple[str, ...]:
-    """Names of the columns of a history of SU2, CSV or Tecplot, from its first lines; empty where it is none."""
-    selected = [line for line in lines if not line.startswith("TITLE")]
-    if selected and selected[0].startswith("VARIABLES"):
-        own = selected[0].partition("=")[2].strip()
-        selected = selected[1:] if own in ("", "\\") else [own, *selected[1:]]
-    if not selected or not selected[0].startswith('"'):
-        return ()
-    cells = selected[0].split(",")
-    names = [cell.strip() for cell in cells if cell.strip()]
-    quoted = all(len(n) > 2 and n[0] == n[-1] == '"' and '"' not in n[1:-1] for n in names)
-    return tuple(n[1:-1].strip() for n in names) if quoted and len(names) > 1 else ()
+    if kind_of(raw) != kind:
+        raise InputError("another content" if path.is_file() else "no such file", expected, file=path, line=1)
 
 
 def files_of(folder: Path, kind: str) -> tuple[Path, ...]:

@@ -97,7 +97,7 @@ def importer_of(path: Path, name: str = "") -> str:
             )  # fmt: skip
         others = ", ".join(n for n in readers if n != GENERAL)
         unread = InputError(
-            "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else --as one of {others}",
+            "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else one of {others}",
             file=path, advice="Where its names are not found, their line is --option header=NUMBER. Its first lines:",
         )  # fmt: skip
         unread.example = "\n".join(f"  {number:2d}  {text}" for number, text in begin)

@@ -8,6 +8,7 @@ of one whole cycle. The instructions fix which columns there are, not how they a
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,8 @@ import numpy as np
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.types import Array
 from coeflab.core.units import factor
-from coeflab.tables.monitor_files import FIRST_LINES, SIMMAN, captive_names, decoded, head, lines_of
+from coeflab.tables.dialect import is_house_table
+from coeflab.tables.monitor_files import decoded, head, header_cells, lines_of
 from coeflab.tables.monitors import Monitor, laid_out, read_monitor
 
 TIME = ("Time", "time", "t")
@@ -29,8 +31,40 @@ UNITS = {
     "acceleration": "m/s^2", "angular acceleration": "rad/s^2",
 }  # fmt: skip
 STATED = "SIMMAN 2014, Format of Model Test Results"
+FIRST_LINES = 64  # in which the names of a captive test are looked for
+SIMMAN = frozenset(("X", "Y", "N", "u", "v", "r", "udot", "vdot", "rdot"))
+_CAPTIVE = re.compile(r"(?P<name>[A-Za-z]+(?:_?dot)?)\s*(?P<unit>\[[^\[\]]*\]|\([^()]*\))?")
 _SQUARED = re.compile(r"s(?:2|\*\*2|\u00b2)$")
 FEWEST, STILL = 8, 1e-9  # rows of a cycle; acceleration of a static test over its largest velocity
+
+
+def line_of_names(lines: Sequence[str]) -> int:
+    """The line, from 1, that names the columns of a captive test; 0 without one."""
+    return next((i for i, line in enumerate(lines[:FIRST_LINES], start=1) if captive_names(line)[0]), 0)
+
+
+def is_captive_test(path: Path) -> bool:
+    """Whether a file has the columns of a captive test, and is no table of ours."""
+    return line_of_names(lines_of(decoded(head(path))[0])) > 0 and not is_house_table(path)
+
+
+def captive_names(line: str) -> tuple[tuple[str, ...], tuple[str, ...], str]:
+    """Names, units and delimiter of a line that names the columns of a SIMMAN captive test; empty where it does not.
+
+    Parameters
+    ----------
+    line : str
+        A comment mark before the names is no part of them.
+    """
+    bare = line.strip().lstrip("#%!").strip()
+    delimiter = next((d for d in "\t;," if d in bare), " ")
+    # A blank separates columns only where none stands before a unit.
+    cells = re.sub(r"\s+([\[(])", r"\1", bare).split() if delimiter == " " else header_cells(bare, delimiter)
+    parts = [_CAPTIVE.fullmatch(cell) for cell in cells]
+    names = tuple(m["name"].replace("_", "") if m else cell for m, cell in zip(parts, cells, strict=True))
+    if not set(names) >= SIMMAN or len(set(names)) < len(names):
+        return (), (), ""
+    return names, tuple((m["unit"] or "").strip("[]()") if m else "" for m in parts), delimiter
 
 
 def captive_test(path: Path) -> tuple[Monitor, tuple[str, ...], str]:
@@ -50,7 +84,7 @@ def captive_test(path: Path) -> tuple[Monitor, tuple[str, ...], str]:
     """
     raw = head(path)
     lines = lines_of(decoded(raw)[0])
-    at = next((i for i, line in enumerate(lines[:FIRST_LINES], start=1) if captive_names(line)[0]), 0)
+    at = line_of_names(lines)
     if not at:
         found = "another content" if path.is_file() else "no such file"
         raise InputError(found, f"columns {' '.join(sorted(SIMMAN))}", file=path, line=1)

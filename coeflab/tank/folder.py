@@ -142,15 +142,15 @@ def refuse_other(folder: Path, tank: Tank, body: str) -> None:
         own = {*OWN, *(c.name for c in tank.matrix)} if (folder / TANK).is_file() else OWN
         if any(name not in own for name in names_in(folder)):
             raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or that of a tow", file=folder,
-                             advice="Name another --out.")  # fmt: skip
+                             advice="Name another.")  # fmt: skip
         return
     there = read_plan(folder)
     if (there["name"], there["solver"]) != (tank.name, tank.solver):
         raise InputError(f"the tow of {there['name']} by {there['solver']}", f"that of {tank.name} by {tank.solver}",
-                         file=folder, advice="Name another --out: a folder holds one tow.")  # fmt: skip
+                         file=folder, advice="Name another folder: a folder holds one tow.")  # fmt: skip
     if there["body"] != body:
         raise InputError(f"a tow of the body {there['body']}", f"one of {body}", file=folder,
-                         advice="Name another --out: a folder holds one tow.")  # fmt: skip
+                         advice="Name another folder: a folder holds one tow.")  # fmt: skip
 
 
 def forget(folder: Path, own: set[Path]) -> None:

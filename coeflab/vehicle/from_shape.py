@@ -321,7 +321,7 @@ def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> ParameterTh
     low, high = t.tilt if tilting is not None else (0.0, 0.0)
     return ParameterThruster(
         name=t.name, position=place, direction=axis, curve=curve, torque_curve=torque,
-        handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high,
+        handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high, lag=t.lag,
     )  # fmt: skip
 
 

@@ -368,7 +368,7 @@ def typed_surface(control: Literal["dr", "ds", "db"], text: str, option: str) ->
     )  # fmt: skip
 
 
-NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit")
+NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit", "lag")
 VECTORS = ("place", "axis", "tilt_axis")
 WORDS = ("command", "unit")
 

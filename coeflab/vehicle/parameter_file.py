@@ -63,6 +63,7 @@ VERSIONS = {
     "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; the origin stated: numbers of whoever wrote the file; added mass near walls.",
     "1.6": "Findings: what is assumed, left out or not assessed, as codes and numbers. The force is the sum of coefficients and tables, by the variables "
     "that they speak of; before, tables or coefficients spoke for a component.",
+    "1.7": "Lag of thrusters.",
 }
 SAME = 1e-6  # relative: numbers of a file that follow from each other
 NARROWER = 1e-3  # of a range: less is what a campaign is run at

@@ -234,6 +234,10 @@ class ParameterThruster(Strict):
     ] = None
     tilt_low: Annotated[Finite, Means("lowest tilt", "rad")] = 0.0
     tilt_high: Annotated[Finite, Means("highest tilt", "rad")] = 0.0
+    lag: Annotated[
+        Positive | None,
+        Means("T of T d(actual)/dt = command - actual; curves read actual; null: at once", "s", since="1.7"),
+    ] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterThruster:

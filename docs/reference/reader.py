@@ -1,6 +1,6 @@
 """A reader of coeflab's parameter files in plain Python: the force law of docs/force_law.md, rule by rule, nothing of coeflab.
 
-``python reader.py FILE.parameters.json < states.json`` prints forces and accelerations. (1) to (30) are the rules of that page.
+``python reader.py FILE.parameters.json < states.json`` prints forces and accelerations. (1) to (31) are the rules of that page.
 """
 
 import itertools
@@ -303,6 +303,14 @@ class Vehicle:
             out = [a + b for a, b in zip(out, push + turn)]
         return out
 
+    def actual(self, state):  # (31) on the way from what was before to the command
+        out = dict(state.get("commands", {}))
+        for t in self.f.get("thrusters", []):
+            if t.get("lag") and "since" in state:
+                order, before = out.get(t["name"], 0.0), state.get("before", {}).get(t["name"], 0.0)
+                out[t["name"]] = order + (before - order) * math.exp(-state["since"] / t["lag"])
+        return out
+
     def afloat(self, attitude):
         w, x, y, z = attitude
         down = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
@@ -324,7 +332,7 @@ class Vehicle:
         free = [MOTION.index(m) for m in state.get("free", MOTION)]
         if force is None or not self.moves or not set(free) <= set(self.known):
             return {"force": force, "acceleration": None}
-        wrench, rest = self.thrust(state.get("commands", {})), self.afloat(state.get("attitude", [1.0, 0.0, 0.0, 0.0]))
+        wrench, rest = self.thrust(self.actual(state)), self.afloat(state.get("attitude", [1.0, 0.0, 0.0, 0.0]))
         total = [sum(x) for x in zip(force, wrench, rest, pushed(self.rigid, nu))]
         matrix = [[self.rigid[i][j] + self.added[i][j] for j in free] for i in free]
         if not definite(matrix, range(len(free))):  # (27)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,8 @@ import pytest
 import trimesh
 
 import coeflab as cf
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, OutputError
+from coeflab.core.keywords import in_shell, option, spoken
 
 V = np.linspace(-0.3, 0.3, 9)
 KNOWN = {"frame": "FRD", "length": 2.0, "length_name": "LOA", "density": 1000, "speed": 2.0, "about": "nose"}
@@ -47,6 +49,10 @@ ASKED: dict[str, tuple[Callable[[], Any], str]] = {
     "a term": (lambda: cf.fit(table(), terms=["Yq"]), "Yq zero on every row"),
     "a campaign": (lambda: cf.estimate("suboff_roddy_2"), "shipped campaign"),
     "a body": (lambda: cf.fit("spheroid_example"), "shipped body"),
+    "degrees of a manoeuvre": (lambda: cf.simulate("remus100", "zigzag", rudder=20), '"20 deg"'),
+    "degrees of a motion": (lambda: cf.trim("remus100", speed=1.5, roll=5), '"5 deg"'),
+    "degrees of a command": (lambda: cf.trim("remus100", speed=1.5, commands={"dr": 10}), '"10 deg"'),
+    "degrees of a test": (lambda: cf.next_tests("suboff_bare_hull", angle=15), '"15 deg"'),
     "draws": (lambda: cf.fit(table()).samples(-1), "from 1"),
     "no motion": (lambda: cf.trim("remus100"), "a yaw rate"),
     "a point twice": (lambda: cf.fit([table(), table()]), "twice"),
@@ -93,3 +99,28 @@ def test_tables_that_nobody_named_are_told_apart() -> None:
     changed = DRIFT | {"Y [N]": -121.0 * V}
     assert [f.campaign for f in cf.fit([table(), table(changed)]).fits] == ["table_1", "table_2"]
     assert cf.fit(table()).fits[0].campaign == "table"
+
+
+ROOT = Path(cf.__file__).parent
+# What the front door has no verb for: commands, reports as files, whole applications, programs of others.
+ELSEWHERE = re.compile(r"(?:cli|identify|glider|arm|published|report|tank|bodies/simplify)/|core/table|.*/commands/")
+
+
+def test_every_option_that_a_message_names_is_a_keyword_in_python() -> None:
+    taken = {k for f in (ROOT / "api").glob("*.py") for k in re.findall(r"(\w+):", f.read_text())}
+    taken |= {
+        k
+        for kind in ("motion", "formats", "vehicle", "tank")
+        for f in (ROOT / kind).rglob("*.py")
+        for k in re.findall(r"(\w+):", f.read_text())
+    }
+    named = set()
+    for file in ROOT.rglob("*.py"):
+        if not ELSEWHERE.match(file.relative_to(ROOT).as_posix()) and "--" in (text := file.read_text()):
+            named |= set(re.findall(r"(?<![\w`-])--[a-z][a-z-]*", re.sub(r"#.*|coeflab [a-z-]+[^`;\"']*", "", text)))
+    assert len(named) > 40
+    assert not {n for n in named if re.split(r"\W", spoken(n))[0] not in taken}
+    for made in (InputError("a", "--hold u", column="--accept-loss", advice="--as x"), OutputError("--out")):
+        assert "--" not in str(made)
+    with in_shell():
+        assert str(InputError("a", "--hold u", column=option("wanted"))) == '"--for": found a; expected --hold u.'

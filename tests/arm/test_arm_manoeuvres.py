@@ -139,6 +139,7 @@ def test_at_once_takes_no_commands() -> None:
         ("end_effector_track", {"end": "1,2"}, "--end", "found 2 values; expected 3"),
     ],
 )
+@pytest.mark.usefixtures("in_a_shell")
 def test_options_that_cannot_be_read(name: str, options: dict[str, Any], column: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as why:
         planned(name, **options)

@@ -20,6 +20,8 @@ from coeflab.bodies.mesh.topology import shells
 from coeflab.core.errors import InputError
 from tests.bodies.test_surface_mesh import CUBE, CUBE_FACES
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 FILE = Path("hull.stl")
 APART, SHIFT = CUBE + np.array([3.0, 0.0, 0.0]), np.array([0.5, 0.4, 0.3])
 Mesh = tuple[np.ndarray, np.ndarray]

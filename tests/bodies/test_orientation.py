@@ -22,7 +22,10 @@ from tests.bodies.twelve import TWELVE
 
 RIGHT = [Axes(d) for d in permutations(DIRECTIONS, 3) if np.linalg.det([DIRECTIONS[k] for k in d]) > 0.5]
 FLU = parse_axes("FLU")
-pytestmark = pytest.mark.slow  # a doubt about axes takes two outlines of a mesh
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.usefixtures("in_a_shell"),
+]  # a doubt about axes takes two outlines of a mesh
 TOML = (
     '[body]\nname = "toml"\nreader = "mesh"\ndatum = "nose"\nreference_point = [0, 0, 0]\n'
     '[mesh]\npath = "{}"\nunit = "m"\naxes = {}\n[prime]\nlength = 2.0\nlength_name = "LOA"\n'

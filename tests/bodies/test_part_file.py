@@ -101,6 +101,7 @@ def test_boxes_as_people_write_them(tmp_path: Path) -> None:
         ("m=0:1,1:0,0:1", "from a lower to a higher"),
     ],
 )
+@pytest.mark.usefixtures("in_a_shell")
 def test_boxes_that_cannot_be(text: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         parse_box(text)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.added_masses import added_masses
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
@@ -78,6 +79,21 @@ def test_dipoles_by_hand() -> None:
     assert _felt(spheres(0.0).shape.parts) == 0.0
     assert _felt(spheres(-1.0, 0.0, 1.0).shape.parts) == pytest.approx(6e-3, rel=1e-12)
     assert _felt(spheres(0.0, 2.0).shape.parts) == pytest.approx(3.75e-4, rel=1e-12)
+
+
+def test_every_method_states_its_place() -> None:
+    methods = {n: ADDED_MASS.load(n).places for n in ADDED_MASS.names()}
+    ranked = sorted((place, f"{n}:{p}".strip(":")) for n, places in methods.items() for p, place in places.items())
+    assert [name for _, name in ranked] == [
+        "panel",
+        "primitives",
+        "strip:lamb",
+        "ellipsoid",
+        "primitives:huuv",
+        "strip",
+    ]
+    assert all({"", *ADDED_MASS.load(n).presets} == set(places) for n, places in methods.items())
+    assert [n for n in methods if ADDED_MASS.load(n).takes_sheets] == ["panel"]
 
 
 @pytest.mark.parametrize(

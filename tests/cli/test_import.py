@@ -270,6 +270,7 @@ def test_a_rotating_table_is_asked_where_its_drift_is_zero(tmp_path: Path) -> No
     assert table.motion["v"] == pytest.approx(behind * table.motion["r"])
 
 
+@pytest.mark.usefixtures("in_a_shell")
 def test_a_density_other_than_that_of_the_forces_is_refused(tmp_path: Path) -> None:
     """Primes by 998.2 of forces of a fluid of 1 kg/m^3 would be 1/998 of what they are."""
     table = RawTable(

@@ -103,7 +103,7 @@ def test_a_text_that_no_importer_knows_is_offered_as_a_table(tmp_path: Path) -> 
     numbers = "".join(f"  {100 + a:4d} {a:7.2f} {-2.6:9.3f} {0.3 * a:9.3f} {-0.1 * a:9.3f}\n" for a in range(-4, 5))
     file.write_text(f"  SUB-X  BODY AXES X FWD, Y PORT{'!' * 80}\n\n{names}\n         (DEG)\n  -----------\n{numbers}")
     lines = refused(invoke("import", file, "--out", tmp_path / "out"))
-    assert "expected --as table if it is a table of text, else --as one of cfx, " in lines[0]
+    assert "expected --as table if it is a table of text, else one of cfx, " in lines[0]
     assert "--option header=NUMBER" in lines[0]
     assert lines[1:] == (f"   1  {'  SUB-X  BODY AXES X FWD, Y PORT':!<70}", f"   3  {names}", "   4           (DEG)")
     done = invoke("inspect", file, "--as", "table", "--option", "header=3")

@@ -93,7 +93,7 @@ def commands() -> Iterator[tuple[str, Any]]:
 
 def options(command: Any) -> Iterator[Any]:
     """Those that take a value."""
-    yield from (o for o in command.params if o.opts[0].startswith("--") and not o.is_flag)
+    yield from (o for o in command.params if o.opts[0].startswith("--") and not o.is_flag and not o.hidden)
 
 
 COMMANDS = dict(commands())

@@ -103,7 +103,7 @@ def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Pat
     path.write_bytes(made({k: v for k, v in STABLE.items() if k[1:] not in ("dr", "ds")}).to_json())
     done = coeflab("simulate", path, *FREE)
     assert done.returncode == 2
-    assert "neither control surfaces nor thrusters: --manoeuvre stop and straight_run need none" in done.stderr
+    assert "neither control surfaces nor thrusters: the manoeuvres stop and straight_run need none" in done.stderr
     huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
     told = coeflab("simulate", huuv).stderr
     assert '--commands "left=100 right=100", unequal' in told

@@ -28,6 +28,7 @@ from tests.formats.files import control_force
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo, with_mass
 from tests.formats.of_a_vehicle import driven, floating, quaternion, restoring
 from tests.rigid_motion import motion
+from tests.vehicle.make_conformance import actual_commands
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
 SECONDS, STEP = 20.0, 0.1  # s
@@ -111,7 +112,7 @@ def test_the_rates_are_those_of_the_conformance_vectors(tmp_path: Path) -> None:
             if v["force"] is None or v.get("free", "uvwpqr") != free:
                 answers.append({"force": v["force"], "acceleration": v["acceleration"]})
                 continue
-            delta, commands = s.get("delta", [0.0] * 3), s.get("commands", {})
+            delta, commands = s.get("delta", [0.0] * 3), actual_commands(file, s)
             inputs = {f"control.{c}": x for c, x in zip(CONTROLS, delta, strict=True)}
             inputs["external.X"] = commands.get("thrust", 0.0)
             for t in file.thrusters:
@@ -120,8 +121,13 @@ def test_the_rates_are_those_of_the_conformance_vectors(tmp_path: Path) -> None:
                     f"tilt.{t.name}": commands.get(f"{t.name}.tilt", 0.0),
                 }
             model.setReal([at[n] for n in inputs], list(inputs.values()))
-            state = (ctypes.c_double * 16)(0, 0, 0, *s.get("attitude", [1, 0, 0, 0]), *s["nu"], *delta)
-            model.setContinuousStates(state, 16)
+            spins = [
+                commands.get(t.name, 0.0) for t in file.thrusters if any(t.lag is not None for t in file.thrusters)
+            ]
+            state = (ctypes.c_double * (16 + len(spins)))(
+                0, 0, 0, *s.get("attitude", [1, 0, 0, 0]), *s["nu"], *delta, *spins
+            )
+            model.setContinuousStates(state, 16 + len(spins))
             force = model.getReal([at[f"hydrodynamic.{c}"] for c in "XYZKMN"])
             answers.append({"force": force, "acceleration": model.getReal([at[f"der(velocity.{m})"] for m in MOTIONS])})
         model.terminate()

@@ -11,7 +11,7 @@ import pytest
 from scipy import special, stats
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
+from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate
 from coeflab.fits.statistics.slope_mixture import (
     POWER,
     SIZES,
@@ -178,7 +178,6 @@ def test_too_few_settings_have_no_value_and_a_reason() -> None:
     assert np.isnan(s.value)
     assert s.reason == "2 different settings, at least 3 are needed"
     assert np.isnan(curve(s, X)[0]).all()
-    assert next_points(s, 2)[0].size == 0
     assert estimate(np.zeros(4), np.arange(4.0)).status is Status.TOO_FEW
 
 
@@ -225,26 +224,6 @@ def test_the_curve_and_its_band_hold_the_truth(clean: OriginSlope) -> None:
     mean, half = curve(clean, at)
     assert np.mean(np.abs(mean - force(at)) <= half) > 0.9
     assert np.all(half < 3.0 * NOISE)
-
-
-def test_the_next_points_narrow_as_foretold(clean: OriginSlope) -> None:
-    at, after = next_points(clean, 3)
-    assert np.all(np.diff(np.r_[clean.u95, after]) < 0.0)
-    assert np.all((np.abs(at) > 0.0) & (np.abs(at) < 0.5 * X[-1]))
-    added = estimate(np.r_[X, at], np.r_[Y, curve(clean, at)[0]])
-    assert added.u95 == pytest.approx(after[-1], rel=0.15)
-    far = estimate(np.r_[X, [0.3, -0.3, 0.29]], np.r_[Y, curve(clean, np.array([0.3, -0.3, 0.29]))[0]])
-    assert added.u95 < far.u95
-    assert next_points(clean, 1, np.array([0.3, 0.05]))[0] == pytest.approx([0.05])
-
-
-def test_next_points_repeat_no_setting_that_is_taken(clean: OriginSlope) -> None:
-    at = np.array([-0.1, -0.05, 0.05, 0.1])
-    repeated, _ = next_points(clean, 6, at)
-    assert len(repeated) == 6
-    found, after = next_points(clean, 6, at, taken=np.array([0.05, 0.3]))
-    assert sorted(found) == [-0.1, -0.05, 0.1]
-    assert np.all(np.diff(np.r_[clean.u95, after]) < 0.0)
 
 
 def test_shorter_sweeps_are_wider(clean: OriginSlope) -> None:

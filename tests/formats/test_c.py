@@ -28,6 +28,7 @@ from tests.formats import files as made
 from tests.formats.massed import torpedo, with_mass
 from tests.formats.of_a_vehicle import driven
 from tests.vehicle.hybrid import hybrid
+from tests.vehicle.make_conformance import actual_commands
 
 GCC, GXX = shutil.which("gcc"), shutil.which("g++")
 needs_gcc = pytest.mark.skipif(GCC is None or GXX is None, reason="no gcc")
@@ -85,7 +86,7 @@ def test_it_gives_the_conformance_vectors(tmp_path: Path, name: str) -> None:
     free = "".join(MOTIONS[k] for k in flat_law(file).free)
     driver, rows = compiled(tmp_path, file, DRIVER), []
     for s in given.states:
-        commands = s.get("commands", {})
+        commands = actual_commands(file, s)
         orders = [x for t in file.thrusters for x in (commands.get(t.name, 0.0), commands.get(f"{t.name}.tilt", 0.0))]
         rows.append(
             [

@@ -14,6 +14,7 @@ from coeflab.identify.series import FEWEST, read_series
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.tables.motion import motion_csv
+from coeflab.vehicle.own_numbers import typed_file
 from tests.motion.vehicles import made
 
 BODY = vehicle(made(), free=("u",))
@@ -51,6 +52,19 @@ def test_what_simulate_writes_is_read_back(tmp_path: Path) -> None:
     assert np.array_equal(s.velocity, t.velocity)
     assert np.array_equal(s.controls[:, 0], t.controls["dr"])
     assert np.array_equal(s.wrench[:, 0], t.controls["thrust"])
+
+
+def test_a_thruster_with_a_lag_is_recorded_as_it_turns_and_that_is_noted(tmp_path: Path) -> None:
+    """As ``simulate`` writes it; without a lag there is nothing to say."""
+    for lag, codes in (("", []), ("; lag = 2 s", ["record.lag"])):
+        body = typed_file(
+            "auv", ["Xuu=-10 N/(m/s)^2", "Xudot=-5 kg"], length="2 m", length_name="LOA", speed="2 m/s", density="1000", about="cg",
+            mass="50", thrusters=["main; bollard = 60 N; rate = 720" + lag],
+        )  # fmt: skip
+        rows = [[f"{0.1 * k:g}", "1.5", "0" if k < 30 else "720"] for k in range(60)]
+        s = read_series(written(tmp_path, "t [s],u [m/s],main [rpm]", rows), vehicle(body, free=("u",)))
+        assert s.wrench[29:31, 0] == pytest.approx([0.0, 60.0])
+        assert [f.code for f in s.findings] == codes
 
 
 @pytest.mark.parametrize(

@@ -161,6 +161,7 @@ def test_medium_change_of_a_parameter_file() -> None:
         ("water", "water", "below", "one of water, one of air"), ("air", "air", "above", "one of water, one of air"),
     ],
 )  # fmt: skip
+@pytest.mark.usefixtures("in_a_shell")
 def test_water_above_air_and_one_medium_twice_are_refused(first: str, into: str, start: str, says: str) -> None:
     file = read_parameter_file(Path(f"flyingfish_{first}"))
     with pytest.raises(InputError, match="times as dense as that above") as refused:

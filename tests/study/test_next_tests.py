@@ -91,7 +91,7 @@ def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
     [
         ("suboff_bare_hull", "G_h", {}, "wanted"), ("suboff_bare_hull", "Ydr'", {}, "wanted"), ("huuv", "G_h", {}, "wanted"),
         ("suboff_bare_hull", "Yr'", {"runs": 2}, "runs"), ("suboff_bare_hull", "Yr'", {"runs": 25}, "runs"),
-        ("suboff_bare_hull", "Yr'", {"noise": "-1%"}, "noise"), ("suboff_bare_hull", "Yr'", {"angle": 12.0, "rate": 0.0}, "rate"),
+        ("suboff_bare_hull", "Yr'", {"noise": "-1%"}, "noise"), ("suboff_bare_hull", "Yr'", {"angle": "12 deg", "rate": 0.0}, "rate"),
         ("nowhere.csv", "", {}, None),
     ],
 )  # fmt: skip

@@ -52,6 +52,8 @@ from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
 RUDDER = {"Ydr": 0.008, "Ndr": -0.0035}
 SHARE = 0.4

@@ -34,7 +34,7 @@ from coeflab.tables.runs import find_runs
 from tests.conftest import SECTIONS
 from tests.tables.runs_as_text import FILE, install, write_run
 
-pytestmark = pytest.mark.usefixtures("stub")
+pytestmark = pytest.mark.usefixtures("stub", "in_a_shell")
 NAMES = "b{beta:deg:m=-,p=.}_r{r:rad/s:p=.}"
 
 

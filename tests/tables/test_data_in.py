@@ -22,6 +22,8 @@ from coeflab.tables.settings import Setting
 from coeflab.tables.several_tables import complaints_of, interpreted_together, questions_together
 from coeflab.tables.vocabulary import vocabulary, words_of
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 SAMPLES = Path(__file__).parent / "samples"
 ANGLES = np.array([-8.0, -4.0, 0.0, 4.0, 8.0])
 

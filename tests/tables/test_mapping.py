@@ -29,6 +29,8 @@ from tests.cli.test_import import without_slopes
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 __all__ = ["plain_stub", "without_slopes"]
 FOOT, POUND_FORCE, POUND, KNOT = 0.3048, 4.4482216152605, 0.45359237, 1852.0 / 3600.0
 RHO, SPEED, LENGTH, AREA = 1000.0, 2.0, 4.0, 0.31

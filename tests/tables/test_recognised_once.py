@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.monitor_files import decoded, head, kind_of, lines_of
 
 SAMPLES = Path(__file__).parent / "samples"
 READERS = [n for n in IMPORTERS.names() if (i := IMPORTERS.load(n)).raw is not None or i.run is not None]
@@ -21,6 +22,17 @@ def test_there_are_samples_of_the_solvers() -> None:
 @pytest.mark.parametrize("path", ENTRIES, ids=lambda p: f"{p.parent.name}/{p.name}")
 def test_one_importer_knows_a_sample(path: Path) -> None:
     assert [name for name in READERS if IMPORTERS.load(name).recognises(path)] == [path.parent.name]
+
+
+def test_one_writer_at_most_claims_a_file() -> None:
+    writers = {n: w for n in READERS if (w := IMPORTERS.load(n).wrote)}
+    found = {}
+    for path in (f for e in ENTRIES for f in (e.rglob("*") if e.is_dir() else [e]) if f.is_file()):
+        claims = [n for n, wrote in writers.items() if wrote(lines_of(decoded(head(path))[0]))]
+        assert len(claims) <= 1
+        assert kind_of(head(path)) == "".join(claims)
+        found |= dict.fromkeys(claims, path)
+    assert set(found) == set(writers)
 
 
 def test_a_folder_of_several_solvers_is_nobodys(tmp_path: Path) -> None:

@@ -34,6 +34,8 @@ from coeflab.tank.towed_body import TowedBody
 from tests.planted_tank import planted_here
 from tests.tank.towed_bodies import BODY_FILE, with_mirrors
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 HEAD = """
 [tank]
 name = "{name}"
@@ -342,7 +344,7 @@ def test_another_tow_or_other_files_are_refused(tmp_path: Path) -> None:
     laid_out(tmp_path, tank_file(tmp_path))
     with pytest.raises(InputError, match="the tow of spheroid by planted") as why:
         laid_out(tmp_path, tank_file(tmp_path / "other", name="another"))
-    assert "Name another --out" in str(why.value)
+    assert "Name another folder" in str(why.value)
     plan = tmp_path / "x" / "tow.json"
     plan.write_text(plan.read_text().replace('"body": "', '"body": "other_'))
     with pytest.raises(InputError, match="a tow of the body other_"):

@@ -161,7 +161,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
         assert state["resumed_from"] >= 20
         assert (out / name / "log.solver").read_text() == f"from {state['resumed_from']:.0f}\n"
     assert "6 of 6 conditions converged.\n" in done.stdout
-    assert done.stdout.endswith("Next: coeflab fit runs/x/campaign --next 3\n")
+    assert done.stdout.endswith("Next: coeflab next runs/x/campaign\n")
     answer = done.stdout[done.stdout.index("  Yv'") :].splitlines()
     assert answer[0].split()[1:] == ["-0.006000", "0.000019"] or float(answer[0].split()[1]) == pytest.approx(
         -6e-3, rel=1e-2

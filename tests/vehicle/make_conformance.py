@@ -21,6 +21,7 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import CONTROLS, MOTIONS
+from coeflab.motion.manoeuvre import lagged
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import FOLDER
 from coeflab.vehicle.force_law import full_force
@@ -60,6 +61,16 @@ def commanded(given: list[dict[str, Any]], each: Sequence[Mapping[str, float]]) 
     return [{**s, "commands": dict(each[k % len(each)])} for k, s in enumerate(given)]
 
 
+def actual_commands(file: ParameterFile, state: Mapping[str, Any]) -> dict[str, float]:
+    """What thrusters do: their commands, or on the way there by their lag."""
+    out = dict(state.get("commands", {}))
+    for t in file.thrusters:
+        if t.lag is not None and "since" in state:
+            before, order = (np.array(x.get(t.name, 0.0)) for x in (state.get("before", {}), out))
+            out[t.name] = float(lagged(before, order, np.array(t.lag), np.array(state["since"])))
+    return out
+
+
 def evaluated(file: ParameterFile, state: Mapping[str, Any]) -> dict[str, Any]:
     """What the library gives: commands beyond the limits of an actuator are held at them."""
     limits = {s.control: s.limit for s in file.surfaces}
@@ -73,7 +84,7 @@ def evaluated(file: ParameterFile, state: Mapping[str, Any]) -> dict[str, Any]:
         made = vehicle(file, free=tuple(state.get("free", MOTIONS)))
     except InputError:
         return {"force": force.tolist(), "acceleration": None}
-    wrench = made.wrench(state.get("commands", {}))
+    wrench = made.wrench(actual_commands(file, state))
     rates = made.acceleration(nu, np.array([state.get("attitude", LEVEL)]), delta, wrench)[0]
     return {"force": force.tolist(), "acceleration": rates.tolist()}
 
@@ -142,6 +153,12 @@ def cases() -> dict[str, tuple[ParameterFile, str, list[dict[str, Any]]]]:
               {"thrust": 7.0, "pod": -2000.0, "pod.tilt": -3.0}]  # fmt: skip
     out["torpedo"] = (whole, "(1) (6) (28) (29) (30) primes, ideal fluid, buoyancy, thrusters, limits",
                       [*commanded(steered(states(1.5), ANGLES), orders), {"nu": [1.5, 0.2, 0, 0, 0, 0.1], "free": "uvr"}])  # fmt: skip
+    late = whole.model_copy(update={"thrusters": (pod.model_copy(update={"lag": 0.4}), thruster("side", 0.2))})
+    changing = [({"pod": 600.0, "side": 20.0}, {"pod": -300.0, "side": -50.0}, 0.0), ({"pod": 600.0, "pod.tilt": 0.4}, {"pod": 150.0}, 0.2),
+                ({"pod": 5000.0}, {"pod": 5000.0, "side": 9.0}, 1.0), ({"pod": -500.0}, {"pod": 5000.0}, 0.3), ({"pod": 500.0}, {}, 0.7)]  # fmt: skip
+    out["lags"] = (late, "(31) a thruster on its way to a command",
+                   [*({**s, "commands": c, "before": b, "since": t} for s, (c, b, t) in zip(states(1.5), changing * 3, strict=False)),
+                    {**states(1.5)[0], "commands": {"pod": 500.0}}])  # fmt: skip
     remus = cf.read_vehicle("remus100").file
     out["remus100"] = remus, "(1) a published AUV", steered(states(1.5), ANGLES)
     huuv = cf.read_vehicle("huuv_5dof").file

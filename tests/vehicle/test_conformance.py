@@ -52,6 +52,7 @@ DROPPED = {
     28: ('h, m = self.f.get("hydrostatics")', 'h, m = self.f.get("nothing")'),
     29: ('x = min(max(x, parts[0]["low"]), parts[-1]["high"])', "pass"),
     30: ("c, s, on = math.cos(angle), math.sin(angle)", "c, s, on = math.cos(angle), -math.sin(angle)"),
+    31: ('if t.get("lag") and "since" in state', "if False"),
 }  # fmt: skip
 ALSO = {
     "(12) what is over nothing speaks of no incidence": ("moved(n for n, _, _ in t[3]) == made for", "moved(n for n, _, _ in t[3]) <= made for"),

@@ -24,6 +24,8 @@ from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 PAGE = (Path(__file__).parents[2] / "docs" / "parameter_file.md").read_text(encoding="utf-8")
 BY_HAND = PAGE.partition('title="by_hand.parameters.json"\n')[2].partition("```")[0]
 SCALING, AT = Scaling(2.0, "LOA"), Conditions(1000.0, 1.0)

@@ -11,6 +11,8 @@ from coeflab.core.errors import InputError
 from coeflab.report import widget
 from coeflab.report.formats.workbench import data_json, numbers
 
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
 CELL = """async ([module, content, numbers]) => {
   const url = URL.createObjectURL(new Blob([module], { type: "text/javascript" }));
   const { default: cell } = await import(url), given = { content, numbers };

@@ -24,13 +24,20 @@ class AddedMassMethod(Plugin, Protocol):
         Options by a name that people type after a colon: ``strip:lamb``.
     reproducible : mapping
         Options with which the numbers do not depend on optional packages.
-    takes_surface : bool
-        Whether it takes the mesh itself where parts stand for one.
+    takes_surface, takes_sheets : bool
+        Whether it takes the mesh itself where parts stand for one; sheets of no thickness of a mesh.
+    places : mapping of str to int
+        Its place in the recommendation by preset, ``""`` without one; what has none comes last.
+    exact_ellipsoids : float
+        Up to how many ellipsoids, far from each other, its form is exact.
     """
 
     presets: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
     reproducible: Mapping[str, Any] = MappingProxyType({})
     takes_surface: bool = False
+    takes_sheets: bool = False
+    places: Mapping[str, int] = MappingProxyType({})
+    exact_ellipsoids: float = 0
 
     def added_mass(self, body: Body, density: float, options: Mapping[str, Any] | None = None) -> AddedMass:
         """The matrix about the body's reference point, FRD.

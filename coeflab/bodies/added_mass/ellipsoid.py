@@ -93,6 +93,8 @@ def _areas(shape: Shape) -> Array:
 
 summary = "Lamb's exact values for the ellipsoid of the body's length, volume and breadth-to-depth ratio"
 citations = ("lamb1932", "carlson1995")
+places: Mapping[str, int] = {"": 4}
+exact_ellipsoids = 1
 
 EQUIVALENT = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
 

@@ -31,7 +31,8 @@ from coeflab.law.added_mass import AddedMass
 summary = "triangular panels on the surface, potential formulation, Richardson extrapolation with an error estimate"
 citations = ("newman1977", "hess1967", "vanoosterom1983", "wilton1984", "roache1998", "cohensteiner2003")
 reproducible: Mapping[str, str] = {"kernel": "numpy"}
-takes_surface = True
+takes_surface = takes_sheets = True
+places: Mapping[str, int] = {"": 1}
 FEWEST_PANELS, MOST_PANELS = 1_000, 32_000
 OVERSHOOT = 1.1
 THIN, THIN_SHARE, SHARP = 0.05, 0.5, 0.5

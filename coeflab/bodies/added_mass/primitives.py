@@ -86,6 +86,8 @@ def like_one_plate(mesh: TriangleMesh) -> Part | None:
 summary = "closed forms of simple parts, panels on tubes, revolutions and meshes, composed by the 6 x 6 transform"
 citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
 presets: Mapping[str, Mapping[str, str]] = {"huuv": {"cylinder_ends": "huuv"}}
+places: Mapping[str, int] = {"": 2, "huuv": 5}
+exact_ellipsoids = np.inf
 
 COMPOSED = "no interaction between parts"
 CYLINDERS = {

@@ -22,6 +22,7 @@ summary = "sections along x, exact for circles, by boundary elements for any sha
 citations = ("newman1977", "bryson1954", "lamb1932")
 presets: Mapping[str, Mapping[str, str]] = {"lamb": {"end_correction": "lamb"}}
 takes_surface = True
+places: Mapping[str, int] = {"lamb": 3, "": 6}
 
 NONE = "sections only: nothing along {}the axis, ends not corrected"
 POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-6

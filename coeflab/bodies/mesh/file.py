@@ -147,6 +147,7 @@ def require_corners(path: Path) -> None:
 
 LARGEST_TEXT = 320 << 20
 PLY_HEADER = 1 << 16
+LONGEST_COUNT = 15  # digits of a number of faces or vertices
 PLY_BYTES = {
     **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),
     **dict.fromkeys(("short", "ushort", "int16", "uint16"), 2),
@@ -233,6 +234,10 @@ def ply_faces(path: Path) -> int:
         if words[:1] == ["format"]:
             binary = words[1:2] != ["ascii"]
         elif words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
+            if len(words[2]) > LONGEST_COUNT:
+                raise InputError(
+                    shown(words[2]), f"a count of {LONGEST_COUNT} digits at most", file=path, advice=EXPORT
+                )
             counts[words[1]] = current = int(words[2])
         elif words[:1] == ["property"]:
             least += current * _ply_least(words, binary)

@@ -21,7 +21,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed
 from coeflab.bodies.mesh.meshing import lofted, surface_of, united
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.bodies.outline import Foil, Outline, RingWing, Sections
-from coeflab.bodies.outlining import Radius, Trapezoid, of_parts, radius_towards, round_hull, with_controls
+from coeflab.bodies.outlining import SLENDER, Radius, Trapezoid, of_parts, radius_towards, round_hull, with_controls
 from coeflab.bodies.pieces import HULL, Control, Piece, hull_piece, part_pieces
 from coeflab.bodies.profiles import FOOT, MIDDLE_END, Myring, suboff_meridian
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Revolution, within_reach
@@ -124,7 +124,12 @@ class HullKeys(takes.Declaration):
                 raise InputError(
                     "an unknown key", f"keys of a hull of kind {self.kind}, {', '.join(allowed)}", column=name
                 )
-        _ = self.shape
+        shape = self.shape
+        if isinstance(shape, Parts) and not of_parts(shape).hulls:
+            expected = (
+                f"at most {(self.length or 0.0) / SLENDER:.6g} m, the length over {SLENDER:g}: a hull lies along x"
+            )
+            raise InputError(f"{self.diameter:.6g} m", expected, column="diameter")
 
     @property
     def shape(self) -> Parts | Revolution:

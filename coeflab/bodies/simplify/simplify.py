@@ -216,7 +216,7 @@ def simplify(
     if expected is not None and len(found) != expected:
         raise InputError(
             f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",
-            advice="Name parts with --box, or leave --parts out and look at the overlay.",
+            advice="Name parts with --box, or look at the overlay without --parts.",
         )  # fmt: skip
     length = float(mesh.extents.max())
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])

@@ -216,7 +216,7 @@ def one_length(tables: Sequence[ForceTable]) -> Scaling:
         if abs(t.scaling.length / first.scaling.length - 1.0) > ROUNDED:
             raise ScalingMismatchError(
                 f"{first.campaign} is primed by {first.scaling}, {t.campaign} by {t.scaling}; name one length for both "
-                "([scaling] in a plan, --length and --length-name on the command line)."
+                "([scaling] in a plan, or --length and --length-name)."
             )
     return first.scaling
 

@@ -21,7 +21,6 @@ from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
-from coeflab.fits.statistics.origin_slope import estimate, next_points
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import primed
@@ -291,28 +290,6 @@ class Sweep:
     def repeated(self) -> Index:
         """Rows that repeat an earlier one exactly and count once."""
         return np.setdiff1d(np.flatnonzero(np.logical_not(self.used)), self.wrong)
-
-    def next_runs(self, count: int, *, distinct: bool = False) -> tuple[tuple[float, float], ...]:
-        """Settings within the sweep whose reading would narrow the slope most, one after the other, and U95 after each.
-
-        Angles are multiples of half a degree, or of a tenth in a sweep of less than 4 degrees. None for an even
-        coefficient or one without a value. ``distinct``: no setting that was run, and none twice, as a deterministic
-        solver gives the same number again.
-        """
-        if self.parity != "odd" or self.value is None:
-            return ()
-        at = None
-        if self.is_angle or self.variable in ("dr", "ds", "db"):
-            low, high = (
-                (np.arcsin(v) if self.is_angle else v) for v in (min(self.x.min(), 0.0), max(self.x.max(), 0.0))
-            )
-            step = np.radians(0.5 if max(-low, high) >= np.radians(4.0) else 0.1)
-            at = step * np.arange(np.ceil(low / step - 1e-6), np.floor(high / step + 1e-6) + 1.0)
-            at = np.sin(at) if self.is_angle else at
-        ran = np.concatenate([self.x, -self.x]) if self.symmetry else self.x
-        present = estimate(self.x, self.y, self.se, odd=bool(self.symmetry))
-        found = next_points(present, count, at, taken=ran if distinct else None)
-        return tuple((float(x), float(u)) for x, u in zip(*found, strict=True))
 
 
 @brief

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.origin_slope import SAME
 from coeflab.fits.statistics.slope_mixture import estimate_many, prepare
 
 DRAWS, FINAL, PASSES = 12, 48, 3
+SAME = 1e-6  # of the largest setting, within which two settings are one
 NEIGHBOURS = (-3, -2, -1, 1, 2, 3)
 GAIN = 0.005  # of the sum, below which a move is not worth it: the draws tell no less apart
 

@@ -1,6 +1,6 @@
 """A calibrated slope at the origin, without a choice of form or window: one campaign by the mixture of forms.
 
-A row that does not fit the others is left out and named; curve and next points come from the same mixture.
+A row that does not fit the others is left out and named; the curve comes from the same mixture.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from coeflab.fits.statistics.slope_mixture import Design, estimate_many, joint, 
 # Posterior probability (flattened by the power of the likelihood) at which a row is left out: 10 of 960 clean campaigns
 # lost a row, 97 % of 901 readings that were off by over five standard deviations were named.
 REMOVE, FEWEST = 0.1, 5
-SAME = 1e-6  # of the largest setting, within which two settings are one
 
 
 class Status(StrEnum):
@@ -169,34 +168,3 @@ def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
     mean, covariance = joint(slope.design, slope.y, slope.weights, at)
     factor = special.stdtrit(len(slope.y) - slope.design.flat, 0.975)
     return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
-
-
-def next_points(
-    slope: OriginSlope, count: int, candidates: Array | None = None, *, taken: Array | None = None
-) -> tuple[Array, Array]:
-    """The x whose measurement would narrow the slope most, best first, and the slope's U95 after each, (count,).
-
-    Posterior variances of the present mixture; one after the other, each with one more reading at the present noise.
-    Without ``candidates`` any x within the measured range; empty without a value. With ``taken``, (k,), none of these and
-    none twice, as where a repeated setting gives the same number again; fewer than ``count`` where no other is left.
-    """
-    if slope.design is None:
-        return np.zeros(0), np.zeros(0)
-    d = slope.design
-    low, high = (min(0.0, d.x.min()), max(0.0, d.x.max())) if d.flat == 1 else (-d.largest, d.largest)
-    at = np.linspace(low, high, 73) if candidates is None else np.asarray(candidates, float)
-    _, c = joint(d, slope.y, slope.weights, at)
-    start, chosen, after = c[0, 0], [], []
-    free = np.ones(len(at), dtype=bool)
-    if taken is not None:
-        free = ~np.any(np.abs(at[:, None] - np.asarray(taken, float)) <= SAME * d.largest, axis=1)
-    for _ in range(count):
-        if not np.any(free):
-            break
-        gain = np.where(free, c[0, 1:] ** 2 / (np.diag(c)[1:] + slope.noise**2), -1.0)
-        i = int(np.argmax(gain)) + 1
-        c = c - np.outer(c[:, i], c[i]) / (c[i, i] + slope.noise**2)
-        chosen.append(at[i - 1])
-        free[i - 1] = taken is None
-        after.append(slope.u95 * np.sqrt(max(c[0, 0], 0.0) / start))
-    return np.array(chosen), np.array(after)

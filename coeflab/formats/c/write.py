@@ -17,7 +17,7 @@ summary = (
 )
 citations = ("sname1950", "fossen2011")
 adds_coriolis = False
-holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates", "tables"})
+holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates", "lags", "tables"})
 not_held = not_written
 
 

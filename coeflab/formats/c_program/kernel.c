@@ -134,6 +134,18 @@ static double curve(int first, int last, double x)
     return 0.0;
 }
 
+/* What a thruster does a time after its command: it goes there by its lag. */
+static double spun(int n, double before, double command, double time)
+{
+    return LAG[n] > 0.0 ? command + (before - command) * exp(-time / LAG[n]) : command;
+}
+
+void @NAME@_spin(const double command[], double dt, double actual[])
+{
+    int n;
+    for (n = 0; n < THRUSTERS; n++) actual[n] = spun(n, actual[n], command[n], dt);
+}
+
 static void add_cross(const double *a, const double *b, double factor, double *out)
 {
     out[0] += factor * (a[1] * b[2] - a[2] * b[1]);

@@ -145,6 +145,8 @@ def source(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         *(f"/* {k}: {remark(t.name)} by {remark(t.curve.command)}, {remark(t.curve.unit)} */" for k, t in enumerate(parameters.thrusters)),
         _array("THRUSTER", thrusters),
         _array("TILTS", tilts, "int"),
+        "/* Lag, s, 0: at once */",
+        _array("LAG", [t.lag or 0.0 for t in parameters.thrusters]),
         _array("CURVES", curves, "int"),
         _array("SEGMENTS", segments),
         "",

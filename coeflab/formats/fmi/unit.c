@@ -36,11 +36,13 @@ typedef struct {
     fmi2Real nextEventTime;
 } fmi2EventInfo;
 
+/* Thrusters are states where one of them has a lag. */
+#define SPINS @SPINS@
 /* References: parameters, inputs, states, their derivatives, other outputs. */
 #define STARTS 13
 #define TERMS COEFFICIENTS
 #define INPUTS (9 + 2 * THRUSTERS)
-#define STATES 16
+#define STATES (16 + SPINS)
 #define OTHERS 9
 #define AT_TERMS STARTS
 #define AT_INPUTS (AT_TERMS + TERMS)
@@ -54,7 +56,7 @@ static const double START[STARTS] = {@START@};
 static const double UNIT[TERMS + 1] = {@UNIT@};
 static const double GIVEN[TERMS + 1] = {@GIVEN@};
 /* time in which a fin with a rate comes to its order in model exchange, s */
-#define LAG 0.005
+#define SOON 0.005
 
 typedef struct {
     double start[STARTS], value[TERMS + 1], input[INPUTS], state[STATES], time;
@@ -87,6 +89,7 @@ static void begin(unit *u)
     u->state[6] = cr * cp * sy - sr * sp * cy;
     for (i = 0; i < 6; i++) u->state[7 + i] = s[6 + i];
     for (i = 0; i < 3; i++) u->state[13 + i] = TURNS[i] > 0.0 ? 0.0 : turned(i, 0.0, u->input[i], 0.0);
+    for (i = 0; i < SPINS; i++) u->state[16 + i] = u->input[9 + i];
 }
 
 static void coefficients(const unit *u, double *c)
@@ -95,11 +98,14 @@ static void coefficients(const unit *u, double *c)
     for (i = 0; i < (int) (sizeof VALUES / sizeof VALUES[0]); i++) c[i] = i < TERMS ? u->value[i] * UNIT[i] : VALUES[i];
 }
 
+static double spin(const unit *u, int i) { return LAG[i] > 0.0 ? u->state[16 + i] : u->input[9 + i]; }
+
 static void pushed(const unit *u, double external[6])
 {
-    double thrust[6];
+    double thrust[6], actual[THRUSTERS + 1];
     int i;
-    @NAME@_thrust(u->input + 9, u->input + 9 + THRUSTERS, thrust);
+    for (i = 0; i < THRUSTERS; i++) actual[i] = SPINS ? spin(u, i) : u->input[9 + i];
+    @NAME@_thrust(actual, u->input + 9 + THRUSTERS, thrust);
     for (i = 0; i < 6; i++) external[i] = thrust[i] + u->input[3 + i];
 }
 
@@ -113,8 +119,9 @@ static int derive(const unit *u, double rates[STATES])
     pushed(u, external);
     for (i = 0; i < 3; i++) {
         delta[i] = fin(u, i);
-        rates[13 + i] = TURNS[i] > 0.0 ? at_most((at_most(u->input[i], -LIMIT[i], LIMIT[i]) - delta[i]) / LAG, -TURNS[i], TURNS[i]) : 0.0;
+        rates[13 + i] = TURNS[i] > 0.0 ? at_most((at_most(u->input[i], -LIMIT[i], LIMIT[i]) - delta[i]) / SOON, -TURNS[i], TURNS[i]) : 0.0;
     }
+    for (i = 0; i < SPINS; i++) rates[16 + i] = LAG[i] > 0.0 ? (u->input[9 + i] - u->state[16 + i]) / LAG[i] : 0.0;
     return rates_of(c, u->state, delta, external, rates);
 }
 
@@ -123,6 +130,7 @@ static double value_of(unit *u, fmi2ValueReference r)
     if (r < AT_TERMS) return u->start[r];
     if (r < AT_INPUTS) return u->value[r - AT_TERMS];
     if (r < AT_STATES) return u->input[r - AT_INPUTS];
+    if (r < AT_RATES && r >= AT_STATES + 16) return spin(u, (int) (r - AT_STATES - 16));
     if (r < AT_RATES) return r >= AT_STATES + 13 ? turned((int) (r - AT_STATES - 13), 0.0, fin(u, (int) (r - AT_STATES - 13)), 1e300) : u->state[r - AT_STATES];
     if (r < AT_OTHERS) {
         double rates[STATES];
@@ -367,9 +375,12 @@ EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real dt, fmi2Bool
     long k;
     (void) no_set;
     coefficients(u, coefficient);
-    pushed(u, external);
-    for (k = 0; k < steps; k++)
+    for (k = 0; k < steps; k++) {
+        if (SPINS) @NAME@_spin(u->input + 9, 0.5 * dt / (double) steps, u->state + 16);
+        pushed(u, external);
         if (step_of(coefficient, u->state, u->state + 13, u->input, external, dt / (double) steps)) return fmi2Discard;
+        if (SPINS) @NAME@_spin(u->input + 9, 0.5 * dt / (double) steps, u->state + 16);
+    }
     u->time = at + dt;
     return fmi2OK;
 }

@@ -41,7 +41,7 @@ summary = (
 )
 citations = ("sname1950", "fossen2011", "fmi2")
 adds_coriolis = False
-holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates", "tables"})
+holds = frozenset({"hydrostatics", "thrusters", "surfaces", "rates", "lags", "tables"})
 not_held = not_written
 
 STEP = 0.01
@@ -106,6 +106,7 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
     ]
     states += [(f"velocity.{m}", "output", unit(k, 1), unit(k, 2)) for k, m in enumerate(MOTIONS)]
     states += [(f"angle.{n}", "output", "rad", "rad/s") for n in CONTROLS]
+    states += [(f"actual.{n}", "output", "", "") for n in names if lagging(parameters)]
     out += [Variable(name, causality, None, u, "state") for name, causality, u, _ in states]
     out += [Variable(f"der({name})", "local", None, u, "", first + k) for k, (name, _, _, u) in enumerate(states)]
     out += [Variable(f"attitude.{n}", "output", None, "rad", "") for n in ANGLES]
@@ -114,6 +115,11 @@ def _variables(parameters: ParameterFile, law: FlatLaw) -> list[Variable]:
         for k, x in enumerate(COMPONENTS)
     ]
     return out
+
+
+def lagging(parameters: ParameterFile) -> bool:
+    """Whether a thruster follows its command with a lag."""
+    return any(t.lag is not None for t in parameters.thrusters)
 
 
 def _names(parameters: ParameterFile) -> list[str]:
@@ -182,6 +188,7 @@ def _sources(
     units = [1.0 if t.kind == "rest" else t.per_prime for t in law.coefficients]
     given = [t.written for t in law.coefficients]
     text = own_bytes(resources("coeflab.formats.fmi") / "unit.c").decode()
+    text = text.replace("@SPINS@", "THRUSTERS" if lagging(parameters) else "0")
     text = text.replace("@NAME@", name).replace("@START@", _row(starts))
     text = text.replace("@UNIT@", _row([*units, 0.0])).replace("@GIVEN@", _row([*given, 0.0]))
     files = {

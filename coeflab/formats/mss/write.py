@@ -164,6 +164,7 @@ def _facts(parameters: ParameterFile) -> list[str]:
         ("limit", "rate"), ("largest angle (rad)", "rad/s, to be kept by the loop"), limits(p), strict=True
     ):
         facts += [(f"{kind}_{c}", x, unit) for c, x in values.items()]
+    facts += [(f"lag_{k}", t.lag, f"of thruster {k} (s), to be kept by the loop") for k, t in enumerate(p.thrusters, 1)]
     if p.added_mass is not None:
         facts += [("MA_body", p.added_mass.body, ""), ("MA_method", p.added_mass.method, "")]
     return [

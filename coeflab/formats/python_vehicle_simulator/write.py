@@ -43,7 +43,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in SNAME coefficients"
 citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
 adds_coriolis = False
-holds = frozenset({"hydrostatics", "tables", "thrusters", "surfaces", "rates"})
+holds = frozenset({"hydrostatics", "tables", "thrusters", "surfaces", "rates", "lags"})
 
 not_held = not_written
 
@@ -58,8 +58,10 @@ _HEADINGS = {
 _VECTOR = ("rudder (rad)", "stern plane (rad)", "bow plane (rad)", "thrust (N)")
 _TURNED = '''
     def turned(self, before, order, sampleTime):
-        """Control angles that go from those before to an order at their rates (rad/s), no further than their limits (rad)."""
+        """What follows an order from what was before: angles at their rates (rad/s) within limits (rad), thrusters by their lags (s)."""
         out = np.array(order, float)
+        for k, lag in {lags!r}.items():
+            out[k] += (before[k] - out[k]) * math.exp(-sampleTime / lag)
         for k, (limit, rate) in enumerate({angles!r}):
             out[k] = max(-limit, min(limit, max(before[k] - rate * sampleTime, min(before[k] + rate * sampleTime, out[k]))))
         return out
@@ -85,7 +87,7 @@ class {name}:
     z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
     weight and buoyancy equal.
 
-    u_control = [ {vector} ], followed without lag{kept}.{controls}
+    u_control = [ {vector} ], followed at once{kept}.{controls}
     """
 
     def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
@@ -154,6 +156,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     accelerations, source = written_accelerations(parameters)
     p, mass = parameters, parameters.mass
     commands, (largest, turning) = command_names(parameters), limits(parameters)
+    lags = {4 + k: t.lag for k, t in enumerate(p.thrusters) if t.lag is not None}
+    kept = ["limits and rates of angles"] * bool(largest) + ["lags of thrusters"] * bool(lags)
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
     lines = [
         "#!/usr/bin/env python3",
@@ -173,7 +177,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             controls="".join(f"\n    {words}" for words in control_signs(p)),
             vector=", ".join((*_VECTOR, *commands)).replace("\\", "/").replace('"', "'"),
             labels="".join(f", {c!r}" for c in commands),
-            kept=" but for limits and rates of angles" if largest else "",
+            kept=f" but for {' and '.join(kept)}" if kept else "",
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",
@@ -210,14 +214,12 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         _TAIL.replace(
             "@DRIVEN@", "\n        tau += driven(self.thrusters, self.segments, u_actual[4:])" if commands else ""
         )
-        .replace(
-            "@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if largest else "np.array(u_control, float)"
-        )
+        .replace("@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if kept else "np.array(u_control, float)")
         .replace("@ZEROS@", ", 0.0" * len(commands))
     )
     lines += [*_added_mass(accelerations), *_force(terms, bool(tables), largest), tail.rstrip()]
-    if largest:
-        lines.append(_TURNED.format(angles=angles).rstrip())
+    if kept:
+        lines.append(_TURNED.format(angles=angles, lags=lags).rstrip())
     if commands:
         lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "driven.py.txt").rstrip())
     if tables:

@@ -77,7 +77,7 @@ def _weighed(parameters: ParameterFile) -> MassProperties:
         lacking = keys if mass is None else [k for k in keys[1:] if getattr(mass, k.removeprefix("mass.")) is None]
         raise InputError(
             f"no {listed(lacking)}", "the rigid-body inertia, without which xdyn does not run", column=lacking[0],
-            advice="State mass, centre_of_gravity and inertia_matrix in body.toml, or --mass, --cg, --inertia of `coeflab params new`.",
+            advice="State mass, centre_of_gravity and inertia_matrix in body.toml, or `coeflab params new --mass --cg --inertia`.",
         )  # fmt: skip
     return mass
 

@@ -54,11 +54,12 @@ def march_adaptive(
     out = blank(1, orders, interval, 1)
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
+    spun = None if orders.late is None else orders.late.begin[:1]
     # A motion that runs away overflows in the solver, and LSODA warns that it gives up: both end as a status of the motion.
     with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         warnings.filterwarnings("ignore", message="lsoda: ", category=UserWarning)
         for k in range(orders.count):
-            phase = _Phase(dynamics, orders, k, begin, at.time, fastest)
+            phase = _Phase(dynamics, orders, k, begin, at.time, fastest, spun)
             for length in phase.pieces():
                 at = phase.move(at, phase.since + length, out, tolerance, method)
                 if at.ended or at.met:
@@ -67,8 +68,11 @@ def march_adaptive(
             if at.ended:
                 break
             out.switch_time[0, k], out.switch_state[0, k], out.met[0, k] = at.time, at.state, at.met
-            begin = phase.angles(at.time)[:, 0]
+            begin, spun = phase.angles(at.time)[:, 0], phase.spinning(at.time)
     return out
+
+
+ONE = np.zeros(1, dtype=np.int64)
 
 
 @brief
@@ -97,16 +101,32 @@ class _Phase:
     begin: Array
     since: float
     fastest: float
+    spun: Array | None = None
 
     def angles(self, time: float) -> Array:
         """(3, 1) angles of the control surfaces."""
         target = self.orders.angles[self.number][:, None]
         return ramp(self.begin[:, None], target, self.orders.rate, np.array([time - self.since]))
 
+    def spinning(self, time: float) -> Array | None:
+        """(1, k) what thrusters with a lag do."""
+        if self.orders.late is None or self.spun is None:
+            return None
+        return self.orders.late.actual(self.spun, ONE, ONE + self.number, np.array([time - self.since]))
+
+    def pushed(self, time: float) -> list[float]:
+        """Force and moment of the thrusters."""
+        steady, actual = self.orders.wrench.reshape(-1, self.orders.count, 6)[0, self.number], self.spinning(time)
+        if self.orders.late is None or actual is None:
+            return [float(x) for x in steady]
+        return [float(x) for x in steady + self.orders.late.wrench(actual, ONE, ONE + self.number)[:, 0]]
+
     def pieces(self) -> list[float]:
-        """Times after the order at which a control surface stands, and the end of the phase."""
+        """Times after the order at which a control surface stands or a thruster passes a knot, and the end of the phase."""
         target = self.orders.angles[self.number][:, None]
         reach = reach_time(self.begin[:, None], target, self.orders.rate)[:, 0]
+        if self.orders.late is not None and self.spun is not None:
+            reach = np.append(reach, self.orders.late.knots(self.spun, ONE, ONE + self.number)[:, 0])
         longest = float(self.orders.longest[self.number])
         return [*sorted({float(t) for t in reach if 0.0 < t < longest}), longest]
 
@@ -126,15 +146,13 @@ class _Phase:
         from scipy import integrate
         from scipy.optimize import brentq
 
-        wrench = self.orders.wrench.reshape(-1, self.orders.count, 6)[0, self.number][:, None]
-
-        one, pushed = rates_of_one(self.dynamics), wrench[:, 0].tolist()
+        one, steady = rates_of_one(self.dynamics), None if self.orders.late else self.pushed(at.time)
         standing = self.angles(at.time)[:, 0].tolist()
         moving = standing != self.angles(until)[:, 0].tolist()
 
         def rates(time: float, state: Array) -> list[float]:
             angles = self.angles(time)[:, 0].tolist() if moving else standing
-            found = one(state.tolist(), angles, pushed)
+            found = one(state.tolist(), angles, steady or self.pushed(time))
             # LSODA never comes back from rates that are no numbers.
             if not math.isfinite(sum(found)):
                 raise _NotFiniteError

@@ -295,8 +295,8 @@ def _all(
 def march(
     dynamics: Dynamics, orders: Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
 ) -> Marching:
-    """As `coeflab.motion.integrators.fixed_step.march`, which moves laws whose tables are no boxes."""
-    if dynamics.law.curved:
+    """As `coeflab.motion.integrators.fixed_step.march`, which moves laws whose tables are no boxes, and thrusters with a lag."""
+    if dynamics.law.curved or orders.late is not None:
         return fixed_step.march(dynamics, orders, start, step, every, fastest)
     steps = orders.steps(step)
     out = blank(len(start), orders, step, every)

@@ -63,6 +63,8 @@ class _March:
         self.begin = np.repeat(orders.begin[:, None], count, axis=1)
         self.live = np.ones(count, dtype=np.bool_)
         self.wrench = np.broadcast_to(orders.wrench, (count, *orders.wrench.shape[-2:]))
+        late = orders.late
+        self.spun = np.zeros((count, 0)) if late is None else np.broadcast_to(late.begin, (count, len(late.lag))).copy()
         self.level = self._level(self.state, self.phase)
 
     def run(self, every: int) -> Marching:
@@ -86,7 +88,10 @@ class _March:
         orders, left = self.orders, remain[who]
         since = until - left - self.begun[who]
         room = orders.longest[self.phase[who]] - since
-        kinks = reach_time(self.begin[:, who], orders.angles[self.phase[who]].T, orders.rate) - since
+        kinks = reach_time(self.begin[:, who], orders.angles[self.phase[who]].T, orders.rate)
+        if orders.late is not None:
+            kinks = np.vstack([kinks, orders.late.knots(self.spun[who], who, self.phase[who])])
+        kinks = kinks - since
         kinks[kinks <= NEAR * self.step] = np.inf
         length = np.minimum(np.minimum(left, room), kinks.min(axis=0))
         trial = self._step(who, since, length)
@@ -114,16 +119,26 @@ class _March:
         """States after a step, (14, n), the quaternion of length one."""
         dynamics = self.dynamics if len(who) == len(self.phase) else self.dynamics.members(who)
         state, phase = self.state[:, who], self.phase[who]
-        wrench, begin, target = self.wrench[who, phase].T, self.begin[:, who], self.orders.angles[phase].T
-        first, middle, last = (ramp(begin, target, self.orders.rate, since + f * length) for f in (0.0, 0.5, 1.0))
+        begin, target = self.begin[:, who], self.orders.angles[phase].T
+        first, middle, last = (
+            (ramp(begin, target, self.orders.rate, since + f * length), self._pushed(who, phase, since + f * length))
+            for f in (0.0, 0.5, 1.0)
+        )
         half = 0.5 * length
-        k1 = dynamics.rates(state, first, wrench)
-        k2 = dynamics.rates(state + half * k1, middle, wrench)
-        k3 = dynamics.rates(state + half * k2, middle, wrench)
-        k4 = dynamics.rates(state + length * k3, last, wrench)
+        k1 = dynamics.rates(state, *first)
+        k2 = dynamics.rates(state + half * k1, *middle)
+        k3 = dynamics.rates(state + half * k2, *middle)
+        k4 = dynamics.rates(state + length * k3, *last)
         out = state + length / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
         out[3:7] /= np.sqrt(np.sum(out[3:7] ** 2, axis=0))
         return out
+
+    def _pushed(self, who: Ints, phase: Ints, since: Array) -> Array:
+        """(6, n) force and moment of the thrusters."""
+        steady, late = self.wrench[who, phase].T, self.orders.late
+        if late is None:
+            return np.asarray(steady)
+        return np.asarray(steady + late.wrench(late.actual(self.spun[who], who, phase, since), who, phase))
 
     def _crossing(self, who: Ints, since: Array, length: Array, level: Array) -> tuple[Array, Array]:
         """Step lengths at which the quantities cross, by the secant that keeps its bracket (Illinois), and the states there."""
@@ -161,6 +176,8 @@ class _March:
         on = who[~last]
         since = now[~last] - self.begun[on]
         self.begin[:, on] = ramp(self.begin[:, on], orders.angles[phase[~last]].T, orders.rate, since)
+        if orders.late is not None:
+            self.spun[on] = orders.late.actual(self.spun[on], on, phase[~last], since)
         self.phase[on] += 1
         self.begun[on] = now[~last]
         self.level[on] = self._level(self.state[:, on], self.phase[on])

@@ -328,7 +328,7 @@ def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float
     also : sequence of str
         Of depth and heading: states beside those that forces depend on.
     lags : mapping of str to float, optional
-        Time constant of a command, s: what acts follows it by T x_dot = d - x.
+        Time constant of a command, s: what acts follows it by T x_dot = d - x. Those of the file's thrusters unless given.
 
     Raises
     ------
@@ -344,7 +344,9 @@ def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float
     states = tuple(Variable(n, u, float(v) + 0.0) for (n, u), v in zip(steady.states, steady.departed(x), strict=True))
     commands = tuple(Variable(u.name, u.unit, found.point.values[u.name]) for u in steady.command_unknowns)
     a, b, states = _placed(found, also, a, b, states)
-    a, b, states = _lagging(lags or {}, a, b, states, commands)
+    commanded = {c.name for c in commands}
+    stated = {t.name: t.lag for t in found.motion.vehicle.thrusters if t.lag is not None and t.name in commanded}
+    a, b, states = _lagging(stated | dict(lags or {}), a, b, states, commands)
     shares = participation(a.matrix)
     values = modes(a.matrix)
     fastest = max(1.0, float(np.max(np.abs(values), initial=0.0)))

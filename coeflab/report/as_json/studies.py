@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from coeflab.core.finding import Finding
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import Pooling
@@ -14,11 +12,10 @@ from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.formats.export import Export, Loss
 from coeflab.law.coefficient import Coefficient
-from coeflab.law.symbols import ANGULAR, primed
+from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
 from coeflab.report.as_json.findings import finding, finding_as_data
 from coeflab.report.as_json.motions import accelerations
-from coeflab.report.tables import next_runs as next_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.next_tests import NextTests
 from coeflab.study.study import Study
@@ -35,28 +32,6 @@ def coefficient(c: Coefficient, scaling: str, assumed: Sequence[Finding] = ()) -
         "n_points": c.n_points, "status": c.status.value, "assumed": [f["key"] for f in assumed],
         "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
     }  # fmt: skip
-
-
-def next_runs(s: Study, symbols: Sequence[str], count: int) -> list[dict[str, Any]]:
-    """The runs that would narrow each slope most; asin(v/U) in radians, rates as r' = r L/U; U95 is the whole one."""
-    out = []
-    for fit in s.fits:
-        for sweep in (one for one in fit.sweeps if not symbols or one.symbol in symbols):
-            degrees = sweep.variable not in ANGULAR
-            runs = [
-                {
-                    "setting": float(np.arcsin(np.clip(x, -1.0, 1.0))) if sweep.is_angle else x,
-                    "unit": "rad" if degrees else "1",
-                    "u95_after": after,
-                }
-                for x, after in next_tables.next_runs(s, fit, sweep, count)
-            ]
-            if runs:
-                rest = next_tables.outside(fit, sweep)
-                u95 = None if sweep.u95 is None else float(np.hypot(sweep.u95, rest))
-                words = {"symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable}
-                out.append(words | {"u95_now": u95, "outside": rest, "runs": runs})
-    return out
 
 
 def model(m: FittedModel) -> dict[str, Any]:

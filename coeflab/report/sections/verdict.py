@@ -245,7 +245,7 @@ def _wide(study: Study) -> list[str]:
         return []
     each = [f"{listed(symbols)} of {place}" for place, symbols in wide.items()]
     start = f"U95 exceeds {100.0 * WIDE:.0f} % of the value for "
-    return [f"{in_sentences(start, each)} `coeflab fit TABLE --next 3` names the three runs that narrow it most."]
+    return [f"{in_sentences(start, each)} `coeflab next TABLE` names the runs that narrow it most."]
 
 
 def _not_varied(symbols: Sequence[str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -24,6 +24,8 @@ class Importer(Plugin, Protocol):
         What it reads, as lists of formats name it.
     computed : bool
         Of a solver: its forces hold no inertia of the body.
+    wrote : callable or None
+        ``wrote(lines)``: whether the solver wrote a monitor that begins with these lines, of its first 64 KiB.
     fit : str
         The fit that its tables are for.
     raw : callable or None
@@ -37,6 +39,7 @@ class Importer(Plugin, Protocol):
 
     reads: str = ""
     computed: bool = False
+    wrote: Callable[[Sequence[str]], bool] | None = None
     fit: str = "slope_at_origin"
     raw: Callable[[Path, Mapping[str, Any]], RawTable] | None = None
     run: Callable[[Path, Mapping[str, Any]], Run] | None = None

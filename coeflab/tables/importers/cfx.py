@@ -8,16 +8,16 @@ means has to be said by a person.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.half_bodies import planes_beside, stated_plane
-from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of
+from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, require
 from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
+from coeflab.tables.raw_table import Ended, RawTable, Run
 
 summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
 computed = True
@@ -31,6 +31,11 @@ _POINT = "USER POINT,"
 _TEXTS = (".ccl", ".out", ".txt", ".log", ".pre", ".cse", ".dat")
 _SYMMETRY = re.compile(r"(?i)^[\s|>&]*Boundary Type\s*=\s*SYMMETRY\b")
 _BOUNDARY = re.compile(r"(?i)^[\s|>&]*(?:replace\s+)?BOUNDARY\s*:\s*(.+)")
+
+
+def wrote(lines: Sequence[str]) -> bool:
+    """Whether the first column is ACCUMULATED TIMESTEP."""
+    return any(line.startswith('"ACCUMULATED TIMESTEP",') for _, line in first_filled(lines, 1))
 
 
 def recognises(path: Path) -> bool:
@@ -72,21 +77,17 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     raw = head(file)
     if not raw.strip() and file.is_file():
         return Run(path, path.stem, RawTable(path, (), files=(file,)), ended=Ended.EMPTY, why=f"{file.name}: empty")
-    if kind_of(raw) != "cfx":
-        wrong = "another content" if file.is_file() else "no such file"
-        raise InputError(wrong, 'a file of cfx5mondata ("ACCUMULATED TIMESTEP", ...)', file=file, line=1)
+    require(raw, file, "cfx", 'a file of cfx5mondata ("ACCUMULATED TIMESTEP", ...)')
     lines = lines_of(decoded(raw)[0])
-    at = next(n for n, line in enumerate(lines, start=1) if line.strip())
+    ((at, first),) = first_filled(lines, 1)
     # Names hold quotation marks and commas of their own: "USER POINT,P1,D1,"x= 4.65E-02,y= 0.",Temperature".
-    names = [" ".join(name.split()) for name in lines[at - 1].strip().removeprefix('"').removesuffix('"').split('","')]
+    names = [" ".join(name.split()) for name in first.removeprefix('"').removesuffix('"').split('","')]
     names = [n if names.index(n) == i else f"{n} ({names[:i].count(n) + 1})" for i, n in enumerate(names)]
     monitor = in_order(read_monitor(file, laid_out(raw, file, at, names, ",", at)), 0)
     ended, why = how_ended(monitor, range(len(names))[1:])
     columns = [(j, name.removeprefix(_POINT), "", "" if j else "iteration") for j, name in enumerate(names)]
     dialect = {"format": "CFX monitor data", "delimiter": "comma", "decimal mark": "point"}
     remarks = (f"{file.name}: monitor data state no directions and no units",)
-    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
-    half = stated_plane(planes)
-    stated = {HALF_MODEL: half} if half else {}
+    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
     table = raw_table(monitor, path, columns, (file, *texts), dialect, stated, remarks)
     return Run(path, path.stem, table, ended=ended, why=why)

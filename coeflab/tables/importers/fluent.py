@@ -20,16 +20,21 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
-from coeflab.tables.half_bodies import planes_beside, stated_plane
-from coeflab.tables.monitor_files import FORCE_TABLE, decoded, files_of, head, kind_of, lines_of, one_run
+from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import HALF_MODEL, Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
 computed = True
 reads = "report files (.out) or a force report of Fluent"
 citations = ("Ansys Inc. (2024): Ansys Fluent User's Guide, Release 2024 R2: Report Files; Forces on Boundaries.",)
 
+FORCE_TABLE = re.compile(
+    r"^(?P<title>(?:Forces|Moments)\b.*)\n.*\n[ \t]*Zone[ \t]+Pressure[ \t]+Viscous[ \t]+Total\b", re.M
+)
+_FIRST, _NAMES = re.compile(r'"[^"]*"'), re.compile(r'\(?\s*"[^"]+"(?:\s+"[^"]*")+\s*\)?')
+_INDEX = re.compile(r"iterations?|time[ -]step|flow[ -]time", re.I)
 _QUOTED = re.compile(r'"([^"]*)"')
 _PART = re.compile(r"(.+)_\d+_\d+")
 _VECTOR = re.compile(r"\(([^()]*)\)")
@@ -42,6 +47,16 @@ _UNITS = {"n": "N", "n-m": "N*m", "n m": "N*m", "nm": "N*m"}
 _SHARES = ("pressure", "viscous", "total")
 _AXES = {"Forces": "XYZ", "Moments": "KMN"}
 _TIMES = ("flow-time", "Flow Time", "flow time")
+
+
+def wrote(lines: Sequence[str]) -> bool:
+    """Whether a title and names are quoted, or a table has Zone, Pressure, Viscous, Total below a title of Forces or Moments."""
+    first = [line for _, line in first_filled(lines, 3)]
+    if first and _FIRST.fullmatch(first[0]):
+        named = next((line for line in reversed(first[1:]) if _NAMES.fullmatch(line)), "")
+        if named and _INDEX.fullmatch(_QUOTED.findall(named)[0]):
+            return True
+    return FORCE_TABLE.search("\n".join(lines)) is not None
 
 
 def recognises(path: Path) -> bool:
@@ -82,9 +97,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         raw = head(path)
         if not raw.strip() and path.is_file():
             return Run(path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=f"{path.name}: empty")
-        if kind_of(raw) != "fluent":
-            found = "another content" if path.is_file() else "no such file"
-            raise InputError(found, "a report file or a force report of Fluent", file=path)
+        require(raw, path, "fluent", "a report file or a force report of Fluent")
         if _is_report(raw):
             return _force_report(path)
     monitors, ends = [], []
@@ -99,7 +112,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name, *_meaning(name, j)) for j, name in enumerate(whole.names)]
     dialect = {"format": "Fluent report file", "delimiter": "blanks", "decimal mark": "point"}
     remarks = (f"{files[0].name}: report files state no directions and no units",)
-    stated, texts = _half(path)
+    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
     table = raw_table(whole, path, columns, (*files, *texts), dialect, stated, remarks)
     return Run(path, path.stem, table, ended=ended, why=why)
 
@@ -111,13 +124,6 @@ _SYMMETRY = re.compile(
     r"|\bzone-type\s+(?P<typed>\([^()]*\)|\S+)\s+[\"']?symmetry\b|^\s*(?P<listed>[\w.:-]+)\s+\d+\s+symmetry\s*$"
     r"|zone.type\b[^\n]*[\"']symmetry[\"']|\bBoundary Conditions\b[^\n]*\"symmetry\"|^\s*symmetry\s*\((?P<number>\d+)\)"
 )
-
-
-def _half(path: Path) -> tuple[dict[str, Stated], list[Path]]:
-    """Symmetry planes that texts of the same case name, and these texts."""
-    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY)
-    half = stated_plane(planes)
-    return ({HALF_MODEL: half}, texts) if half else ({}, [])
 
 
 def _meaning(name: str, j: int) -> tuple[str, str]:
@@ -147,7 +153,7 @@ def _monitors(folder: Path) -> tuple[tuple[Path, ...], ...]:
 
 def _names(raw: bytes) -> tuple[tuple[str, ...], int, int]:
     """Names of the columns, their line, and the number of lines of the header."""
-    lines = [(n, line.strip()) for n, line in enumerate(lines_of(decoded(raw)[0]), start=1) if line.strip()][:3]
+    lines = first_filled(lines_of(decoded(raw)[0]), 3)
     n, line = lines[1]
     if len(lines) > 2 and lines[2][1].startswith("("):
         n, line = lines[2]
@@ -269,7 +275,7 @@ def _force_report(path: Path) -> Run:
             f"{len(centres)} moment centres", "one moment centre", file=path,
             line=next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
         )  # fmt: skip
-    stated, texts = _half(path)
+    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
     if centres:
         line = next(t.line for t in tables if t.centre)
         stated["axes.reference_point"] = Stated(centres.pop(), f"{path.name}:{line}")

@@ -26,9 +26,7 @@ from coeflab.core.types import Array
 from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
-from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.planar_motion import (
     DISPLACEMENTS,
     VARIABLES,
@@ -37,7 +35,7 @@ from coeflab.tables.planar_motion import (
     PlanarMotionTable,
     TimeSeries,
 )
-from coeflab.tables.simman_files import record
+from coeflab.tables.simman_files import is_captive_test, record
 
 summary = (
     "runs of a planar motion mechanism: runs.csv (file, motion, frequency [Hz] ...) and one CSV over time for each"
@@ -292,7 +290,7 @@ def _series(
     if not path.is_file():
         raise fail(f"no file {shown(name)}", "a CSV file with t [s] and forces", "file")
     path = folder / name
-    if kind_of(head(path)) == "simman" and not is_house_table(path):
+    if is_captive_test(path):
         time, columns = record(path)
         columns = {n: v for n, v in columns.items() if n not in ignored}
         back = np.flatnonzero(np.diff(time) <= 0.0)

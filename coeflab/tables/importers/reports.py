@@ -19,9 +19,9 @@ from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import whole_bytes
 from coeflab.tables.dialect import Marks, name_and_unit
-from coeflab.tables.half_bodies import planes_beside, stated_plane
+from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, head, header_cells, lines_of
-from coeflab.tables.raw_table import HALF_MODEL, Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "final values of one run: report name and value, SU2 forces_breakdown.dat, CFX wall forces"
 reads = "files of final values, one a run (report name, value, unit; forces_breakdown.dat; .out of CFX)"
@@ -78,24 +78,23 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     lines = lines_of(text)
     stated: dict[str, Stated] = {}
     conditions: dict[str, Stated] = {}
+    half: dict[str, Stated] = {}
     texts: list[Path] = []
     if _BREAKDOWN.search(text):
         kind, columns = "SU2 forces breakdown", list(_breakdown(lines))
         conditions, stated = _of_su2(lines, path)
-        planes, texts = planes_beside(
+        half, texts = planes_beside(
             path, (".cfg", ".log"), re.compile(r"(?i)^\s*MARKER_SYM\w*\s*=\s*\(?\s*(?!NONE)(?P<name>\w+)")
         )
     elif _is_cfx(text[: 1 << 16]):
         kind, columns = "wall forces of CFX", list(_walls(lines))
-        planes, texts = planes_beside(path, (".ccl", ".out"), _SYMMETRY, _BOUNDARY)
+        half, texts = planes_beside(path, (".ccl", ".out"), _SYMMETRY, _BOUNDARY)
         stated = {
             "axes.reference_point": Stated((0.0, 0.0, 0.0), "the origin of the axes, as CFX has it", convention=True)
         }
     else:
-        kind, planes = "names with values", []
-        columns = _values(lines, path)
-    if half := stated_plane(planes):
-        stated[HALF_MODEL] = half
+        kind, columns = "names with values", _values(lines, path)
+    stated |= half
     dialect = {"format": kind}
     if not columns:
         return Run(

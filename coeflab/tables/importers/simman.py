@@ -5,17 +5,15 @@ Oscillating tests in the same columns are files of a list of runs, which the imp
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.dialect import is_house_table
-from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.monitors import raw_table
 from coeflab.tables.raw_table import RawTable, Stated
-from coeflab.tables.simman_files import STATED, captive_test, is_record
+from coeflab.tables.simman_files import STATED, captive_test, is_captive_test, is_record, line_of_names
 
 summary = "static captive tests in the columns that the SIMMAN workshops ask for"
 reads = "captive tests of SIMMAN (X Y N, u v r, udot vdot rdot)"
@@ -28,9 +26,12 @@ DELIMITERS = {",": "comma", ";": "semicolon", "\t": "tab", " ": "blanks"}
 MEANT = ("X", "Y", "N", "u", "v", "r")
 
 
-def recognises(path: Path) -> bool:
-    """Whether a file has the columns of a captive test of SIMMAN, and is no table of ours."""
-    return path.is_file() and kind_of(head(path)) == "simman" and not is_house_table(path)
+def wrote(lines: Sequence[str]) -> bool:
+    """Whether a line names forces X Y N, velocities u v r and accelerations udot vdot rdot."""
+    return line_of_names(lines) > 0
+
+
+recognises = is_captive_test
 
 
 def raw(path: Path, options: Mapping[str, Any] | None = None) -> RawTable:

@@ -16,16 +16,21 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.half_bodies import planes_beside, stated_plane
-from coeflab.tables.monitor_files import decoded, files_of, head, header_cells, kind_of, lines_of
+from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, header_cells, kind_of, lines_of, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run
+from coeflab.tables.raw_table import Ended, RawTable, Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"
 computed = True
 reads = "monitor CSV of STAR-CCM+, one file or a folder of one run"
 citations = ("Siemens Digital Industries Software (2023): Simcenter STAR-CCM+ User Guide: Force; Force Coefficient.",)
 
+# A row a condition, of reports in the place of a history.
+_CONDITION = re.compile(
+    r"(?i)\b(?:run|case|design\s*#?|drift|beta|alpha|angle|yaw angle|incidence|speed)(?!.* Monitor\b)"
+)
+_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 _DELIMITERS = {",": "comma", ";": "semicolon", "\t": "tab"}
 _UNIT = re.compile(r"(?P<name>.+?)\s*\((?P<unit>[^()]*)\)")
 _STEPS = ("Iteration", "Time Step", "\u8fed\u4ee3")
@@ -39,6 +44,14 @@ _SYMMETRY = re.compile(
     r"SymmetryBoundary\b|(?i:\btype\W{1,20}symmetry(?:\s+plane)?\b)|[:>|]\s*Symmetry(?: Plane)?\s*(?:[<|]|$)"
 )
 _BOUNDARY = re.compile(r"(?:getBoundary\(\"|(?i:\bboundary(?:\s+name)?\s*:\s*))([^\"\n<]+)")
+
+
+def wrote(lines: Sequence[str]) -> bool:
+    """Whether a column is ``NAME Monitor: WHAT (UNIT)``, ``Iteration: Iteration`` or ``Physical Time: Physical Time (s)``."""
+    for _, line in first_filled(lines, 1):
+        heads = [header_cells(line, d) for d in _DELIMITERS if d in line]
+        return any(any(map(_MONITOR.fullmatch, h)) and not _CONDITION.search(h[0]) for h in heads)
+    return False
 
 
 def recognises(path: Path) -> bool:
@@ -90,9 +103,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         "delimiter": _DELIMITERS[delimiter],
         "decimal mark": "point" if delimiter == "," else "point or comma",
     }
-    planes, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
-    half = stated_plane(planes)
-    stated = {HALF_MODEL: half} if half else {}
+    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
     table = raw_table(whole, path, columns, (*files, *texts), dialect, stated)
     return Run(path, path.stem, table, ended=ended, why=why)
 
@@ -138,9 +149,7 @@ def _header(raw: bytes) -> tuple[list[str], str, int]:
 def _read(path: Path) -> tuple[Monitor, str]:
     """One file: the column that counts first, once."""
     raw = head(path)
-    if kind_of(raw) != "starccm":
-        found = "another content" if path.is_file() else "no such file"
-        raise InputError(found, 'a monitor of STAR-CCM+ ("Drag Monitor: Drag Monitor (N)")', file=path, line=1)
+    require(raw, path, "starccm", 'a monitor of STAR-CCM+ ("Drag Monitor: Drag Monitor (N)")')
     names, delimiter, at = _header(raw)
     if len(names) < 2 or not _means(names[0]):
         raise InputError(

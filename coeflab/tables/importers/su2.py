@@ -31,9 +31,9 @@ from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
 from coeflab.tables.half_bodies import planes_beside, stated_plane
-from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of, one_run, su2_names
+from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import HALF_MODEL, Ended, RawTable, Run, Stated
+from coeflab.tables.raw_table import Ended, RawTable, Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
 computed = True
@@ -46,9 +46,31 @@ FORCES = {"CFx": "X", "CFy": "Y", "CFz": "Z", "CMx": "K", "CMy": "M", "CMz": "N"
 JUDGED = (*FORCES, "CD", "CL", "CSF", "CLift", "CDrag", "CSideForce")
 COEFFICIENTS = (*JUDGED, "CEff", "CL/CD")
 INDICES, ROW = ("Time_Iter", "Outer_Iter", "Inner_Iter", "Iteration"), "row of the history"
+_NAME = re.compile(r"(?:Time|Outer|Inner)_Iter|rms\[.*|bgs\[.*")
+_OLD = {"CL", "CD", "CLift", "CDrag"}
 _SURFACE = re.compile(r"(?P<name>C[A-Za-z]{1,3})\((?P<marker>.+)\)")
 _KEY = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*)\s*=\s*(.*)")
 _PART = re.compile(r"(.+)_\d{5}")
+
+
+def wrote(lines: Sequence[str]) -> bool:
+    """Whether quoted names have Time_Iter, Outer_Iter, Inner_Iter or residuals (7, 8), or Iteration and CL (6 and before)."""
+    names = _names([line for _, line in first_filled(lines, 4)])
+    return any(map(_NAME.fullmatch, names)) or (names[:1] == ("Iteration",) and not _OLD.isdisjoint(names))
+
+
+def _names(lines: Sequence[str]) -> tuple[str, ...]:
+    """Names of the columns of a history of SU2, CSV or Tecplot, from its first lines; empty where it is none."""
+    selected = [line for line in lines if not line.startswith("TITLE")]
+    if selected and selected[0].startswith("VARIABLES"):
+        own = selected[0].partition("=")[2].strip()
+        selected = selected[1:] if own in ("", "\\") else [own, *selected[1:]]
+    if not selected or not selected[0].startswith('"'):
+        return ()
+    cells = selected[0].split(",")
+    names = [cell.strip() for cell in cells if cell.strip()]
+    quoted = all(len(n) > 2 and n[0] == n[-1] == '"' and '"' not in n[1:-1] for n in names)
+    return tuple(n[1:-1].strip() for n in names) if quoted and len(names) > 1 else ()
 
 
 def recognises(path: Path) -> bool:
@@ -91,10 +113,9 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     ended, why = how_ended(pieces[-1], judged)
     monitor = pieced(pieces, index)
     conditions, stated, words = _stated(config, monitor)
-    planes, texts = _symmetry_planes(files[0], beside)
-    if half := stated_plane(planes):
-        stated[HALF_MODEL] = half
-        files = (*files, *texts)
+    half, texts = _symmetry_planes(files[0], beside)
+    stated |= half
+    files = (*files, *texts)
     if config is not None and (change := _rescaled(config, conditions, monitor)):
         words = [*words, change]
     dialect = {
@@ -131,11 +152,9 @@ def _read(path: Path) -> Monitor:
         if not path.is_file():
             raise InputError("no such file", "a history of SU2", file=path)
         return Monitor(path, (), [], np.empty(0, dtype=np.int64), 0)
-    if kind_of(raw) != "su2":
-        raise InputError("another content", "a history of SU2 (Time_Iter, Inner_Iter, rms[...])", file=path, line=1)
-    lines = lines_of(decoded(raw)[0])
-    filled = [(n, line.strip()) for n, line in enumerate(lines, start=1) if line.strip()][:4]
-    names = su2_names([line for _, line in filled])
+    require(raw, path, "su2", "a history of SU2 (Time_Iter, Inner_Iter, rms[...])")
+    filled = first_filled(lines_of(decoded(raw)[0]), 4)
+    names = _names([line for _, line in filled])
     at = next(n for n, line in filled if f'"{names[0]}"' in line)
     zone = next((n for n, line in filled if n > at and line.startswith("ZONE")), at)
     names = tuple(n if names.index(n) == i else f"{n} ({names[:i].count(n) + 1})" for i, n in enumerate(names))
@@ -244,7 +263,7 @@ _SYMMETRY_IN_LOG = re.compile(
 )
 
 
-def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[str], list[Path]]:
+def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[dict[str, Stated], list[Path]]:
     """Markers of symmetry planes in any config file beside a history, else in a log of the solver or a config of all runs; and those."""
     places = []
     for config in configs:
@@ -253,7 +272,9 @@ def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[list[st
                 n for n in config.text(key).strip("() \t").replace(",", " ").split() if n.upper() not in ("NONE", "\\")
             ]
             places += [f"{config.at(key)}: marker {name} is a symmetry plane" for name in names]
-    return (places, []) if places else planes_beside(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
+    if places:
+        return stated_plane(places), []
+    return planes_beside(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
 
 
 def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], list[str]]:

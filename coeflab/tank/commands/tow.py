@@ -540,4 +540,4 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
         return (
             f"coeflab vehicle {shlex.quote(named)} adds mass and added mass; coeflab tow without --solver runs OpenFOAM"
         )
-    return f"coeflab fit {place}/{CAMPAIGN} --next 3"
+    return f"coeflab next {place}/{CAMPAIGN}"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.declarations import one_of
 from coeflab.law.scaling import Conditions
 from coeflab.tank.openfoam.features import foils
@@ -102,8 +103,7 @@ def wall_unit(speed: float, length: float, viscosity: float) -> float:
         Kinematic, m^2/s.
     """
     reynolds = max(speed * length / viscosity, 1e4)
-    friction = 0.075 / (np.log10(reynolds) - 2.0) ** 2
-    return float(viscosity / (speed * np.sqrt(friction / 2.0)))
+    return float(viscosity / (speed * np.sqrt(friction_line(reynolds) / 2.0)))
 
 
 def boundary_layer(speed: float, length: float, viscosity: float) -> float:

@@ -264,6 +264,7 @@ def test_only_this_machine_can_reach_it(server):
     assert server.server_address[0] == "127.0.0.1"
 
 
+@pytest.mark.usefixtures("in_a_shell")
 def test_a_port_in_use_and_a_folder_that_is_none_say_so(folder, server):
     with pytest.raises(OutputError, match=r"port \d+ of 127\.0\.0\.1 cannot be used.*--port"):
         GalleryServer(folder, server.server_address[1])
