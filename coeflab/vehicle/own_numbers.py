@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -32,6 +31,7 @@ from coeflab.vehicle.matching import one_slope
 from coeflab.vehicle.merge import SCALED_UNSAID
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import (
+    Control,
     ParameterCovariance,
     ParameterHydrostatics,
     ParameterSurface,
@@ -349,12 +349,16 @@ def typed_file(
     driven = tuple(typed_thruster(t, conditions) for t in thrusters)
     if twice := repeated(t.name for t in driven):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
-    fins = (("dr", rudder, "--rudder"), ("ds", stern_planes, "--stern-planes"), ("db", bow_planes, "--bow-planes"))
+    fins: tuple[tuple[Control, str, str], ...] = (
+        ("dr", rudder, "--rudder"),
+        ("ds", stern_planes, "--stern-planes"),
+        ("db", bow_planes, "--bow-planes"),
+    )
     surfaces = tuple(typed_surface(control, text, option) for control, text, option in fins if text)
     return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
 
 
-def typed_surface(control: Literal["dr", "ds", "db"], text: str, option: str) -> ParameterSurface:
+def typed_surface(control: Control, text: str, option: str) -> ParameterSurface:
     """Read ``30 deg, 30 deg/s``: the limit of a control's angle, and its rate.
 
     Raises
