@@ -368,9 +368,10 @@ def vehicle(
     result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
     base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
     if coefficients is not None:
-        fits = isinstance(coefficients, Result)
-        other = _fitted_file(coefficients, base, hull) if fits else parameters_of(coefficients)
-        own = coefficients.tables[0].scaling if fits and coefficients.tables else None
+        other = (
+            _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
+        )
+        own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
         base = merged(base, other, called, own).parameters
     if numbers:
         base = merged(base, stated_beside(base, _read(numbers)), called, base.scaling).parameters
