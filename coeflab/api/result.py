@@ -11,10 +11,13 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
+from coeflab.core.texts import remark
 from coeflab.core.types import in_angles
+from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import covariance_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
+from coeflab.study.fitting import FEW_ROWS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,6 +29,8 @@ if TYPE_CHECKING:
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
     from coeflab.tables.force_table import ForceTable
+
+LACKING = (FEW_ROWS, LEFT_OUT)  # why a coefficient has no value
 
 
 class Points(NamedTuple):
@@ -93,9 +98,10 @@ class Result(Mapping[str, Coefficient]):
         KeyError
             No fit has it.
         InputError
-            Several campaigns give it.
+            Several campaigns give it a value.
         """
         own = [f for f in self.fits if symbol in f.coefficients]
+        own = [f for f in own if f.coefficients[symbol].value is not None] or own[:1]
         if len(own) > 1:
             names = [f.campaign for f in own]
             raise InputError(
@@ -228,6 +234,7 @@ class Result(Mapping[str, Coefficient]):
         by = self.fits[0].coefficients.scaling
         return Shown(
             f"{names}, primed by {by.length_name} {by.length:.5g} m", ("", "value", "U95", "U95 %", "points", "status"), tuple(rows),
+            tuple(remark(f) for f in dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING)),
             left=frozenset({0, 5}),
         )  # fmt: skip
 
