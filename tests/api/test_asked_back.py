@@ -151,5 +151,5 @@ def test_a_vehicle_of_a_shape_is_steered_and_driven_by_numbers() -> None:
         ("dr", 25, 20)
     ]
     assert [(t.name, t.lag, round(t.curve.at(720.0), 9)) for t in auv.file.thrusters] == [("main", 0.3, 60.0)]
-    turn = auv.simulate("turning_circle", rudder="10 deg")
-    assert turn.frame()["r [rad/s]"].iloc[-1] < 0.0  # dr > 0 with Ndr < 0: to port
+    turn = auv.simulate("turning_circle", rudder="10 deg").frame().iloc[-1]
+    assert turn["r [rad/s]"] * turn["dr [rad]"] < 0.0  # Ndr < 0: dr > 0 turns to port
