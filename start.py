@@ -24,7 +24,7 @@ GALLERY = ROOT / "reports" / "gallery" / "make.py"
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 OLDEST = (3, 11)
 EXTRA = "derive"  # the one that a command of the README needs
-WORKERS = "3"  # on two cores: tests of kills, of Slurm and of pages wait more than they compute
+WORKERS = "4"  # on two cores: tests of kills, of Slurm and of pages wait more than they compute
 
 
 def requirements(groups: tuple[str, ...]) -> list[str]:

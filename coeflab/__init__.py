@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from coeflab.api.designing import NextTests, next_tests
     from coeflab.api.estimating import estimate
     from coeflab.api.exporting import export
+    from coeflab.api.fitted_law import Evaluated, FittedLaw
     from coeflab.api.fitting import fit
     from coeflab.api.motion import Motion, manoeuvres, simulate
     from coeflab.api.names import shipped_names
@@ -66,6 +67,7 @@ _HOMES = {
     ),
     "api.table": ("Table",),
     "api.fitting": ("fit",),
+    "api.fitted_law": ("Evaluated", "FittedLaw"),
     "api.result": (
         "Points",
         "Result",
@@ -143,8 +145,10 @@ __all__ = [
     "CoeflabError",
     "Comparison",
     "Conditions",
+    "Evaluated",
     "Export",
     "FitResult",
+    "FittedLaw",
     "FittedModel",
     "ForceTable",
     "InputError",

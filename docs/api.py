@@ -34,6 +34,8 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
             "Status",
             "CoefficientSet",
             "FitResult",
+            "FittedLaw",
+            "Evaluated",
             "FittedModel",
             "Check",
         ),

@@ -47,10 +47,10 @@ def test_a_command_that_ended_well_is_followed_by_what_comes_next(
 @pytest.mark.parametrize(
     ("codes", "arguments", "expected", "last"),
     [
-        ({}, [], 0, "pytest -n 3 --dist worksteal --durations=20"),
-        ({}, ["--fast"], 0, "pytest -n 3 --dist worksteal --durations=20 -m not slow"),
+        ({}, [], 0, "pytest -n 4 --dist worksteal --durations=20"),
+        ({}, ["--fast"], 0, "pytest -n 4 --dist worksteal --durations=20 -m not slow"),
         ({"tests": 5}, ["tests/law"], 5, "pytest tests/law"),
-        ({"mypy": 3, "waits": 600}, [], 3, "pytest -n 3 --dist worksteal --durations=20"),
+        ({"mypy": 3, "waits": 600}, [], 3, "pytest -n 4 --dist worksteal --durations=20"),
         ({"ruff": 1}, [], 1, "ruff check"),
     ],
 )

@@ -172,7 +172,8 @@ class Body(plain.Body):
         """
         if method != "all" and method not in methods():
             raise InputError(f"the method {shown(method)}", f"all, or one of {', '.join(methods())}", column="method")
-        found = added_masses(self, si(density, "density", "density"), method, options or None).recommended
+        rho = si(density, "density", "density")
+        found = replace(added_masses(self, rho, method, options or None).recommended, density=rho)
         return AddedMass(**{f.name: getattr(found, f.name) for f in fields(law.AddedMass)})
 
     def plot(self, view: str = "side", ax: Axes | None = None) -> Axes:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from coeflab.core.errors import InputError
 from coeflab.core.wording import Verbatim
+from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.scaling import Scaling
 from coeflab.study.fitting import FEW_ROWS
@@ -34,7 +35,7 @@ def fit_campaigns(
     include_uncertain: bool = False,
     progress: Progress = lambda _: None,
 ) -> Study:
-    """The study of one campaign by a fit, or of several by one that joins them; `coeflab.fit` gives the coefficients alone.
+    """The study of campaigns by a fit, jointly where it joins campaigns, else each by itself; `coeflab.fit` gives the coefficients alone.
 
     Parameters
     ----------
@@ -66,11 +67,11 @@ def fit_campaigns(
     -0.0262
     """
     given = dict(options or {})
-    alone = len(paths) == 1
+    alone = len(paths) == 1 or not FITS.load(by).joins_campaigns
     study = run(Plan(
         name=Verbatim("_".join(p.stem for p in paths)[:80]),
         title=Verbatim(", ".join(p.name for p in paths)),
-        tables=(table_at(paths[0], (by,), {by: given}, speed),) if alone else (),
+        tables=tuple(table_at(p, (by,), {by: given}, speed) for p in paths) if alone else (),
         joint=() if alone else (PlannedJoint(tuple(table_at(p, speed=speed) for p in paths), by, given),),
         scaling=scaling,
         wanted=MAIN if by == USUAL else (),

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from coeflab.api.fitted_law import FittedLaw
     from coeflab.core.table import Check
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
@@ -78,7 +79,8 @@ class Result(Mapping[str, Coefficient]):
     _found: list[tuple[Check, ...]] = field(default_factory=list, repr=False)
 
     def __repr__(self) -> str:
-        return in_angles(self, ", ".join(c.said for c in self._all() if c.value is not None) or "no coefficient")
+        laws = f"laws of {', '.join(self.laws)}" if not len(self) and self.laws else "no coefficient"
+        return in_angles(self, ", ".join(c.said for c in self._all() if c.value is not None) or laws)
 
     def _repr_html_(self) -> str:
         from coeflab.core.cards import html_by
@@ -107,7 +109,8 @@ class Result(Mapping[str, Coefficient]):
                 advice=f'result.of("{names[0]}")["{symbol}"]; cf.fit(..., "manoeuvring_model") fits them jointly.',
             )  # fmt: skip
         if not own:
-            raise KeyError(f"no {shown(symbol)} among {', '.join(self)}")
+            law = f'; a law is result.laws["{symbol}"]' if symbol in self.laws else ""
+            raise KeyError(f"no {shown(symbol)} among {', '.join(self) or 'no coefficients'}{law}")
         return own[0].coefficients[symbol]
 
     def __iter__(self) -> Iterator[str]:
@@ -142,6 +145,25 @@ class Result(Mapping[str, Coefficient]):
         return Result(own, tuple(t for t in self.tables if t.campaign in own[0].campaigns))
 
     @property
+    def laws(self) -> Mapping[str, FittedLaw]:
+        """Polynomials and surfaces by what they give: ``result.laws["C_D"].evaluate(alpha="7 deg")``.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> list(cf.fit("suboff_roddy_2", "polynomial", variable="beta", degree=2, responses=["X", "N"]).laws)
+        ["X'", "N'"]
+        """
+        from coeflab.api.fitted_law import FittedLaw
+
+        several = len(self.fits) > 1
+        return {
+            f"{m.response} of {f.campaign}" if several else m.response: FittedLaw(m)
+            for f in self.fits
+            for m in f.models
+        }
+
+    @property
     def symbols(self) -> tuple[str, ...]:
         """Symbols with prime, as rows of `covariance` and `frame`; one that several campaigns give stands several times."""
         return tuple(primed(c.symbol) for c in self._all())
@@ -161,7 +183,7 @@ class Result(Mapping[str, Coefficient]):
         return covariance_of(self.fits)
 
     def frame(self) -> pd.DataFrame:
-        """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value.
+        """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value. Of laws alone a row a term.
 
         Examples
         --------
@@ -179,6 +201,8 @@ class Result(Mapping[str, Coefficient]):
             }
             for c in self._all()
         ]  # fmt: skip
+        if not rows and self.laws:
+            return pd.concat({name: law.frame() for name, law in self.laws.items()}, names=["response", "term"])
         return pd.DataFrame(rows, index=pd.Index(self.symbols, name="symbol"))
 
     def summary(self) -> Shown:
@@ -200,6 +224,12 @@ class Result(Mapping[str, Coefficient]):
             )
             for c in self._all()
         ]
+        if not rows:
+            rows = [
+                (s, *with_u95(v, u), percent(u, v), str(len(law.model.y)), law.response)
+                for law in self.laws.values()
+                for s, v, u in zip(law.model.symbols, law.frame()["value"], law.frame()["u95"], strict=True)
+            ]
         names = ", ".join(dict.fromkeys(f.campaign for f in self.fits))
         by = self.fits[0].coefficients.scaling
         return Shown(
@@ -299,7 +329,7 @@ class Result(Mapping[str, Coefficient]):
         Parameters
         ----------
         symbol : str or sequence of str, optional
-            One symbol: the points, the curve and the slope with U95. None or several: a forest.
+            One symbol: the points, the curve and the slope with U95; of `laws` that law. None or several: a forest, or the one law.
         ax : Axes, optional
             To draw into, in the style that is set; by default that of a new figure. A colour of your own:
             ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.
@@ -318,6 +348,12 @@ class Result(Mapping[str, Coefficient]):
         """
         if kind not in ("", "forms"):
             raise InputError(shown(kind), '"forms", or nothing', column="kind")
+        if symbol is None and not len(self) and len(self.laws) == 1:
+            (symbol,) = self.laws
+        if isinstance(symbol, str) and symbol in self.laws and symbol not in self:
+            return self.laws[symbol].plot(ax=ax)
+        if symbol is None and not len(self):
+            raise InputError("no coefficient", f"one of {', '.join(self.laws) or 'no law'}", column="symbol")
         if isinstance(symbol, str):
             if not any(f.sweeps for f in self.fits):
                 from coeflab.report.plots.model import plot_model

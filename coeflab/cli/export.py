@@ -15,7 +15,10 @@ if TYPE_CHECKING:
     from coeflab.api.exporting import Export, ParameterFile
     from coeflab.core.errors import InputError
 
-WITH_MASS = "Mass and added mass: coeflab vehicle BODY --campaign CAMPAIGN, or coeflab merge VEHICLE.json CAMPAIGN."
+WITH_MASS = (
+    'Single accelerations: coeflab merge FILE --set "Kpdot=... N*m/(rad/s^2)"; mass and added mass of a shape: coeflab vehicle BODY '
+    "--campaign CAMPAIGN."
+)
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
 
 

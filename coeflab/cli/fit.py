@@ -31,7 +31,7 @@ def command(
         [],
         metavar="TABLE",
         autocompletion=complete.campaigns,
-        help="Campaign folders, CSVs of them, or names of shipped campaigns; several are fitted jointly.",
+        help="Campaign folders, CSVs of them, or names of shipped campaigns; of several a fit takes them together where it joins campaigns, else each.",
         show_default=False,
     ),
     fit: str = typer.Option(
@@ -69,7 +69,9 @@ def command(
     strict: bool = options.STRICT,
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Fit the coefficients of one table, or of several jointly.
+    """Fit the coefficients of one table or several.
+
+    Several become one parameter file by a plan: coeflab new, coeflab run.
 
     Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
     Exit code 1 when a check fails; with --strict when one warns, too.

@@ -28,7 +28,7 @@ def command(
         [],
         "--set",
         metavar="SYMBOL=VALUE",
-        help='One number of your own, "X0\'=-0.00208 +- 0.00005" or "Yv=-35.5 N/(m/s)"; again for each.',
+        help='One number of your own, "X0\'=-0.00208 +- 0.00005" or "Yv=-35.5 N/(m/s) constant"; again for each.',
         show_default=False,
     ),
     name: str = typer.Option("", metavar="NAME", help="Of the merged file; default BASE_merged.", show_default=False),
@@ -53,7 +53,8 @@ def command(
     chosen = own_numbers(numbers)
     with show.progress(json) as say:
         say("reading both" if other else "reading the file")
-        done = merge(read_parameters(base), other or chosen, name, say)
+        first = read_parameters(base)
+        done = merge(first, other or chosen, name, say)
         folder, files = out if out is not None else base.parent, done.files()
         write_all(folder, files)
     paths = [folder / one for one in sorted(files)]
@@ -61,6 +62,7 @@ def command(
         show.json_object(as_object(done, paths))
     else:
         summarise(done, paths)
+        show.found([f for f in done.merged.parameters.findings if f not in first.findings])
     if show.failed(done.checks):
         raise typer.Exit(1)
 

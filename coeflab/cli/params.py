@@ -123,7 +123,7 @@ def new(
         [],
         "--set",
         metavar="SYMBOL=VALUE",
-        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %"; again for each.',
+        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %", which goes with the speed unless constant stands behind it; again for each.',
         show_default=False,
     ),
     length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
@@ -163,6 +163,8 @@ def new(
     rudder: str = typer.Option(
         "", metavar="ANGLE,RATE", help='Its limit and rate: "30 deg, 30 deg/s".', show_default=False
     ),
+    stern_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of ds."),
+    bow_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of db."),
     body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
     out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -184,6 +186,7 @@ def new(
     result = typed_file(
         name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
         inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster, rudder=rudder,
+        stern_planes=stern_planes, bow_planes=bow_planes,
     )  # fmt: skip
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
@@ -200,6 +203,7 @@ def new(
         })  # fmt: skip
     else:
         show.table(contents(result, "coeflab"))
+        show.found(result.findings)
         show.path(path)
         show.command_line("Check it", f"coeflab params check {shlex.quote(str(path))}")
         show.file_findings(result.name, found)

@@ -6,6 +6,7 @@ What users named can hold control characters, which a terminal obeys; they are s
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 
 SLOW = 2.0
+QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")  # words of a shell that hold blanks
 MOST_WARNINGS, MOST_FILES = 8, 4  # before they are named in short
 COLOURS = {
     "pass": "green", "holds": "green", "within": "green", "written": "green", "fail": "bold red", "apart": "bold red",
@@ -76,14 +78,14 @@ def path(place: object, more: str = "") -> None:
 
 
 def command_line(word: str, typed: str, separator: str = ": ") -> None:
-    """A command to copy; a long one goes on behind a backslash, as a shell reads it."""
+    """A command to copy; a long one goes on behind a backslash between words, as a shell reads it."""
     import textwrap
 
+    held = QUOTED.sub(lambda m: m[0].replace(" ", "\0"), visible(f"{word}{separator}{typed}"))
     folded = textwrap.wrap(
-        visible(f"{word}{separator}{typed}"), _prose(width()) - 2, subsequent_indent="  ", break_long_words=False,
-        break_on_hyphens=False,
-    )  # fmt: skip
-    typer.echo(" \\\n".join(folded))
+        held, _prose(width()) - 2, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+    typer.echo(" \\\n".join(folded).replace("\0", " "))
 
 
 def error(line: str) -> None:

@@ -124,6 +124,12 @@ class Registry(Generic[Port]):
                 out.append((name, str(why).removesuffix(".")))
         return out
 
+    @staticmethod
+    def _shortened(name: str, typed: str) -> bool:
+        """Whether what is typed begins the name, or is its initials: turn for turning_circle, pvs for python_vehicle_simulator."""
+        initials = "".join(word[:1] for word in name.split("_"))
+        return len(typed) > 1 and (name.startswith(typed) or typed == initials)
+
     def _described_by(self, word: str) -> list[str]:
         """Names of the plugins whose summary has the word: gz for gazebo; one that cannot be imported has none."""
         found = []
@@ -143,7 +149,8 @@ class Registry(Generic[Port]):
             another package cannot be imported.
         """
         if name not in self.names():
-            near = difflib.get_close_matches(name, self.names(), n=3) or self._described_by(name)
+            short = [n for n in self.names() if self._shortened(n, name.casefold())]
+            near = short or difflib.get_close_matches(name, self.names(), n=3) or self._described_by(name)
             hint = f": did you mean {' or '.join(near)}?" if near else "."
             known = ", ".join(self.names()) or "none in this release"
             refused = "".join(f" {reason[0].upper()}{reason[1:]}." for n, reason in self._claims[1] if n == name)

@@ -10,7 +10,7 @@ from coeflab.core.declarations import Takes
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS
-from coeflab.tables.vocabulary import did_you_mean, folded, one_name, vocabulary
+from coeflab.tables.vocabulary import did_you_mean, one_name, vocabulary
 
 WORDS = ("label", "point", "cells", "uncertain", "ignore")
 WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
@@ -146,7 +146,7 @@ def share(unit: str) -> float | None:
 
 def unturned(name: str, said: ColumnMap) -> str:
     """A warning where a column whose name is that of lift or drag is called a force along a body axis; else empty."""
-    wind = vocabulary().flow.get(folded(name), "")
+    wind = vocabulary().of_flow(name)
     if not wind or said.error or said.name not in ("X", "Y", "Z"):
         return ""
     exact = str(replace(said, name=wind, negative=False))

@@ -28,7 +28,7 @@ from coeflab.tables.column_map import (
 from coeflab.tables.evidence import TURN
 from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.vocabulary import folded, vocabulary
+from coeflab.tables.vocabulary import folded, recorded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
 from coeflab.tables.words.primes import SCALE
 
@@ -72,7 +72,6 @@ _THOUSAND = re.compile(
     rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
 )
 _BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may be a unit behind a name
-_MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?|-op$")
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
@@ -227,13 +226,15 @@ def _fits(unit: str, dimension: str) -> bool:
 def _name(column: RawColumn) -> tuple[str, str, bool]:
     """Plain name, what it rests on, and whether it is certain; of ``Side Force Monitor: Fy`` by both parts."""
     found = _whole_name(column)
-    if found[0] or ":" not in column.name:
+    if found[0] or found[1] != UNKNOWN:
         return found
     error = "se_" * column.name.startswith("se_")
-    parts = [_MONITOR.sub("", p).strip() for p in column.name.removeprefix("se_").split(":")]
-    named = dict.fromkeys(n for p in parts if (n := _whole_name(replace(column, name=error + p))[0]))
+    parts = [recorded(p) for p in column.name.removeprefix("se_").split(":")]
+    named = {n: why for p in parts for n, why, _ in [_whole_name(replace(column, name=error + p))] if n}
     if len(named) == 1:
-        return next(iter(named)), "its name", False
+        return (*named.popitem(), False)
+    if not named and (wind := vocabulary().of_flow(column.name)) and _fits(column.unit, "force"):
+        return f"{error}{wind}", f"a word of its name, {TURNED.format(ACROSS[wind])}", False
     return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -32,6 +33,15 @@ def folded(name: str) -> str:
     return "".join(c for c in plain if c.isalnum())
 
 
+_RECORDED = re.compile(r"(?i)\b(?:monitor|report|plot|rfile)\b(?:\s*\d+)?|-op$")
+_SHORTEST_WORD = 4  # letters: cd and cl are words of other things too
+
+
+def recorded(name: str) -> str:
+    """A name without what a solver calls its recording: Lift of "Lift Monitor", drag of "drag-report"."""
+    return _RECORDED.sub("", name).strip(" -_")
+
+
 @dataclass(frozen=True, slots=True)
 class Vocabulary:
     """Meanings by folded names.
@@ -57,6 +67,14 @@ class Vocabulary:
     symbols: Words
     units: Words
     own: frozenset[str] = frozenset()
+
+    def of_flow(self, name: str) -> str:
+        """Drag, lift or side, where the name is that or one of its words is; empty where none is, or two differ."""
+        if whole := self.flow.get(folded(name)) or self.flow.get(folded(recorded(name))):
+            return whole
+        words = [w for part in re.split(r"[^\w]+|_", name) if len(w := folded(part)) >= _SHORTEST_WORD]
+        found = {self.flow[w] for w in words if w in self.flow}
+        return found.pop() if len(found) == 1 else ""
 
 
 def _inverted(section: Mapping[str, Any]) -> dict[str, str]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from coeflab.law.scaling import Scaling
 
 SAME_LENGTH = 1e-3  # of the length
+SCALED_UNSAID = "parameter_file.scaled"  # SI values of a person who did not say what they do at other speeds
 
 
 @brief
@@ -106,7 +107,7 @@ def merged(
     InputError
         Nothing to take.
     """
-    ours, theirs = coefficient_set(base), coefficient_set(other)
+    ours, theirs = coefficient_set(base), _at_conditions(coefficient_set(other), other, base)
     if ours.datum != theirs.datum:
         raise ScalingMismatchError(
             f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
@@ -169,6 +170,18 @@ def merged(
         "provenance": result.provenance.model_copy(update={"notes": notes}),
     }
     return Merged(result.model_copy(update=update), tuple(replaced), lengths)
+
+
+def _at_conditions(theirs: CoefficientSet, other: ParameterFile, base: ParameterFile) -> CoefficientSet:
+    """With primes of damping about a state of rest that give the same SI at the base's density and speed."""
+    there, here = other.conditions, base.conditions
+    ratios = [
+        theirs.scaling.unit(c.symbol, there.density, there.speed) / theirs.scaling.unit(c.symbol, here.density, here.speed)
+        if c.law == "rest" else 1.0
+        for c in theirs.coefficients
+    ]  # fmt: skip
+    rows = tuple(c.scaled(k, c.unit) for c, k in zip(theirs.coefficients, ratios, strict=True))
+    return replace(theirs, coefficients=rows, covariance=theirs.covariance * np.outer(ratios, ratios))
 
 
 def _lender(ours: CoefficientSet) -> CoefficientSet:
@@ -309,7 +322,9 @@ def _written(
         "measured": (*base.measured, *(other.measured if same else ())),
         "law_holds": (*base.law_holds, *(other.law_holds if same else ())),
         "law_at_points": (),
-        "findings": findings_of_merged((*base.findings, *other.findings), name or base.name),
+        "findings": findings_of_merged(
+            (*(f for one in base.findings for f in _still_scaled(one, replaced)), *other.findings), name or base.name
+        ),
         "provenance": mine.model_copy(
             update={
                 "coeflab_version": VERSION,
@@ -352,6 +367,19 @@ def _about(other: ParameterFile, base: ParameterFile) -> tuple[ParameterFile, st
 def _from(point: Sequence[float], shift: np.ndarray) -> tuple[float, ...]:
     """A point from a reference point that is ``shift`` away."""
     return tuple(float(x) for x in np.array(point) - shift)
+
+
+def _still_scaled(found: Finding, replaced: Sequence[Replaced]) -> tuple[Finding, ...]:
+    """A finding of the base without the SI values that were replaced; none where all were."""
+    if found.code != SCALED_UNSAID:
+        return (found,)
+    gone = {r.symbol.removesuffix("'") for r in replaced}
+    names = tuple(s for s in found["symbols"] if s not in gone)
+    facts = {fact.name: fact.value for fact in found.facts} | {"symbols": names}
+    changed = Finding.of(
+        found.code, listed(names), found.severity, statistic=found.statistic, advice=found.advice, **facts
+    )
+    return (changed,) if names else ()
 
 
 def findings_of_merged(found: Sequence[Finding], name: str) -> tuple[Finding, ...]:

@@ -1,7 +1,8 @@
 """Numbers that a person states one by one: read as they are typed, and made a parameter file of.
 
 Yv' = -0.0278 +- 0.0014          a prime
-Yv = -35.5 +- 2 N/(m/s)          SI, at the density and speed of the file
+Yv = -35.5 +- 2 N/(m/s)          SI, at the density and speed of the file, and scaled with the speed as its prime is
+Yv = -35.5 N/(m/s) constant      SI at every speed; "scaled" says the other
 """
 
 from __future__ import annotations
@@ -16,18 +17,21 @@ from coeflab.bodies.thrusters import ThrusterKeys
 from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import Array, brief
 from coeflab.core.units import also_written, positive_typed, three_typed, unit_ratio
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, repeated
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, parallel_axis
-from coeflab.law.scaling import Conditions, Scaling, doubtful_size
+from coeflab.law.scaling import Conditions, Scaling, doubtful_size, powers_of
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.from_shape import parameter_thruster
 from coeflab.vehicle.matching import one_slope
+from coeflab.vehicle.merge import SCALED_UNSAID
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import (
+    Control,
     ParameterCovariance,
     ParameterHydrostatics,
     ParameterSurface,
@@ -37,6 +41,8 @@ from coeflab.vehicle.parameter_parts import (
 STATED, BY_HAND = "stated", "--set"
 EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+CONSTANT, SCALED = "constant", "scaled"
+_OVER_SPEED = re.compile(rf"\s+({CONSTANT}|{SCALED})\b")
 _UNIT = r"(?:[^\s,.\d+%\u00b1](?:(?!\+-|\+/-|\u00b1).)*?)?"
 _TYPED = re.compile(
     rf"\s*(?P<value>{_NUMBER})\s*(?P<unit>{_UNIT})\s*"
@@ -57,12 +63,20 @@ class OwnNumber:
     u95 : float or None
     si : bool
         Whether both are SI, in the unit of the symbol, and no primes.
+    over_speed : {"", "constant", "scaled"}
+        What an SI value does at other speeds, where that is stated.
     """
 
     symbol: str
     value: float
     u95: float | None
     si: bool
+    over_speed: str = ""
+
+    @property
+    def speed_power(self) -> int:
+        """The n of U^n that the force goes with: 0 for a constant, and for products of two motions."""
+        return 0 if self.over_speed == CONSTANT else powers_of(self.symbol)[0]
 
     def coefficient(self, scaling: Scaling, at: Conditions, body: str) -> Coefficient:
         """The coefficient by this length, at these conditions."""
@@ -72,11 +86,14 @@ class OwnNumber:
         return Coefficient(
             self.symbol, value, None if self.u95 is None else self.u95 * to_prime, Status.STATED, body, origin=STATED,
             estimator="stated one by one", value_si=self.value if self.si else value * unit, unit_si=derivative(self.symbol).unit,
+            law="motion" if self.speed_power == powers_of(self.symbol)[0] else "rest",
         )  # fmt: skip
 
 
 def own_number(typed: str) -> OwnNumber:
     """Read ``Yv'=-0.0278 +- 0.0014``, ``Yv=-35.5 N/(m/s) +- 6 %`` or ``Ydr=1.9 +- 0.2 N/deg``; a unit of the kind is converted.
+
+    Behind an SI value may stand ``constant``, that it holds at every speed, or ``scaled``, that it goes with the speed as its prime.
 
     Raises
     ------
@@ -91,8 +108,9 @@ def own_number(typed: str) -> OwnNumber:
         d = derivative(symbol)
     except InputError as why:
         raise InputError(why.found, why.expected, column="--set", advice=why.advice) from None
-    match = _TYPED.fullmatch(rest)
-    if match is None:
+    over_speed = _OVER_SPEED.findall(rest)
+    match = _TYPED.fullmatch(_OVER_SPEED.sub("", rest))
+    if match is None or len(over_speed) > 1:
         raise InputError(f"{shown(rest.strip())} for {symbol}", f"a number, such as {EXAMPLE}", column="--set",
                          advice="Write a decimal point." if "," in rest else "")  # fmt: skip
     value, u95 = float(match["value"]), None if match["u95"] is None else float(match["u95"])
@@ -108,15 +126,20 @@ def own_number(typed: str) -> OwnNumber:
             f"the unit {shown(unit)} behind the prime {symbol}", "no unit", column="--set",
             advice=f"For an SI value write {d.text}= without the prime.",
         )  # fmt: skip
+    if is_prime and over_speed:
+        raise InputError(
+            f"{over_speed[0]} behind the prime {symbol}", "an SI value before it", column="--set",
+            advice=f"A prime is scaled. For a constant write {d.text}= with its unit.",
+        )  # fmt: skip
     ratios = [1.0 if is_prime else unit_ratio(u, d.unit) for u in units]
     if ratios[0] is None or (u95 is not None and ratios[1] is None and match["of"] != "%"):
         raise InputError(
             f"{d.text} with {f'the unit {shown(unit)}' if unit else 'no unit'}", f"{d.unit}, also written {also_written(d.unit)}",
-            column="--set", advice=f"For a prime write {d.text}'=.",
+            column="--set", advice=f"For a prime write {d.text}'=. Behind a unit may stand {CONSTANT} or {SCALED}, nothing else.",
         )  # fmt: skip
     value *= ratios[0]
     u95 = None if u95 is None else u95 * (ratios[0] if match["of"] == "%" or ratios[1] is None else ratios[1])
-    return OwnNumber(primed(d.text), value, u95, not is_prime)
+    return OwnNumber(primed(d.text), value, u95, not is_prime, over_speed[0] if over_speed else "")
 
 
 def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
@@ -144,6 +167,21 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
             advice="Both act in the law, and a straight course feels their sum.",
         )  # fmt: skip
     return out
+
+
+def scaled_unsaid(numbers: Sequence[OwnNumber], speed: float) -> tuple[Finding, ...]:
+    """SI values that change with the speed, where nobody said so: a finding a power of U."""
+    named: dict[int, list[str]] = {}
+    for n in numbers:
+        if n.si and not n.over_speed and n.speed_power:
+            named.setdefault(n.speed_power, []).append(derivative(n.symbol).text)
+    return tuple(
+        Finding.of(
+            SCALED_UNSAID, listed(names), Severity.NOTE, statistic=float(speed), power="U" if power == 1 else f"U^{power}",
+            twice=2.0**power, symbols=tuple(names), advice=f'--set "{names[0]}=... {derivative(names[0]).unit} {CONSTANT}"',
+        )
+        for power, names in sorted(named.items())
+    )  # fmt: skip
 
 
 def imported_file(
@@ -187,7 +225,7 @@ def imported_file(
         mass=None if mass is None else mass.primed(scaling, conditions.density),
         coefficients=coefficients,
         covariance=ParameterCovariance(symbols=tuple(c.symbol for c in coefficients), matrix=covariance),
-        covered=none, hydrostatics=hydrostatics,
+        covered=none, hydrostatics=hydrostatics, findings=scaled_unsaid(numbers, conditions.speed),
         provenance=Provenance(coeflab_version=VERSION, study=name, inputs=(), citations=(), notes=tuple(notes)),
     )  # fmt: skip
 
@@ -237,6 +275,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
 def typed_file(
     name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
     cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (), rudder: str = "",
+    stern_planes: str = "", bow_planes: str = "",
 ) -> ParameterFile:  # fmt: skip
     """A parameter file of what a person typed behind the options of ``coeflab params new``; empty: not stated.
 
@@ -256,7 +295,7 @@ def typed_file(
         About the centre of gravity, one or three numbers, kg m^2.
     thrusters : sequence of str
         As `typed_thruster` reads them.
-    rudder : str
+    rudder, stern_planes, bow_planes : str
         Limit of its angle, and its rate: ``30 deg, 30 deg/s``; without a rate it moves at once.
 
     Raises
@@ -307,14 +346,30 @@ def typed_file(
     except InputError as why:
         raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
-    driven = tuple(typed_thruster(t, conditions) for t in thrusters)
-    if twice := repeated(t.name for t in driven):
+    driven, surfaces = typed_thrusters(thrusters, conditions), typed_surfaces(rudder, stern_planes, bow_planes)
+    return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
+
+
+def typed_thrusters(texts: Sequence[str], conditions: Conditions) -> tuple[ParameterThruster, ...]:
+    """Thrusters of different names; see `typed_thruster`."""
+    out = tuple(typed_thruster(t, conditions) for t in texts)
+    if twice := repeated(t.name for t in out):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
-    return result.model_copy(update={"thrusters": driven, "surfaces": (typed_rudder(rudder),) if rudder else ()})
+    return out
 
 
-def typed_rudder(text: str) -> ParameterSurface:
-    """Read ``30 deg, 30 deg/s``: the limit of the rudder's angle, and its rate.
+def typed_surfaces(rudder: str, stern_planes: str, bow_planes: str) -> tuple[ParameterSurface, ...]:
+    """Limits and rates of the controls that are stated; see `typed_surface`."""
+    fins: tuple[tuple[Control, str, str], ...] = (
+        ("dr", rudder, "--rudder"),
+        ("ds", stern_planes, "--stern-planes"),
+        ("db", bow_planes, "--bow-planes"),
+    )
+    return tuple(typed_surface(control, text, option) for control, text, option in fins if text)
+
+
+def typed_surface(control: Control, text: str, option: str) -> ParameterSurface:
+    """Read ``30 deg, 30 deg/s``: the limit of a control's angle, and its rate.
 
     Raises
     ------
@@ -322,8 +377,8 @@ def typed_rudder(text: str) -> ParameterSurface:
     """
     limit, comma, rate = text.partition(",")
     return ParameterSurface(
-        control="dr", limit=positive_typed(limit.strip(), "angle", "--rudder"),
-        rate=positive_typed(rate.strip(), "rate", "--rudder") if comma else None,
+        control=control, limit=positive_typed(limit.strip(), "angle", option),
+        rate=positive_typed(rate.strip(), "rate", option) if comma else None,
     )  # fmt: skip
 
 

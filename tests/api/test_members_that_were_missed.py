@@ -9,6 +9,14 @@ import coeflab as cf
 from coeflab.core.errors import InputError
 
 
+@pytest.mark.parametrize("method", ["ellipsoid", "strip", "panel", "all"])
+def test_an_added_mass_says_of_which_water(method: str) -> None:
+    body = cf.read_body("spheroid_example")
+    salt, fresh = body.added_mass(method, density=1025.0), body.added_mass(method)
+    assert (salt.density, round(fresh.density, 1)) == (1025.0, 998.2)
+    np.testing.assert_allclose(salt.matrix / salt.density, fresh.matrix / fresh.density, rtol=1e-9, atol=1e-12)
+
+
 def test_added_mass_is_a_frame() -> None:
     added = cf.read_body("spheroid_example").added_mass("ellipsoid")
     frame = added.frame()

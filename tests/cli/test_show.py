@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from inspect import signature
@@ -124,3 +125,23 @@ def test_many_warnings_are_a_line_a_check(capsys: pytest.CaptureFixture[str]) ->
     assert all(f"Yv' = 0.{i}" in whole for i in range(8))
     show.findings([*found, Check("signs", "out", Severity.FAIL, "Yv' = 0.03", "below zero", "Turn it.")])
     assert "Yv' = 0.03" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("blanks", range(1, 60, 7))
+def test_a_command_that_goes_on_is_the_same_to_a_shell(blanks: int, capsys: pytest.CaptureFixture[str]) -> None:
+    """Columns with blanks, quotes and umlauts, wherever the line ends."""
+    words = [
+        "coeflab",
+        "import",
+        "x" * blanks,
+        "--map",
+        "Lift Monitor=lift [lbf]",
+        "--map",
+        "Kraft in Längs'richtung=X [N]",
+        "--set",
+        'a="b  c"=?',
+    ]
+    show.command_line("Next", shlex.join(words))
+    lines = capsys.readouterr().out
+    assert shlex.split(lines.removeprefix("Next: ").replace("\\\n", "")) == words
+    assert "\\\n" in lines

@@ -44,6 +44,18 @@ def test_names_are_files_and_nothing_is_imported(room: Registry[Greeter]) -> Non
     assert [n for n in sys.modules if n.startswith("greeters.")] == ["greeters.polite"]
 
 
+def test_initials_and_beginnings_suggest_the_name() -> None:
+    from coeflab.formats import EXPORTERS
+
+    for typed in ("pvs", "PVS"):
+        with pytest.raises(PluginError, match=r"did you mean python_vehicle_simulator\?"):
+            EXPORTERS.load(typed)
+    from coeflab.motion.manoeuvres import MANOEUVRES
+
+    with pytest.raises(PluginError, match=r"did you mean turning_circle\?"):
+        MANOEUVRES.load("turn")
+
+
 def test_unknown_name_suggests_near_ones(room: Registry[Greeter]) -> None:
     with pytest.raises(PluginError, match=r'no greeter is called "polit": did you mean polite\? Known: broken, mute'):
         room.load("polit")

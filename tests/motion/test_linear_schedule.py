@@ -136,9 +136,12 @@ def test_files_read_back(tmp_path: Path, speeds: tuple[float, ...] | None) -> No
     told = json.loads(model.save(tmp_path / "auv.json").read_text())
     assert (told if speeds is None else told["models"][0])["a"] == first.A.tolist()
     mat = scipy.io.loadmat(io.BytesIO(model.save(tmp_path / "auv.mat").read_bytes()))
-    assert (
-        np.moveaxis(mat["A"], -1, 0).tolist() == model.A.tolist() if speeds else mat["A"].tolist() == model.A.tolist()
-    )
+    for key in ("A", "B", "C", "D", "at_commands"):  # one layout in both, as in Python, and its axes by name
+        assert mat[key].reshape(arrays[key].shape).tolist() == arrays[key].tolist()
+        named = [{"speeds": 2, "states": 4, "commands": 2}[axis] for axis in arrays[f"{key}_axes"]]
+        assert arrays[key].shape == tuple(named)
+        assert [str(x[0]) for x in mat[f"{key}_axes"][:, 0]] == arrays[f"{key}_axes"].tolist()
+    assert mat["A"].tolist() == model.A.tolist()
     assert [str(x[0]) for x in mat["states"][:, 0]] == ["u", "v", "r", "heading"]
     assert mat["at_states"][0, 0] == 1.0
     models = (model,) if speeds is None else model.models
@@ -154,7 +157,7 @@ def test_octave_loads_the_schedule(tmp_path: Path) -> None:
         pytest.skip("GNU Octave (octave-cli) is not installed")
     found = cf.read_vehicle("remus100").linear(speed=[1.0, 2.0], yaw_rate=0.0, free="uvr")
     found.save(tmp_path / "auv.mat")
-    ask = "s = load('auv.mat'); printf('%.17g\\n', s.A(3, 2, 2), s.speeds(2)); printf('%s\\n', s.states{:})"
+    ask = "s = load('auv.mat'); printf('%.17g\\n', s.A(2, 3, 2), s.speeds(2)); printf('%s\\n', s.states{:})"
     done = subprocess.run(
         ["octave-cli", "--norc", "--quiet", "--eval", ask], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=True
     )  # fmt: skip

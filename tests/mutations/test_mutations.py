@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Callable
 from functools import cache
@@ -16,6 +17,7 @@ from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, 
 from tests.mutations.mutations import NR, UNDETECTABLE, YR, every_constant, mutations, of_huuv, published, unchanged
 from tests.mutations.table import PAGE, lines_of
 
+STEP = int(os.environ.get("COEFLAB_CONSTANTS", "4"))  # one constant of four; with 1 all, as was tried once
 STUDIES = ("thauv", "flyingfish", "huuv", "suboff", "urv", "remus", "tank", "estimates")
 
 # +5 % or the other sign of what nothing depends on, or less than is allowed: chosen, assumed, or not recomputed by anything.
@@ -84,10 +86,12 @@ def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OPEN)
 def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base: Callable[[str], Verdicts]) -> None:
-    outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every_constant(name)}
-    assert {what for what, o in outcomes.items() if not o.by} == OPEN[name]
-    assert not {what for what in OPEN[name] if outcomes[what].share >= 1.0}
-    assert len(OPEN[name]) <= 0.27 * len(outcomes)
+    every = every_constant(name)
+    assert set(OPEN[name]) <= {what for what, _ in every}
+    assert len(OPEN[name]) <= 0.27 * len(every)
+    outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every[::STEP]}
+    assert {what for what, o in outcomes.items() if not o.by} == OPEN[name] & set(outcomes)
+    assert not {what for what in OPEN[name] & set(outcomes) if outcomes[what].share >= 1.0}
 
 
 def test_a_law_is_as_it_was_after_a_mutation() -> None:

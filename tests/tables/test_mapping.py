@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from coeflab.cli import app
 from coeflab.core.axes import FRAMES, Axes, parse_axes
 from coeflab.core.errors import InputError
-from coeflab.tables.column_map import read_column_map
+from coeflab.tables.column_map import read_column_map, unturned
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.form import Group, form, screen
@@ -436,7 +436,7 @@ def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:
     assert offer(
         ("what", "widgets"),
     ) == ("", "no known name")
-    assert offer(("se_Fx Monitor", "N"))[1] == "no known name; N: se_X, se_Y, se_Z, or ignore"
+    assert offer(("se_Rig Monitor", "N"))[1] == "no known name; N: se_X, se_Y, se_Z, or ignore"
     assert "z up (CFD, FLU), to port" in offer(("yaw rate", "deg/s"))[1]
 
 
@@ -588,3 +588,17 @@ def test_a_unit_of_primes_that_cannot_be_read_is_refused(write_campaign) -> None
         with_unit(RawTable(folder, ()), RawColumn("CY", "%", np.ones(2)), read_column_map("Y' [1e-3]"))
     with pytest.raises(InputError, match="power of ten"):
         read_column_map("Y' [N]")
+
+
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [
+        ("Lift Monitor", "lift"), ("Drag Monitor 1", "drag"), ("cl-report", "lift"), ("drag-force-report", "drag"), ("Total lift of model", "lift"),
+        ("Gesamter Widerstand Modell", "drag"), ("Crossflow force", "side"), ("Fx Monitor", "X"), ("Side Force Monitor", "Y"), ("drag and lift", ""),
+        ("cd of rig", ""),
+    ],
+)  # fmt: skip
+def test_a_force_along_the_flow_is_known_by_a_word_and_warned_of_as_a_force_of_the_body(name: str, read: str) -> None:
+    found = proposals(RawTable(Path("t.csv"), (RawColumn(name, "N", np.array([1.0, 2.0])),)))[0]
+    assert found.text == (f"{read} [N]" if read else "")
+    assert bool(unturned(name, read_column_map("-Z [N]"))) == (read in ("lift", "drag", "side"))

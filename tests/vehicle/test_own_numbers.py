@@ -18,6 +18,7 @@ from coeflab.core.units import also_written, same_unit
 from coeflab.law.coefficient import Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
+from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_numbers, stated_beside, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -97,6 +98,12 @@ def test_a_rudder_has_its_limit_and_rate() -> None:
     (found,) = typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg, 20 deg/s").surfaces
     assert (found.control, found.limit, found.rate) == ("dr", pytest.approx(np.pi / 6), pytest.approx(np.pi / 9))
     assert typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30 deg").surfaces[0].rate is None
+    planes = typed_file("own", ["Zds'=-0.01"], **WANTED, bow_planes="10 deg", stern_planes="20 deg, 30 deg/s").surfaces
+    assert [(s.control, s.limit, s.rate) for s in planes] == [
+        ("ds", pytest.approx(np.pi / 9), pytest.approx(np.pi / 6)), ("db", pytest.approx(np.pi / 18), None),
+    ]  # fmt: skip
+    with pytest.raises(InputError, match="--stern-planes"):
+        typed_file("own", ["Ydr'=0.01"], **WANTED, stern_planes="30")
     with pytest.raises(InputError, match="--rudder"):
         typed_file("own", ["Ydr'=0.01"], **WANTED, rudder="30")
 
@@ -258,3 +265,64 @@ def test_a_new_number_takes_the_place_of_the_terms_in_its_motions() -> None:
     base = law("Yv'=-0.03", "Yv|v|'=-0.1", "Yvvv'=-0.2", "Xu|u|'=-0.002")
     made = merged(base, stated_beside(base, own_numbers(["X0'=-0.0025"])), alone=True)
     assert [c.symbol for c in made.parameters.coefficients] == ["Yv'", "Yv|v|'", "Yvvv'", "X0'"]
+
+
+DAMPING = {
+    "Xu": -4.0,
+    "Yv": -40.0,
+    "Zw": -40.0,
+    "Kp": -1.5,
+    "Mq": -12.0,
+    "Nr": -12.0,
+    "Yr": 3.0,
+    "Mw": 25.0,
+    "Nv": -25.0,
+    "Zq": 2.0,
+}
+
+
+def test_a_constant_acts_alike_at_every_speed_and_a_scaled_one_does_not() -> None:
+    """Fossen's D: slopes of the water's force at 1, 1.5 and 2 m/s beside the typed numbers, by central differences."""
+    units = {s: derivative(s).unit for s in DAMPING}
+    for word, power in (("constant", 0), ("scaled", 1)):
+        made = typed_file(
+            "own", [f"{s}={v} {units[s]} {word} +- 10 %" for s, v in DAMPING.items()], **{**WANTED, "speed": "1.5"}
+        )
+        assert not made.findings
+        law = force_law(made)
+        for speed in (1.0, 1.5, 2.0):
+            for s, v in DAMPING.items():
+                at, step = np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]), 1e-6 * np.eye(6)["uvwpqr".index(s[1])]
+                up, down = law.force(np.array([at + step, at - step]))[:, "XYZKMN".index(s[0])]
+                factor = (speed / 1.5) ** power * (2.0 if (s, power) == ("Xu", 1) else 1.0)
+                assert (up - down) / 2e-6 == pytest.approx(v * factor, rel=1e-6), (word, speed, s)
+
+
+def test_si_values_say_what_they_do_at_other_speeds() -> None:
+    """A finding a power of U, of those alone that are not stated to be constant or scaled, and whose force has a speed in it."""
+    numbers = ["Yv=-40 N/(m/s)", "Nr=-12 N*m/(rad/s)", "Zw=-40 N/(m/s) constant", "Mq=-12 N*m/(rad/s) scaled", "Ydr=100 N/rad",
+               "Yv|v|=-150 N/(m/s)^2", "Yvdot=-36 N/(m/s^2)", "Kp'=-0.01"]  # fmt: skip
+    made = typed_file("own", numbers, **WANTED)
+    assert [(f["symbols"], f["power"], f["twice"]) for f in made.findings] == [
+        (("Yv", "Nr"), "U", 2.0),
+        (("Ydr",), "U^2", 4.0),
+    ]
+    assert {c.symbol for c in made.coefficients if c.law == "rest"} == {"Zw'"}
+    assert sum("scaled" in remark for remark in made.remarks) == 2
+    assert sum(c.severity is Severity.NOTE and "Yv and Nr" in c.subject for c in plausibility(made)) == 1
+    for typed in ("Yv'=-0.03 constant", "Yv=-40 N/(m/s) constant scaled", "Yv=-40 N/(m/s) rest"):
+        with pytest.raises(InputError):
+            own_number(typed)
+
+
+def test_a_constant_stays_one_in_a_vehicle_of_another_speed() -> None:
+    """Merged into a file of 1 m/s and fresh water from one of 2 m/s and the sea; what was replaced is no longer said to be scaled."""
+    base = typed_file("base", ["Yv=-30 N/(m/s)", "Nr=-5 N*m/(rad/s)"], **WANTED)
+    there = {**WANTED, "speed": "2", "density": "1025"}
+    other = typed_file("other", ["Yv=-40 N/(m/s) constant +- 4"], **there)
+    found = merged(base, other).parameters
+    (yv,) = [c for c in found.coefficients if c.symbol == "Yv'"]
+    assert (yv.law, yv.value_si) == ("rest", pytest.approx(-40.0))
+    assert yv.u95 == pytest.approx(0.1 * abs(yv.value or 0.0))
+    assert found.covariance.matrix[0][0] == pytest.approx((0.05 * (yv.value or 0.0)) ** 2)
+    assert [f["symbols"] for f in found.findings] == [("Nr",)]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -210,7 +210,7 @@ class LinearSchedule:
         return pd.DataFrame(rows, index=pd.Index(self.speeds, name="speed [m/s]"))
 
     def save(self, path: str | Path) -> Path:
-        """All of them as a .mat (speeds along the last axis), .npz or .json (along the first) file, or the table as .csv.
+        """All of them as a .mat, .npz or .json file, speeds along the first axis, or the table as .csv.
 
         Parameters
         ----------
@@ -279,13 +279,17 @@ def content(models: Sequence[LinearModel], ending: str, speeds: Sequence[float] 
     if ending == ".csv":
         table: str = LinearSchedule(tuple(speeds or ()), tuple(models)).frame().to_csv(lineterminator="\n")
         return table.encode()
-    arrays = _arrays(models, speeds, -1 if ending == ".mat" else 0)
-    names = _names(models[0]) | {"remarks": list(dict.fromkeys(r for m in models for r in (*m.statements, *m.remarks)))}
+    arrays = _arrays(models, speeds)
+    names = (
+        _names(models[0])
+        | _axes(arrays, speeds is not None)
+        | {"remarks": list(dict.fromkeys(r for m in models for r in (*m.statements, *m.remarks)))}
+    )
     return npz(arrays, names) if ending == ".npz" else mat(arrays, names)
 
 
-def _arrays(models: Sequence[LinearModel], speeds: Sequence[float] | None, axis: int) -> dict[str, np.ndarray]:
-    """Matrices, and states and commands of the steady motion, where x and d are zero; speeds along an axis."""
+def _arrays(models: Sequence[LinearModel], speeds: Sequence[float] | None) -> dict[str, np.ndarray]:
+    """Matrices, and states and commands of the steady motion, where x and d are zero; speeds along the first axis."""
     each = [
         {
             "A": m.A, "B": m.B, "C": m.C, "D": m.D, "at_states": np.array([s.value for s in m.states]),
@@ -295,7 +299,17 @@ def _arrays(models: Sequence[LinearModel], speeds: Sequence[float] | None, axis:
     ]  # fmt: skip
     if speeds is None:
         return each[0]
-    return {k: np.stack([one[k] for one in each], axis=axis) for k in each[0]} | {"speeds": np.array(speeds)}
+    return {k: np.stack([one[k] for one in each]) for k in each[0]} | {"speeds": np.array(speeds)}
+
+
+def _axes(names: Iterable[str], several: bool) -> dict[str, list[str]]:
+    """What the axes of each array are, such as A_axes; every state is an output."""
+    columns = {"A": "states", "B": "commands", "C": "states", "D": "commands"}
+    rows = {"at_states": ["states"], "at_commands": ["commands"]}
+    return {
+        f"{k}_axes": [*(["speeds"] if several else []), *rows.get(k, ["states", columns.get(k, "")])]
+        for k in names if k in columns or k in rows
+    }  # fmt: skip
 
 
 def _names(model: LinearModel) -> dict[str, list[str]]:

@@ -36,14 +36,32 @@ def plot_model(models: Sequence[FittedModel], symbol: str, ax: Axes | None = Non
             f"one of {', '.join(primed(s) for m in models for s in m.symbols)}",
             column="symbol",
         )
+    return plot_along(model, next((v for v in along(model) if v in name[1:]), ""), ax)
+
+
+def plot_along(model: FittedModel, variable: str = "", ax: Axes | None = None) -> Axes:
+    """A law along one of its variables, the others at rest.
+
+    Parameters
+    ----------
+    model : FittedModel
+    variable : str
+        By default the first along which three rows lie.
+    ax : Axes, optional
+
+    Raises
+    ------
+    InputError
+        No three rows have all other variables at rest, or not those of this variable.
+    """
     names = along(model)
-    variable = next((v for v in names if v in name[1:]), names[0] if names else "")
-    if not variable:
+    if not names or (variable and variable not in names):
         raise InputError(
-            f"{shown(symbol)}, whose rows vary several motions at once",
-            "three rows or more along one of them",
-            column="symbol",
+            f"{shown(variable or model.response)}, whose rows vary several motions at once",
+            f"a variable along which three rows or more lie{''.join(f', {n}' for n in names)}",
+            column="variable",
         )
+    variable = variable or names[0]
     axes = axes_of(ax)
     draw_along(axes, model, variable, palette=palette())
     axes.set_xlabel(axis_name(variable, model).replace("  ", " "))

@@ -14,7 +14,8 @@ $ coeflab params new placeholder --about cg --length "2 m" --speed "1 m/s" --den
 > --set "Yv'=-0.03 +- 0.003" --set "Nv'=-0.012" --set "Yr'=0.005" --set "Nr'=-0.006" --set "Yvdot'=-0.009" --set "Nrdot'=-0.0005"
 ```
 
-`"Yv=-60 N/(m/s)"`, without the prime, is an SI value. `--help` lists what else it takes: centre of gravity, moments of inertia, buoyancy.
+`"Yv=-60 N/(m/s)"`, without the prime, is an SI value, and goes with the speed as its prime does; the file says so. With `constant` behind
+the unit it is the same at every speed (`law` "rest"), with `scaled` no remark is left. `--help` lists what else it takes: centre of gravity, moments of inertia, buoyancy.
 By hand, this is enough:
 
 ```json title="by_hand.parameters.json"
