@@ -183,7 +183,8 @@ def refuse_empty(fits: Sequence[FitResult]) -> None:
         With the table and the sweep that has too few.
     """
     few = [f for fit in fits for f in fit.findings if f.code == FEW_ROWS]
-    numbers = (one.value for fit in fits for one in (*fit.sweeps, *fit.coefficients.coefficients))
+    swept = [s.value for fit in fits for s in fit.sweeps]
+    numbers = [*swept, *(c.value for fit in fits for c in fit.coefficients.coefficients)]
     if not few or any(fit.models for fit in fits) or any(value is not None for value in numbers):
         return
     points, text = int(few[0].statistic or 0), words(few[0])
