@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from coeflab.core.table import Check
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.fits.results.straight_runs import StraightRuns
     from coeflab.tables.force_table import ForceTable
 
 LACKING = (FEW_ROWS, LEFT_OUT)  # why a coefficient has no value
@@ -39,7 +40,7 @@ class Points(NamedTuple):
     Attributes
     ----------
     x : (n,) array
-        v' = v/U, w', r' = r L/U, or the angle of a control, rad.
+        v' = v/U, w', r' = r L/U, or the angle of a control, rad; of X0' of straight runs the speed, m/s.
     y : (n,) array
         Force component, primed.
     used : (n,) boolean array
@@ -293,6 +294,13 @@ class Result(Mapping[str, Coefficient]):
             self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
         return self._found[0]
 
+    def _straight(self, symbol: str) -> StraightRuns | None:
+        """Runs at several speeds that give X0', where no sweep does."""
+        if symbol.removesuffix("'") != "X0" or any(s.symbol == "X0" for f in self.fits for s in f.sweeps):
+            return None
+        self[symbol]  # one campaign, and a coefficient that there is
+        return next((r for f in self.fits for r in f.straight), None)
+
     def _sweep(self, symbol: str) -> Sweep:
         self[symbol]  # one campaign, and a coefficient that there is
         name = symbol.removesuffix("'")
@@ -320,6 +328,8 @@ class Result(Mapping[str, Coefficient]):
         >>> x.shape == y.shape == used.shape
         True
         """
+        if (runs := self._straight(symbol)) is not None:
+            return Points(runs.speed, runs.primes, np.isfinite(runs.primes), runs.labels)
         s = self._sweep(symbol)
         return Points(s.x, s.y, s.used, s.labels)
 
@@ -354,6 +364,10 @@ class Result(Mapping[str, Coefficient]):
             return self.laws[symbol].plot(ax=ax)
         if symbol is None and not len(self):
             raise InputError("no coefficient", f"one of {', '.join(self.laws) or 'no law'}", column="symbol")
+        if isinstance(symbol, str) and (runs := self._straight(symbol)) is not None:
+            from coeflab.report.plots.resistance import plot_straight_runs
+
+            return plot_straight_runs(runs, ax)
         if isinstance(symbol, str):
             if not any(f.sweeps for f in self.fits):
                 from coeflab.report.plots.model import plot_model
