@@ -178,11 +178,13 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
     budgets: list[Budget] = []
     unfitted: dict[str, str] = {}
     ours = [t.added for t in plan.tows if t.added is not None]
+    towed: set[str] = set()
     for planned in plan.tables:
         read = [settled(t, plan) for t in read_tables(planned)]
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
         is_ours = planned.campaign in ours
+        towed |= {read[0].campaign} if is_ours else set()
         enough = [t for t in read if _has_points(t)] if is_ours else read
         for name in planned.fits if enough else ():
             try:
@@ -206,7 +208,7 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
         of_fits.append((joint.fit, read, plan.scaling or one_length(read), joint.options))
         progress(f"fitted {result.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
-    refuse_empty([f for f in fits if f.campaign not in ours])
+    refuse_empty([f for f in fits if f.campaign not in towed])
     return tables, list(rejoined(fits, of_fits)), budgets, unfitted
 
 
