@@ -105,7 +105,7 @@ def rejoined(
         at = first.point if isinstance(first, PlanarMotionTable) else point + np.array([arm_shift(tables), 0.0, 0.0])
         beside = [
             k for k, g in enumerate(fits)
-            if k != i and _of_one_body(f, g, unnamed_alike) and g.coefficients.datum == f.coefficients.datum
+            if k != i and not _completes(g, f) and _of_one_body(f, g, unnamed_alike) and g.coefficients.datum == f.coefficients.datum
             and g.coefficients.scaling == f.coefficients.scaling
         ]  # fmt: skip
         own, _ = fitted(name, [t.about(at) for t in tables], scaling, options)
@@ -117,6 +117,11 @@ def rejoined(
                 mine = tuple(s for s in g.shared if (s.fit, s.campaign) == (f.fit, f.campaign))
                 out[k] = replace(out[k], shared=(*kept, *mine))
     return tuple(out)
+
+
+def _completes(g: FitResult, f: FitResult) -> bool:
+    """Its terms move with the coefficients of f where those are, about the point of both: no move brings them there again."""
+    return g.tied is not None and (g.tied.fit, g.campaign) == (f.fit, f.campaign)
 
 
 def _of_one_body(f: FitResult, g: FitResult, unnamed_alike: bool) -> bool:
@@ -178,7 +183,8 @@ def refuse_empty(fits: Sequence[FitResult]) -> None:
         With the table and the sweep that has too few.
     """
     few = [f for fit in fits for f in fit.findings if f.code == FEW_ROWS]
-    numbers = (one.value for fit in fits for one in (*fit.sweeps, *fit.coefficients.coefficients))
+    swept = [s.value for fit in fits for s in fit.sweeps]
+    numbers = [*swept, *(c.value for fit in fits for c in fit.coefficients.coefficients)]
     if not few or any(fit.models for fit in fits) or any(value is not None for value in numbers):
         return
     points, text = int(few[0].statistic or 0), words(few[0])

@@ -9,8 +9,9 @@ import pytest
 
 import coeflab as cf
 from coeflab.core.errors import InputError
+from coeflab.fits.results.fit_result import covariance_of
 from coeflab.fits.rows.sweeps import arm_shift
-from coeflab.study.fitting import FEW_ROWS
+from coeflab.study.fitting import FEW_ROWS, fitted, rejoined
 from coeflab.tables.force_table import ForceTable
 
 LENGTH, DENSITY, SPEED = 5.0, 1000.0, 3.0
@@ -127,3 +128,31 @@ def test_one_short_sweep_leaves_the_others_their_slopes(alone: str) -> None:
 def test_nothing_at_all_is_still_refused() -> None:
     with pytest.raises(InputError, match=r"2 usable points of the sweep over v'.*at least 3"):
         cf.fit(table("v", np.array([-0.1, 0.1]), np.zeros(2), "drift"))
+
+
+def test_a_law_tied_to_moved_slopes_has_a_covariance_of_random_numbers() -> None:
+    """Slopes were moved once more beside the law tied to them: an eigenvalue of -0.07, which `uncertainty` refused."""
+    to = np.array([-2.5, 0.0, 0.0])
+    rng = np.random.default_rng(5)
+
+    def read(t: ForceTable) -> ForceTable:
+        noisy = {c: x + 0.01 * np.max(np.abs(x)) * rng.standard_normal(len(x)) for c, x in t.forces.items()}
+        both = {**noisy, "X": -0.0014 * FORCE + 1e-5 * FORCE * rng.standard_normal(len(t))}
+        return replace(
+            t, campaign="one", forces=both, usable=dict.fromkeys(both, np.ones(len(t), dtype=bool))
+        ).about(to)  # fmt: skip
+
+    tables = [read(swept("v")), read(combined("v"))]
+    scaling = tables[0].scaling
+    slopes, _ = fitted("slope_at_origin", tables, scaling, {})
+    law, _ = fitted("tied_law", tables, scaling, {}, [slopes])
+    assert (
+        slopes.coefficients["Xrr"].value is None
+    )  # what no move brings to the point, so that the slopes are joined again
+    fits = rejoined([slopes, law], [("slope_at_origin", tables, scaling, {}), ("tied_law", tables, scaling, {})])
+    covariance = covariance_of(fits)
+    size = np.sqrt(np.diag(covariance))
+    known = np.isfinite(size) & (size > 0.0)
+    relative = covariance[np.ix_(known, known)] / np.outer(size[known], size[known])
+    assert np.count_nonzero(np.tril(relative, -1)) > 5
+    assert np.linalg.eigvalsh(relative)[0] > -1e-9

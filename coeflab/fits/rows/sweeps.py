@@ -166,8 +166,8 @@ def arm_shift(tables: Sequence[ForceTable]) -> float:
             places.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
             rates.append(table.primed_motion(rate, 1.0)[turning])
             drifts.append(table.primed_motion(drift, 1.0)[turning])
-    shifts, over, away = (np.concatenate(some) for some in (places, rates, drifts))
-    away = np.abs(away) > AT_REST
+    shifts, over = np.concatenate(places), np.concatenate(rates)
+    away = np.abs(np.concatenate(drifts)) > AT_REST
     if not np.any(away):
         return 0.0
     order = np.flatnonzero(away)[np.argsort(shifts[away], kind="stable")]

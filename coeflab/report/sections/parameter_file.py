@@ -275,9 +275,13 @@ def _other_criteria(parameters: ParameterFile) -> list[tuple[str, ...]]:
         if d.name == TURNING:
             holds = index is not None and index.decided and sense(index).startswith("stable")
             verdict = f"D/L = {number(2.0 / (abs(d.value) * RUDDER), 3)}" if holds else NO_CRITERION
-            remarks.insert(
-                0, "steady turn at 15 deg of rudder, linear" if holds else "no steady linear turn: not stable"
+            open_one = index is None or not index.decided
+            without = (
+                "a steady linear turn only if stable, which is open"
+                if open_one
+                else "no steady linear turn: not stable"
             )
+            remarks.insert(0, "steady turn at 15 deg of rudder, linear" if holds else without)
         else:
             slower = parameters.conditions.speed < d.value
             verdict = "planes reversed" if slower else "planes as ordered"
