@@ -12,6 +12,7 @@ from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.scaling import Scaling
+from coeflab.study.fitting import FEW_ROWS
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
@@ -93,6 +94,8 @@ class FirstFit(NamedTuple):
         Whether a study of the campaign fits so by itself.
     why : str
         Why the first one is refused; empty where none is.
+    further : str
+        Name of the fit to look at next, which takes rows that this one leaves out; empty for the suited one.
     """
 
     study: Study | None
@@ -100,6 +103,7 @@ class FirstFit(NamedTuple):
     suited: bool
     planned: bool
     why: str
+    further: str
 
 
 def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
@@ -124,4 +128,8 @@ def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
             break
         except InputError as refused:
             why = why or str(refused)
-    return FirstFit(study, by, by == suited, study is not None and by in DEFAULT_FITS, why)
+    found = () if study is None else (f for fit in study.fits for f in fit.findings if f.code == FEW_ROWS)
+    further = (
+        "" if study is None else next((f.advice for f in found if f["by"] == "combined"), "" if by == suited else by)
+    )
+    return FirstFit(study, by, by == suited, study is not None and by in DEFAULT_FITS, why, further)

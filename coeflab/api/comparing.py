@@ -58,8 +58,13 @@ class Comparison(plain.Comparison):
         ]  # fmt: skip
         return pd.DataFrame(rows, index=pd.Index([r.symbol for r in self.rows], name="symbol"))
 
-    def summary(self) -> Shown:
-        """Every coefficient of both with U95, difference and verdict, to be printed or shown in a notebook.
+    def summary(self, wide: bool = False) -> Shown:
+        """What can be compared of both, with U95, difference and verdict, to be printed or shown in a notebook.
+
+        Parameters
+        ----------
+        wide : bool
+            Every coefficient, with the reason where none can be compared; else their names below.
 
         Examples
         --------
@@ -67,9 +72,10 @@ class Comparison(plain.Comparison):
         >>> cf.compare("remus100", "remus100").summary().headers[0]
         ''
         """
-        from coeflab.report.tables.models import coefficients
+        from coeflab.report.tables.models import coefficients, comparable, differ
 
-        return coefficients(self)
+        every = coefficients(self)
+        return every if wide else comparable(every, differ(self))
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Both values of every coefficient with their intervals, each over the size of the first.

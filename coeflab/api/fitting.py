@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,11 +17,14 @@ from coeflab.core.machine import one_thread
 from coeflab.fits import FITS
 from coeflab.fits.joint.rows import one_length
 from coeflab.law.scaling import Scaling
-from coeflab.study.fitting import fitted, rejoined
+from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import suited_fit
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult
 
 USUAL = Importer.fit
 ARRAYS_NAME = "table"  # of arrays that nobody named
@@ -106,10 +109,15 @@ def fit(
         scaling = Scaling(above_zero(length, "length", "length"), str(length_name))
     with one_thread():
         if FITS.load(by).joins_campaigns:
-            return Result((fitted(by, read, scaling or one_length(read), given)[0],), tuple(read))
+            return _given([fitted(by, read, scaling or one_length(read), given)[0]], read)
         by_campaign = [[t for t in read if t.campaign == c] for c in dict.fromkeys(t.campaign for t in read)]
         asked = [(by, own, scaling or own[0].scaling, given) for own in by_campaign]
-        return Result(rejoined([fitted(*one)[0] for one in asked], asked), tuple(read))
+        return _given(rejoined([fitted(*one)[0] for one in asked], asked, unnamed_alike=True), read)
+
+
+def _given(fits: Sequence[FitResult], read: Sequence[ForceTable]) -> Result:
+    refuse_empty(fits)
+    return Result(tuple(fits), tuple(read))
 
 
 def _told_apart(tables: Sequence[ForceTable]) -> list[ForceTable]:

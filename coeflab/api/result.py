@@ -11,10 +11,13 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
+from coeflab.core.texts import remark
 from coeflab.core.types import in_angles
+from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import covariance_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
+from coeflab.study.fitting import FEW_ROWS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,7 +28,10 @@ if TYPE_CHECKING:
     from coeflab.core.table import Check
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.fits.results.straight_runs import StraightRuns
     from coeflab.tables.force_table import ForceTable
+
+LACKING = (FEW_ROWS, LEFT_OUT)  # why a coefficient has no value
 
 
 class Points(NamedTuple):
@@ -34,7 +40,7 @@ class Points(NamedTuple):
     Attributes
     ----------
     x : (n,) array
-        v' = v/U, w', r' = r L/U, or the angle of a control, rad.
+        v' = v/U, w', r' = r L/U, or the angle of a control, rad; of X0' of straight runs the speed, m/s.
     y : (n,) array
         Force component, primed.
     used : (n,) boolean array
@@ -93,9 +99,10 @@ class Result(Mapping[str, Coefficient]):
         KeyError
             No fit has it.
         InputError
-            Several campaigns give it.
+            Several campaigns give it a value.
         """
         own = [f for f in self.fits if symbol in f.coefficients]
+        own = [f for f in own if f.coefficients[symbol].value is not None] or own[:1]
         if len(own) > 1:
             names = [f.campaign for f in own]
             raise InputError(
@@ -228,6 +235,7 @@ class Result(Mapping[str, Coefficient]):
         by = self.fits[0].coefficients.scaling
         return Shown(
             f"{names}, primed by {by.length_name} {by.length:.5g} m", ("", "value", "U95", "U95 %", "points", "status"), tuple(rows),
+            tuple(remark(f) for f in dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING)),
             left=frozenset({0, 5}),
         )  # fmt: skip
 
@@ -286,6 +294,13 @@ class Result(Mapping[str, Coefficient]):
             self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
         return self._found[0]
 
+    def _straight(self, symbol: str) -> StraightRuns | None:
+        """Runs at several speeds that give X0', where no sweep does."""
+        if symbol.removesuffix("'") != "X0" or any(s.symbol == "X0" for f in self.fits for s in f.sweeps):
+            return None
+        self[symbol]  # one campaign, and a coefficient that there is
+        return next((r for f in self.fits for r in f.straight), None)
+
     def _sweep(self, symbol: str) -> Sweep:
         self[symbol]  # one campaign, and a coefficient that there is
         name = symbol.removesuffix("'")
@@ -313,6 +328,8 @@ class Result(Mapping[str, Coefficient]):
         >>> x.shape == y.shape == used.shape
         True
         """
+        if (runs := self._straight(symbol)) is not None:
+            return Points(runs.speed, runs.primes, np.isfinite(runs.primes), runs.labels)
         s = self._sweep(symbol)
         return Points(s.x, s.y, s.used, s.labels)
 
@@ -347,6 +364,10 @@ class Result(Mapping[str, Coefficient]):
             return self.laws[symbol].plot(ax=ax)
         if symbol is None and not len(self):
             raise InputError("no coefficient", f"one of {', '.join(self.laws) or 'no law'}", column="symbol")
+        if isinstance(symbol, str) and (runs := self._straight(symbol)) is not None:
+            from coeflab.report.plots.resistance import plot_straight_runs
+
+            return plot_straight_runs(runs, ax)
         if isinstance(symbol, str):
             if not any(f.sweeps for f in self.fits):
                 from coeflab.report.plots.model import plot_model

@@ -36,6 +36,7 @@ from coeflab.study.study import Plan
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.from_shape import Stated
 from coeflab.vehicle.merge import merged
+from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, stated_beside, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
 
@@ -292,6 +293,11 @@ def vehicle(
     coefficients: Result | ParameterFile | Vehicle | str | Path | None = None,
     density: float | str | None = None,
     speed: float | str | None = None,
+    numbers: Mapping[str, str | float] | None = None,
+    thrusters: str | Sequence[str] = (),
+    rudder: str = "",
+    stern_planes: str = "",
+    bow_planes: str = "",
     method: str = "all",
     name: str | None = None,
 ) -> Vehicle:
@@ -311,6 +317,12 @@ def vehicle(
         From `coeflab.fit`, or of another parameter file.
     density, speed : float or str, optional
         Of the water and of reference; fresh water and 2 m/s unless given.
+    numbers : mapping, optional
+        Coefficients of your own, which replace all others: ``{"Ydr'": 0.01, "Nr": "-9 +- 2 N m/(rad/s)"}``; a number alone is a prime.
+    thrusters : str or sequence of str
+        ``"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0"``: keys of [[thruster]] of a body.toml; in place of the body's.
+    rudder, stern_planes, bow_planes : str
+        Limit and rate, ``"25 deg, 40 deg/s"``, in place of the body's. Their forces are coefficients with dr, ds, db.
     method : str
         Of added mass.
     name : str, optional
@@ -333,6 +345,10 @@ def vehicle(
     >>> auv = cf.vehicle("remus100", mass=30.5)
     >>> auv["Nr'"].value < 0, str(auv["Nr'"].status)
     (True, 'estimate')
+    >>> own = {"Ydr'": 0.008, "Ndr'": -0.004}
+    >>> steered = cf.vehicle("spheroid_example", mass=390, numbers=own, rudder="25 deg", thrusters="main; bollard = 60 N; rate = 720")
+    >>> [t.name for t in steered.file.thrusters], steered["Ndr'"].value
+    (['main'], -0.004)
     """
     hull = read_body(body)
     if isinstance(coefficients, Result) and coefficients.fits:
@@ -351,11 +367,31 @@ def vehicle(
     called = stem(name or hull.name)
     result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)
     base = next(iter(result.parameter_files.values())).model_copy(update={"name": called})
-    if coefficients is None:
-        return Vehicle(base)
-    other = _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
-    own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
-    return Vehicle(merged(base, other, called, own).parameters)
+    if coefficients is not None:
+        other = (
+            _fitted_file(coefficients, base, hull) if isinstance(coefficients, Result) else parameters_of(coefficients)
+        )
+        own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
+        base = merged(base, other, called, own).parameters
+    if numbers:
+        base = merged(base, stated_beside(base, _read(numbers)), called, base.scaling).parameters
+    driven = typed_thrusters([thrusters] if isinstance(thrusters, str) else thrusters, base.conditions)
+    fins = typed_surfaces(rudder, stern_planes, bow_planes)
+    held = tuple(s for s in base.surfaces if s.control not in {f.control for f in fins})
+    return Vehicle(
+        base.model_copy(update={"thrusters": driven or base.thrusters, "surfaces": (*held, *fins)})
+        if driven or fins else base
+    )  # fmt: skip
+
+
+def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:
+    try:
+        return own_numbers([f"{symbol}={value}" for symbol, value in numbers.items()])
+    except InputError as why:
+        for one in (why, *why.others):
+            one.column = "numbers"
+            one.args = (str(one),)
+        raise
 
 
 def _of_datum(hull: Body, result: Result) -> Body:

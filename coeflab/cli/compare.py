@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +10,7 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from coeflab.api.comparing import Behaviour, Comparison
-    from coeflab.core.table import Table
 
 
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
@@ -112,39 +108,21 @@ def as_json(found: Comparison) -> dict[str, Any]:
     }
 
 
-def _comparable(table: Table, differ: Sequence[bool]) -> Table:
-    """The rows that can be compared, or whose values ``differ``; of the others their names, by verdict and reason."""
-    from coeflab.api.comparing import Verdict
-
-    column = table.headers.index("verdict")
-    named = (Verdict.NOT_COMPARABLE.value, Verdict.EQUAL.value)
-    rows = [row for row, other in zip(table.rows, differ, strict=True) if other or row[column] not in named]
-    reasons: dict[str, list[str]] = {}
-    for row in table.rows:
-        if row not in rows:
-            equal = row[column] == Verdict.EQUAL.value
-            words = f"{row[column].capitalize()}{';' if equal else ','} {row[-1]}".rstrip(",; ")
-            reasons.setdefault(words, []).append(row[0])
-    if not rows:
-        for line in (table.title, *(f"  {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes):
-            show.sentence(line)
-        show.text()
-        return replace(table, rows=())
-    notes = (*(f"{why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)
-    return replace(table, rows=tuple(rows), notes=notes)
-
-
 def _print(found: Comparison) -> None:
-    from coeflab.api.comparing import ROUNDING, Verdict
+    from coeflab.api.comparing import Verdict
     from coeflab.report.tables import models as comparison_tables
 
-    apart = [bool(r.difference) and abs(r.difference or 0.0) > ROUNDING * abs(r.a or 0.0) for r in found.rows]
     for table, differ in (
-        (comparison_tables.coefficients(found), apart),
+        (comparison_tables.coefficients(found), comparison_tables.differ(found)),
         (comparison_tables.models(found), [False] * len(found.models)),
     ):
-        if table.rows:
-            show.table(table if show.whole() else _comparable(table, differ))
+        shown = table if show.whole() else comparison_tables.comparable(table, differ)
+        if shown.rows:
+            show.table(shown)
+        elif table.rows:
+            for line in (shown.title, *(f"  {note}" for note in shown.notes)):
+                show.sentence(line)
+            show.text()
     if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):

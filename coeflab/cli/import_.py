@@ -179,7 +179,7 @@ def _first_slopes(folder: Path) -> bool:
     with show.progress(False) as say:
         first = first_fit(folder, say)
     study, by = first.study, "" if first.suited else first.by
-    typed = f"coeflab fit {shlex.quote(str(folder))}" + f" --fit {by}" * (study is not None and not first.suited)
+    typed = f"coeflab fit {shlex.quote(str(folder))}" + f" --fit {first.further}" * bool(first.further)
     if study is None:
         show.sentence(f"No slopes: {first.why}")
     else:

@@ -26,6 +26,7 @@ from coeflab.fits.joint.rows import Component, about_one_point, differences, joi
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel, next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.sweeps import secant
+from coeflab.fits.statistics.remainder import companions
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -224,7 +225,8 @@ def _window(model: FittedModel, index: int) -> tuple[float, float] | None:
     return low, high
 
 
-def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
+def _coefficients(model: FittedModel, citation: str, *, lines: bool) -> list[Coefficient]:
+    bent = {t.factors[0][0]: t.suffix for t in companions(model.terms)} if lines else {}
     shared: dict[str, Any] = {
         "body": model.body, "origin": "fit", "table": model.table, "campaign": model.campaign,
         "n_points": model.n_points, "citation": citation,
@@ -242,10 +244,16 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
             )
             continue
         at_rest = not np.any(model.terms[i].evaluate(model.x))
+        straight = bent.get(model.terms[i].suffix, "")
+        added = (
+            {"estimator": f"{shared['estimator']}; U95 holds {model.response}{straight}, which the set has not"}
+            if straight
+            else {}
+        )
         own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
         out.append(
             Coefficient(symbol, value, u95, status, parts=parts,
-                        window=None if at_rest else _window(model, i), **(shared | (own if at_rest else {})))
+                        window=None if at_rest else _window(model, i), **(shared | added | (own if at_rest else {})))
         )  # fmt: skip
     return out
 
@@ -308,7 +316,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
                         intercepts=chosen.intercepts == "yes", place="manoeuvring_model")  # fmt: skip
     weighted = chosen.weights == "yes"
     components = {
-        c: _component(c, asked, tables, scaling.length, weighted=weighted)
+        c: replace(_component(c, asked, tables, scaling.length, weighted=weighted), lines=not chosen.terms)
         for c in dict.fromkeys(t.component for t in asked.fitted)
     }
     stated = {c: p.data.rows.errors is not None for c, p in components.items()}
@@ -327,7 +335,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         _finished(m, apart, (*missed[m.response], *weights_said[m.response]), asked.idle) for m in joint.models
     )
     first, campaign, body = tables[0], joint_name(t.campaign for t in tables), joint_name(t.body for t in tables)
-    coefficients = [c for m in finished for c in _coefficients(m, joint_name(t.source.citation for t in tables))]
+    citation = joint_name(t.source.citation for t in tables)
+    coefficients = [c for m in finished for c in _coefficients(m, citation, lines=not chosen.terms)]
     open_ones = [
         Coefficient(t.symbol, None, None, Status.NOT_DETERMINED, body, origin="fit", campaign=campaign,
                     estimator="no motion in the tables")

@@ -15,9 +15,10 @@ from coeflab.core.texts import words
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import Header, factor, parse_header
 from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
-from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.vehicle import Vehicle
 from coeflab.tables.importers.table import raw
+from coeflab.tables.vocabulary import one_name
 from coeflab.vehicle.parameter_parts import THRUST
 
 FEWEST = 50  # rows: fewer hold no motion from which forces could be told
@@ -27,7 +28,6 @@ TIME = {"t": "t", "time": "t"}
 ANGLES = ("phi", "theta")
 PLACES = ("x", "y", "psi")  # over ground, and the heading
 LEFT = "-"  # in the place of a name: a column that is passed over
-SAME_NAME = {**TIME, **CONTROL_COLUMNS}
 SAME_PLACE = {
     "north": "x",
     "east": "y",
@@ -107,7 +107,7 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
     """
     cells, signs = _named(path, columns) if columns else (read_cells(path), {})
     plain = {h.name for h in cells.headers}
-    names = [SAME_NAME.get(h.name, h.name) for h in cells.headers]
+    names = [TIME.get(h.name, one_name(h.name)) for h in cells.headers]
     names = [n if SAME_PLACE.get(n, n) in plain else SAME_PLACE.get(n, n) for n in names]
     for k, name in enumerate(names):
         if _dimension(name, vehicle) and name in names[:k]:

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import words
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.moving import fits_about
 from coeflab.fits.joint.rows import joint_name
-from coeflab.fits.rows.sweeps import arm_shift
+from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, arm_shift
 from coeflab.fits.uncertainty.budget import as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Status
-from coeflab.law.symbols import MOTIONS
+from coeflab.law.symbols import MOTIONS, primed
 from coeflab.tables.assumptions import carried
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.planar_motion import PlanarMotionTable
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
 
 FEWEST = 3
+FEW_ROWS = "sweep.few"
 COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once
 
 
@@ -66,18 +69,20 @@ def fitted(
             return plugin.fit(some, by, options)
 
     fit = once(tables, scaling)
-    _refuse_starved(fit, tables)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
     assumed = carried([f for t in tables for f in t.findings], fit.coefficients.coefficients)
-    fit = replace(fit, findings=(*fit.findings, *assumed))
+    fit = replace(fit, findings=(*fit.findings, *few_rows(fit, tables), *assumed))
     if all(t.source.kind == "estimate" for t in tables):
         return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)
 
 
 def rejoined(
-    fits: Sequence[FitResult], asked: Sequence[tuple[str, Sequence[ForceTable], Scaling, Mapping[str, Any]]]
+    fits: Sequence[FitResult],
+    asked: Sequence[tuple[str, Sequence[ForceTable], Scaling, Mapping[str, Any]]],
+    *,
+    unnamed_alike: bool = False,
 ) -> tuple[FitResult, ...]:
     """Fits that lost slopes on their way to their point, brought there by what the other fits of the body measured.
 
@@ -88,6 +93,8 @@ def rejoined(
     fits : sequence of FitResult
     asked : sequence of (str, sequence of ForceTable, Scaling, mapping)
         Of each: name of the fit, tables, scaling and options.
+    unnamed_alike : bool
+        Campaigns that name no body, whose body bears their own name, are of one.
     """
     out = list(fits)
     for i, f in enumerate(fits):
@@ -98,7 +105,7 @@ def rejoined(
         at = first.point if isinstance(first, PlanarMotionTable) else point + np.array([arm_shift(tables), 0.0, 0.0])
         beside = [
             k for k, g in enumerate(fits)
-            if k != i and (g.body, g.coefficients.datum) == (f.body, f.coefficients.datum)
+            if k != i and _of_one_body(f, g, unnamed_alike) and g.coefficients.datum == f.coefficients.datum
             and g.coefficients.scaling == f.coefficients.scaling
         ]  # fmt: skip
         own, _ = fitted(name, [t.about(at) for t in tables], scaling, options)
@@ -110,6 +117,10 @@ def rejoined(
                 mine = tuple(s for s in g.shared if (s.fit, s.campaign) == (f.fit, f.campaign))
                 out[k] = replace(out[k], shared=(*kept, *mine))
     return tuple(out)
+
+
+def _of_one_body(f: FitResult, g: FitResult, unnamed_alike: bool) -> bool:
+    return f.body == g.body or (unnamed_alike and all(one.body == one.campaign for one in (f, g)))
 
 
 def _lost(f: FitResult) -> list[str]:
@@ -139,27 +150,42 @@ def _refuse_unsuited(name: str, tables: Sequence[ForceTable]) -> None:
         raise InputError(f"{name} over {what}", f"fits of those: {few}", file=odd.name, column="fits")
 
 
-def _refuse_starved(fit: FitResult, tables: Sequence[ForceTable]) -> None:
-    """Refuse a table in none of whose sweeps a force component has more points than the simplest form has parameters.
-
-    Beside a sweep that has, one that has not gives coefficients of too few points, and a check that says so: of several speeds each
-    may hold a rudder swept and one run at drift. Where rows combine motions a joint model has them all: every sweep counts.
-    """
-    odd = [s for s in fit.sweeps if s.parity == "odd"]
-    joint = {t.name for t in tables if _combined(t) >= FEWEST}
-    fed = {s.table for s in odd if len(s.x) >= FEWEST} - joint
-    sweeps = [s for s in odd if s.variable in MOTIONS and s.table not in fed]
-    for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
-        points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))
-        if points < FEWEST:
-            combined = next((_combined(t) for t in tables if t.name == table), 0)
-            joined = f"{combined} rows combine motions: --fit {COMBINES} fits them as one model. Or run"
-            raise InputError(
-                f"{points} usable point{'s' * (points != 1)} of the sweep over {variable}'",
-                f"at least {FEWEST} for an intercept, a slope and an error",
-                file=table,
-                advice=f"{joined if combined >= FEWEST else 'Run'} more settings, or leave the table out of the plan.",
+def few_rows(fit: FitResult, tables: Sequence[ForceTable]) -> tuple[Finding, ...]:
+    """Sweeps with fewer points than the simplest form has parameters, the rows that they have, and the fit of the others."""
+    out = []
+    odd = [s for s in fit.sweeps if s.parity == "odd" and s.value is None and len(s.x) < FEWEST_SETTINGS]
+    for table, variable in dict.fromkeys((s.table, s.variable) for s in odd):
+        own = [s for s in odd if (s.table, s.variable) == (table, variable)]
+        longest = max(own, key=lambda s: len(s.x))
+        combined = next((_combined(t) for t in tables if t.name == table), 0)
+        joint = combined >= FEWEST_SETTINGS
+        out.append(
+            Finding.of(
+                FEW_ROWS, table, Severity.WARN, statistic=len(longest.x), threshold=FEWEST_SETTINGS,
+                advice=COMBINES if joint else f"{variable}'", by="combined" if joint else "alone", variable=f"{variable}'",
+                combined=combined, rows=longest.labels, symbols=[primed(s.symbol) for s in own],
             )
+        )  # fmt: skip
+    return tuple(out)
+
+
+def refuse_empty(fits: Sequence[FitResult]) -> None:
+    """Refuse fits of which none has a number, for too few rows.
+
+    Raises
+    ------
+    InputError
+        With the table and the sweep that has too few.
+    """
+    few = [f for fit in fits for f in fit.findings if f.code == FEW_ROWS]
+    numbers = (one.value for fit in fits for one in (*fit.sweeps, *fit.coefficients.coefficients))
+    if not few or any(fit.models for fit in fits) or any(value is not None for value in numbers):
+        return
+    points, text = int(few[0].statistic or 0), words(few[0])
+    raise InputError(
+        f"{points} usable point{'s' * (points != 1)} of the sweep over {few[0]['variable']}", text.rule,
+        file=few[0].subject, advice=text.advice,
+    )  # fmt: skip
 
 
 def _combined(table: ForceTable) -> int:

@@ -19,7 +19,7 @@ from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
-from coeflab.study.fitting import FEWEST, fitted, rejoined
+from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
 from coeflab.study.study import Conversion, Plan, Study
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
@@ -206,6 +206,7 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
         of_fits.append((joint.fit, read, plan.scaling or one_length(read), joint.options))
         progress(f"fitted {result.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
+    refuse_empty([f for f in fits if f.campaign not in ours])
     return tables, list(rejoined(fits, of_fits)), budgets, unfitted
 
 

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 from coeflab.core.declarations import Takes
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.units import SI, factor, quantity
-from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
-from coeflab.tables.vocabulary import vocabulary
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS
+from coeflab.tables.vocabulary import did_you_mean, one_name, vocabulary
 
 WORDS = ("label", "point", "cells", "uncertain", "ignore")
 WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
@@ -167,10 +167,11 @@ def read_column_map(text: Any) -> ColumnMap:
     match = _ENTRY.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
     if match is None:
         raise InputError(shown(text), EXPECTED)
-    name = CONTROL_COLUMNS.get(match["name"], match["name"])
+    name = match["name"] if match["name"] in ROLES else one_name(match["name"])
     if name not in ROLES:
-        known = ", ".join(ROLES)
-        raise InputError(f"the unknown name {shown(match['name'])}", f"one of {known}, with ' for a prime")
+        raise InputError(
+            f"the unknown name {shown(match['name'])}", f"one of {', '.join(ROLES)}, with ' for a prime", advice=did_you_mean(match["name"])
+        )  # fmt: skip
     out = ColumnMap(
         name,
         (match["unit"] or "").strip(),

@@ -14,8 +14,9 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.types import brief
 from coeflab.core.units import SI, factor
 from coeflab.core.wording import listed, repeated
-from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.tables.raw_table import Stated
+from coeflab.tables.vocabulary import did_you_mean, one_name
 
 ANGLES = ("alpha", "beta", *CONTROLS)
 DIMENSIONS = {
@@ -313,7 +314,7 @@ def _literal(text: str) -> str:
 def _field(text: str, fail: Callable[..., InputError]) -> _Field:
     name, _, rest = (part.strip() for part in text.partition(":"))
     unit, _, spelling = (part.strip() for part in rest.partition(":"))
-    name = CONTROL_COLUMNS.get(name, name)
+    name = one_name(name)
     if not unit:
         raise fail(f"{{{text}}} without a unit", f"{{{name or 'beta'}:UNIT}}", "Angles deg or rad, r' and the like -.")
     if unit == TEXT:
@@ -321,7 +322,12 @@ def _field(text: str, fail: Callable[..., InputError]) -> _Field:
             raise fail(f"{{{text}}}", "{NAME:text}")
         return _Field(name, TEXT, {}, (), 1.0)
     if name not in DIMENSIONS and name not in COUNTED:
-        raise fail(shown(name), f"one of {', '.join(SETTINGS)}, cells, y_plus", f"For a label: {{{name}:text}}.")
+        near = did_you_mean(name)
+        raise fail(
+            shown(name),
+            f"one of {', '.join(SETTINGS)}, cells, y_plus",
+            f"{near} For a label: {{{name}:text}}.".lstrip(),
+        )
     try:
         factor(unit, DIMENSIONS.get(name, "none"))
     except UnitsError as why:

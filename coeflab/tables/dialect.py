@@ -16,7 +16,7 @@ from coeflab.core.errors import shown
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
-from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
+from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
 from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
@@ -471,7 +471,7 @@ def raw_columns(
     return tuple(columns), remarks
 
 
-_HOUSE = frozenset({*COMPONENTS, *WIND, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
+_HOUSE = frozenset({*COMPONENTS, *WIND, *MOTIONS, *CONTROLS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
 _OPENFOAM = re.compile(
     r"^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
 )

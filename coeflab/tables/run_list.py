@@ -18,7 +18,7 @@ from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
 from coeflab.core.units import SI, Header, factor
 from coeflab.core.wording import listed, repeated
-from coeflab.law.symbols import CONTROL_COLUMNS, LINEAR
+from coeflab.law.symbols import LINEAR
 from coeflab.tables.conditions import (
     COUNTED,
     DIMENSIONS,
@@ -33,6 +33,7 @@ from coeflab.tables.conditions import (
     named,
 )
 from coeflab.tables.proposals import named_as
+from coeflab.tables.vocabulary import one_name
 
 RUN = "run"
 # Angles that files hold as a vector of six digits, and rates in other units, differ in their last digits.
@@ -145,7 +146,7 @@ def _csv_list(path: Path) -> RunList:
 
 def setting_of(name: str) -> str:
     """The setting that a column of a list of runs is by its name, as in text tables; the name itself where it is none."""
-    plain = CONTROL_COLUMNS.get(name, name)
+    plain = one_name(name)
     found = plain if plain in DIMENSIONS or plain == RUN else named_as(name)
     return found if found in DIMENSIONS else plain
 

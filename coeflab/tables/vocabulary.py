@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -16,7 +17,12 @@ from typing import Any
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import own_toml, read_toml
+from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
 
+# Of columns of a table: what is measured, and at what.
+NAMES = frozenset(
+    {*COMPONENTS, *MOTIONS, *CONTROL_COLUMNS, *CONTROLS, "alpha", "beta", "U", "R", "density", "rps", "J", "thrust"}
+)
 SECTIONS = ("columns", "flow", "coefficients", "several", "symbols", "units")
 Words = Mapping[str, str]
 
@@ -97,6 +103,34 @@ _OWN: ContextVar[Vocabulary | None] = ContextVar("vocabulary", default=None)
 def vocabulary() -> Vocabulary:
     """The words that count now: those shipped, or within `words_of` a person's own before them."""
     return _OWN.get() or _shipped()
+
+
+def one_name(name: str) -> str:
+    """``dr`` for a column that is called dr, delta_r or rudder, so of every control; other names as they are.
+
+    Words for forces do not count here: which way a normal force points is a question.
+
+    Examples
+    --------
+    >>> one_name("rudder"), one_name("delta_r"), one_name("dr"), one_name("N"), one_name("normal")
+    ('dr', 'dr', 'dr', 'N', 'normal')
+    """
+    meant = CONTROL_COLUMNS.get(name, name)
+    word = vocabulary().columns.get(folded(name), "")
+    return word if meant not in NAMES and word in CONTROLS else meant
+
+
+def did_you_mean(name: str) -> str:
+    """``Did you mean dr?`` of ``ruder angle``; empty where no name or word is near.
+
+    Examples
+    --------
+    >>> did_you_mean("rudder_angel"), did_you_mean("Fx"), did_you_mean("qwertz")
+    ('Did you mean dr?', 'Did you mean X?', '')
+    """
+    found = {folded(n): n for n in sorted(NAMES)} | {w: m for w, m in vocabulary().columns.items() if m in NAMES}
+    near = get_close_matches(folded(name), found, n=3, cutoff=0.8)
+    return f"Did you mean {' or '.join(dict.fromkeys(found[n] for n in near))}?" if near else ""
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.units import with_unit
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import CONTROL_COLUMNS
+from coeflab.tables.vocabulary import one_name
 from coeflab.tank.tank import Grid
 from coeflab.tank.test_matrix import Study
 
@@ -196,7 +197,7 @@ class ControlKeys(Declaration):
     @property
     def symbol(self) -> str:
         """``dr``, ``ds`` or ``db``."""
-        return CONTROL_COLUMNS.get(self.name, self.name)
+        return one_name(self.name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -346,16 +346,26 @@ def typed_file(
     except InputError as why:
         raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
-    driven = tuple(typed_thruster(t, conditions) for t in thrusters)
-    if twice := repeated(t.name for t in driven):
+    driven, surfaces = typed_thrusters(thrusters, conditions), typed_surfaces(rudder, stern_planes, bow_planes)
+    return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
+
+
+def typed_thrusters(texts: Sequence[str], conditions: Conditions) -> tuple[ParameterThruster, ...]:
+    """Thrusters of different names; see `typed_thruster`."""
+    out = tuple(typed_thruster(t, conditions) for t in texts)
+    if twice := repeated(t.name for t in out):
         raise InputError(f"{', '.join(twice)} twice", "each thruster once", column="--thruster")
+    return out
+
+
+def typed_surfaces(rudder: str, stern_planes: str, bow_planes: str) -> tuple[ParameterSurface, ...]:
+    """Limits and rates of the controls that are stated; see `typed_surface`."""
     fins: tuple[tuple[Control, str, str], ...] = (
         ("dr", rudder, "--rudder"),
         ("ds", stern_planes, "--stern-planes"),
         ("db", bow_planes, "--bow-planes"),
     )
-    surfaces = tuple(typed_surface(control, text, option) for control, text, option in fins if text)
-    return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
+    return tuple(typed_surface(control, text, option) for control, text, option in fins if text)
 
 
 def typed_surface(control: Control, text: str, option: str) -> ParameterSurface:

@@ -124,3 +124,32 @@ def test_every_option_that_a_message_names_is_a_keyword_in_python() -> None:
         assert "--" not in str(made)
     with in_shell():
         assert str(InputError("a", "--hold u", column=option("wanted"))) == '"--for": found a; expected --hold u.'
+
+
+@pytest.mark.parametrize(
+    ("more", "column"),
+    [
+        ({"numbers": {"Yv": 3.0}}, "numbers"), ({"numbers": {"Yzz'": 3}}, "numbers"), ({"rudder": "25"}, "rudder"),
+        ({"stern_planes": "25 kg"}, "stern_planes"), ({"thrusters": "main; bolard = 3 N"}, "thruster"),
+        ({"thrusters": ["a; bollard = 3 N; rate = 3"] * 2}, "thruster"),
+    ],
+)  # fmt: skip
+def test_numbers_fins_and_thrusters_of_a_vehicle(more: dict[str, Any], column: str) -> None:
+    with pytest.raises(InputError) as why:
+        cf.vehicle("spheroid_example", mass=390, method="ellipsoid", **more)
+    assert why.value.column == column
+
+
+def test_a_vehicle_of_a_shape_is_steered_and_driven_by_numbers() -> None:
+    own = {"Ydr'": 0.008, "Ndr'": "-0.004 +- 0.001", "Yv": "-300 N/(m/s) constant"}
+    auv = cf.vehicle(
+        "spheroid_example", mass=390, method="ellipsoid", numbers=own, rudder="25 deg, 20 deg/s",
+        thrusters=["main; bollard = 60 N; rate = 720; lag = 0.3 s"],
+    )  # fmt: skip
+    assert (auv["Ndr'"].value, auv["Ndr'"].u95, auv["Yv'"].law) == (-0.004, 0.001, "rest")
+    assert [(s.control, round(np.degrees(s.limit)), round(np.degrees(s.rate or 0.0))) for s in auv.file.surfaces] == [
+        ("dr", 25, 20)
+    ]
+    assert [(t.name, t.lag, round(t.curve.at(720.0), 9)) for t in auv.file.thrusters] == [("main", 0.3, 60.0)]
+    turn = auv.simulate("turning_circle", rudder="10 deg").frame().iloc[-1]
+    assert turn["r [rad/s]"] * turn["dr [rad]"] < 0.0  # Ndr < 0: dr > 0 turns to port

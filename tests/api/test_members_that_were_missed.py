@@ -50,7 +50,7 @@ def test_eigenvalues_are_those_of_the_modes() -> None:
 
 def test_a_comparison_is_summed_up() -> None:
     found = cf.compare("remus100", "remus100")
-    assert len(found.summary().rows) == len(found.rows)
+    assert len(found.summary(wide=True).rows) == len(found.rows)
 
 
 def test_a_motion_has_units_and_the_names_that_people_use() -> None:
@@ -76,3 +76,21 @@ def test_manoeuvres_and_shipped_names_are_listed() -> None:
         assert cf.read_vehicle(vehicle).name
     assert {"remus100", "huuv"} <= set(names["vehicles"])
     assert "suboff_bare_hull" in names["bodies"]
+
+
+def test_points_and_picture_of_the_resistance_of_straight_runs() -> None:
+    speed = np.linspace(1.0, 3.0, 6)
+    force = -10.0 * speed**2 * (1.0 + 0.01 * np.sin(5.0 * speed))
+    table = cf.read_table(
+        {"u [m/s]": speed, "X [N]": force}, name="drag", frame="FRD", length=2.0, density=1000, about="nose, 1.0 m aft"
+    )
+    result = cf.fit(table)
+    x, y, used, labels = result.points("X0'")
+    np.testing.assert_allclose(x, speed)
+    np.testing.assert_allclose(y, force / (500.0 * speed**2 * 4.0))
+    assert (used.all(), len(labels)) == (True, 6)
+    axes = result.plot("X0'")
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), y)
+    assert axes.lines[1].get_ydata()[0] == pytest.approx(result["X0'"].value)
+    low, high = np.sort(axes.collections[0].get_paths()[0].vertices[:, 1])[[0, -1]]
+    assert (high - low) / 2.0 == pytest.approx(result["X0'"].u95)

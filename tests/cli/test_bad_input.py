@@ -184,14 +184,18 @@ def test_a_reader_that_has_seen_enough_is_no_failure(command: str, tmp_path: Pat
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_fewer_points_than_parameters_are_refused(coeflab: Run, study: Path) -> None:
+def test_a_table_of_too_few_points_leaves_the_others_their_slopes(coeflab: Run, study: Path) -> None:
+    """Two rows of drift ended a plan whose rotating arm and rudder were whole; alone they are still refused."""
     lines = (study / DRIFT).read_text().splitlines()
     (study / DRIFT).write_text("\n".join(lines[:4]) + "\n")
     done = coeflab("run", study / PLAN)
-    assert done.returncode == 2
-    assert "2 usable points of the sweep over v'" in done.stderr
-    assert "at least 3" in done.stderr
-    assert not (study.parent / "reports").exists()
+    assert done.returncode in (0, 1), done.stderr
+    assert "too few points" in flat(done.stdout)
+    assert (study.parent / "reports").exists()
+    alone = coeflab("fit", study / DRIFT)
+    assert alone.returncode == 2
+    assert "2 usable points of the sweep over v'" in flat(alone.stderr)
+    assert "at least 3" in flat(alone.stderr)
 
 
 def test_rows_that_do_not_run_ahead_are_left_out_with_a_reason(coeflab: Run, study: Path) -> None:

@@ -213,7 +213,7 @@ def test_the_command_prints_a_table_and_exits_zero_even_when_apart(
     b = write(made(changed(Yv=(-0.05, 0.001)), name="second", body="other"), "b.json")
     done = coeflab("compare", a, b)
     assert done.returncode == 0, done.stderr
-    assert "second against first" in flat(done.stdout)
+    assert "first first, second second" in flat(done.stdout)
     assert "1 apart" in flat(done.stdout)
     assert "different bodies" in flat(done.stdout)
     content = json.loads(coeflab("compare", a, b, "--json").stdout)
@@ -226,10 +226,10 @@ def test_files_of_one_name_are_called_by_their_paths(coeflab: Run, write: Callab
     point = {"point": [-1.5, 0.0, 0.0], "datum": "nose"}
     one, other = write(made(VALUES), "old.json"), write(made(VALUES, reference_point=point), "new.json")
     said = flat(coeflab("compare", one.name, other.name, cwd=one.parent).stdout)
-    assert "new.json against old.json" in said
+    assert "first old.json, second new.json" in said
     assert "new.json moved to the reference point of old.json" in said
     named = write(made(VALUES, name="second"), "named.json")
-    assert "second against first" in flat(coeflab("compare", one.name, named.name, cwd=one.parent).stdout)
+    assert "first first, second second" in flat(coeflab("compare", one.name, named.name, cwd=one.parent).stdout)
 
 
 def test_files_of_one_body_that_are_apart_exit_one(coeflab: Run, write: Callable[[ParameterFile, str], Path]) -> None:

@@ -374,8 +374,9 @@ def test_a_fit_of_combined_settings_is_named_where_sweeps_are_too_short(
     )
     done = swept(monkeypatch, file)
     assert flat(done.output.replace("\\", "")).endswith("--fit manoeuvring_model"), done.output
-    assert "9 rows combine motions: --fit manoeuvring_model fits them as one model." in str(
-        invoke("fit", file.parent / "out").exception
+    assert "Yr' " in done.output.partition("First slopes")[2]
+    assert "9 rows combine motions: the fit manoeuvring_model takes them" in flat(
+        invoke("fit", tmp_path / "out").output
     )
 
 

@@ -231,7 +231,7 @@ class JointFit:
 
 def _one(part: Component, form: str, n_runs: int) -> tuple[FittedModel, Array]:
     rows = replace(part.data.rows, errors=part.errors)
-    model = model_of(rows, tuple(t.term for t in part.terms), part.symbols, form)
+    model = model_of(rows, tuple(t.term for t in part.terms), part.symbols, form, lines=part.lines)
     moves = influence(part.matrix, part.errors)
     return model, spread_by_run(model.fit, moves, part.data.run, n_runs)
 
@@ -286,7 +286,7 @@ def _several(
     cuts = list(accumulate((len(p.data.run) for p in parts), initial=0))
     design, noise = stack([p.matrix for p in parts], [p.data.rows.y for p in parts], [p.errors for p in parts])
     blocks = [
-        Block(slice(*cut), tuple(t.term for t in p.terms), p.data.rows.x)
+        Block(slice(*cut), tuple(t.term for t in p.terms), p.data.rows.x, p.lines)
         for cut, p in zip(pairwise(cuts), parts, strict=True)
     ]
     missing, found = left_out(design, fit.residuals, noise, constraint if len(constraint[1]) else None, blocks)

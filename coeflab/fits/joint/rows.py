@@ -277,6 +277,8 @@ class Component:
         Standard deviations that weigh the rows.
     own : bool
         Every campaign has an intercept of its own, in columns behind those of the terms.
+    lines : bool
+        A slope without another power of its variable may lack x|x|, whatever the residuals show: nobody chose the form.
     """
 
     name: str
@@ -284,6 +286,7 @@ class Component:
     data: JointRows
     errors: Array | None = None
     own: bool = False
+    lines: bool = False
 
     @property
     def common(self) -> Array:

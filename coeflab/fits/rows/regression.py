@@ -207,6 +207,7 @@ def model_of(
     constraint: tuple[Array, Array] | None = None,
     weighted: bool = True,
     post_selection: bool = False,
+    lines: bool = False,
 ) -> FittedModel:
     """Fit one response by a list of terms.
 
@@ -250,7 +251,7 @@ def model_of(
         statements=in_words(fit, symbols),
         post_selection=post_selection,
         set_aside=rows.set_aside,
-        remainder=_remainder(fit, matrix, rows, terms, errors, constraint),
+        remainder=_remainder(fit, matrix, rows, terms, errors, constraint, lines=lines),
     )
 
 
@@ -261,9 +262,11 @@ def _remainder(
     terms: tuple[Term, ...],
     errors: Array | None,
     constraint: tuple[Array, Array] | None,
+    *,
+    lines: bool,
 ) -> Remainder | None:
     """What the form leaves out; None where the residuals are rounding."""
     if fit.rms <= ROUNDING * float(np.max(np.abs(rows.y), initial=0.0)):
         return None
-    covariance, found = left_out(matrix, fit.residuals, errors, constraint, (Block(slice(None), terms, rows.x),))
+    covariance, found = left_out(matrix, fit.residuals, errors, constraint, (Block(slice(None), terms, rows.x, lines),))
     return judged(covariance, *found[0], fit.coefficients, fit.half_width)

@@ -27,6 +27,7 @@ from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import WIND, Area, Rows, response
+from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.slopes import is_one_sided
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
@@ -36,6 +37,8 @@ from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "moves astern (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
 SAME_SETTING = 0.02  # a rate's prime changes with the point at which the speed is taken
+SAME_POINT = 1e-6  # of the length: rotating runs that do not drift about one point
+FEWEST_SETTINGS = 3  # for an intercept, a slope and an error
 NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
@@ -151,21 +154,35 @@ def one_size(x: Array, variable: str, speed: Array) -> str:
 
 
 def arm_shift(tables: Sequence[ForceTable]) -> float:
-    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
+    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no such point.
 
-    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting.
+    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting. Of runs that combine drift with
+    rotation it is the point about which most rates are run without drift, if they are enough for a slope.
     """
-    found: list[Array] = []
+    places, rates, drifts = list[Array](), list[Array](), list[Array]()
     for table in tables:
         for rate, drift, sign in (("r", "v", -1.0), ("q", "w", 1.0)):
             turning = table.motion[rate] != 0.0
-            if np.any(np.abs(table.primed_motion(drift, 1.0)[turning]) > AT_REST):
-                found.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
-    if not found:
+            places.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
+            rates.append(table.primed_motion(rate, 1.0)[turning])
+            drifts.append(table.primed_motion(drift, 1.0)[turning])
+    shifts, over, away = (np.concatenate(some) for some in (places, rates, drifts))
+    away = np.abs(away) > AT_REST
+    if not np.any(away):
         return 0.0
-    shifts = np.concatenate(found)
-    scale = float(tables[0].scaling.length)
-    return float(np.median(shifts)) if float(np.ptp(shifts)) <= 1e-6 * scale else 0.0
+    order = np.flatnonzero(away)[np.argsort(shifts[away], kind="stable")]
+    gaps = np.diff(shifts[order]) > SAME_POINT * float(tables[0].scaling.length)
+    about = np.split(order, np.flatnonzero(gaps) + 1)
+    if len(about) == 1 and np.all(away):
+        return float(np.median(shifts))
+    best = max(about, key=lambda rows: (_settings(over[rows]), -abs(float(np.median(shifts[rows])))))
+    enough = max(FEWEST_SETTINGS - 1, _settings(over[~away]))
+    return float(np.median(shifts[best])) if _settings(over[best]) > enough else 0.0
+
+
+def _settings(x: Array) -> int:
+    """How many settings differ in size or sign."""
+    return len(np.unique(np.sign(x) * (levels(x) + 1)))
 
 
 MOVED_BY = {"alpha": ("w",), "beta": ("v",)}

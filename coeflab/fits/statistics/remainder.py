@@ -11,7 +11,7 @@ A misfit of the size of the noise is not seen and not covered: no method that le
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -141,11 +141,37 @@ def missing(terms: Sequence[Term], variables: Sequence[str]) -> tuple[Missing, .
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Block:
-    """The rows of one response in a fit: its terms, and their variables (n,)."""
+    """The rows of one response in a fit: its terms, and their variables (n,).
+
+    ``lines``: slopes that are lines by a set that nobody chose have x|x| in their part of the form, seen or not.
+    """
 
     rows: slice
     terms: tuple[Term, ...]
     columns: Mapping[str, Array]
+    lines: bool = False
+
+    @property
+    def companions(self) -> frozenset[Term]:
+        """Of its terms, where ``lines`` asks for them."""
+        return companions(self.terms) if self.lines else frozenset()
+
+
+def companions(terms: Sequence[Term]) -> frozenset[Term]:
+    """x|x| of every slope in x without another power of x alone.
+
+    Over several motions such a slope is the line through a range of x: what bends there goes into it, and the scatter hides it.
+
+    Examples
+    --------
+    >>> line, bent = Term((("r", 1, False),)), Term((("r", 1, False), ("r", 1, True)))
+    >>> companions([line]) == {bent}, companions([line, bent])
+    (True, frozenset())
+    """
+    alone = [t for t in terms if len({v for v, _, _ in t.factors}) == 1]
+    bent = {t.factors[0][0] for t in alone if t.degree > 1}
+    slopes = {v for t in alone for v, _, _ in t.factors if t.degree == 1 and t.odd_in(v)} - bent
+    return frozenset(Term(((v, 1, False), (v, 1, True))) for v in slopes)
 
 
 def left_out(
@@ -186,7 +212,15 @@ def left_out(
         rows = block.rows
         functions = missing(block.terms, tuple(block.columns))
         part, none, likeliest = _of_block(
-            functions, block.columns, f.root_weights[rows], f.basis[rows], back, weighted[rows], f.freedom, total
+            functions,
+            block.companions,
+            block.columns,
+            f.root_weights[rows],
+            f.basis[rows],
+            back,
+            weighted[rows],
+            f.freedom,
+            total,
         )
         covariance += part
         found.append((none, likeliest))
@@ -195,6 +229,7 @@ def left_out(
 
 def _of_block(
     functions: Sequence[Missing],
+    companions: Collection[Term],
     columns: Mapping[str, Array],
     root_weights: Array,
     basis: Array,
@@ -252,7 +287,12 @@ def _of_block(
     shares = np.array(prior) * (np.exp(gain - most) - np.where(gain != 0.0, np.exp(-most), 0.0))
     shares[1:] = np.where(gain[1:] > 0.0, shares[1:], 0.0)
     shares /= shares.sum()
-    covariance = float(stdtrit(freedom, 0.975)) ** 2 * np.einsum("k,kij->ij", shares, np.array(parts))
+    weights = shares.copy()
+    for k in (k for k, g in enumerate(kept) if g.term in companions and not g.bend):
+        # As a term of the form: whole, whether the residuals ask for it or not, and whatever else they ask for.
+        shift, spread = moves[:, k] * moment[k] / level[k], moves[:, k] * np.sqrt(noise[k] / level[k])
+        weights[k + 1], parts[k + 1] = 1.0, np.outer(shift, shift) + np.outer(spread, spread)
+    covariance = float(stdtrit(freedom, 0.975)) ** 2 * np.einsum("k,kij->ij", weights, np.array(parts))
     likeliest = str(kept[int(np.argmax(shares[1 : len(kept) + 1]))]) if shares[0] < 0.5 else ""
     return covariance, float(shares[0]), likeliest
 

@@ -22,7 +22,7 @@ from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
 from coeflab.motion.behaviour import Behaviour
 from coeflab.report.figures.variables import domain_in_words
-from coeflab.vehicle.comparison import Verdict
+from coeflab.vehicle.comparison import ROUNDING, Verdict
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult, Pooling
@@ -226,10 +226,30 @@ def coefficients(found: Comparison) -> Table:
         "verdict",
         "why",
     )
-    title = f"{found.b} against {found.a}"
+    title = f"first {found.a}, second {found.b}"
     return Table(
         title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")
     )
+
+
+def differ(found: Comparison) -> list[bool]:
+    """Whether the values of each row differ by more than rounding."""
+    return [bool(r.difference) and abs(r.difference or 0.0) > ROUNDING * abs(r.a or 0.0) for r in found.rows]
+
+
+def comparable(table: Table, differ: Sequence[bool]) -> Table:
+    """The rows that can be compared, or whose values ``differ``; of the others their names in notes, by verdict and reason."""
+    column = table.headers.index("verdict")
+    named = (Verdict.NOT_COMPARABLE.value, Verdict.EQUAL.value)
+    rows = [row for row, other in zip(table.rows, differ, strict=True) if other or row[column] not in named]
+    by_reason: dict[str, list[str]] = {}
+    for row in table.rows:
+        if row not in rows:
+            equal = row[column] == Verdict.EQUAL.value
+            why = f"{row[column].capitalize()}{';' if equal else ','} {row[-1]}".rstrip(",; ")
+            by_reason.setdefault(why, []).append(row[0])
+    notes = (*(f"{why}: {', '.join(names)}." for why, names in by_reason.items()), *table.notes)
+    return replace(table, rows=tuple(rows), notes=notes)
 
 
 def models(found: Comparison, *, with_statements: bool = True) -> Table:

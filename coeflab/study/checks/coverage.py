@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
+from coeflab.fits.rows.sweeps import FEWEST_SETTINGS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import factorise, solve
 from coeflab.fits.statistics.linear_model import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
+from coeflab.study.fitting import FEW_ROWS
 from coeflab.tables.evidence import trend
 from coeflab.tables.force_table import AT_REST
 
@@ -184,9 +186,14 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every sweep, and on every table whose only moment is that of the other plane."""
     out = [c for t in study.tables if (c := _moment_of_the_other_plane(t)) is not None]
     out += _bodies(study)
+    few = list(dict.fromkeys(found for f in study.fits for found in f.findings if found.code == FEW_ROWS))
+    short = {(found.subject, found["variable"]) for found in few}
+    out += [as_check("coverage", found) for found in few]
     for f in study.fits:
         groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:
+            if (s.table, f"{s.variable}'") in short and len(s.x) < FEWEST_SETTINGS:
+                continue
             out.append(_points(s, f.coefficients[s.symbol].status))
             if s.by_symmetry:  # a copy has the findings of its source
                 continue

@@ -16,12 +16,13 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
-from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
+from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import FORCES, PROPELLER, WIND
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
+from coeflab.tables.vocabulary import did_you_mean, one_name
 
 summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"
 citations = ("sname1950",)
@@ -31,7 +32,7 @@ UNCERTAIN, POINT = "uncertain", "point"
 EXAMPLES = {
     **dict.fromkeys(("X", "Y", "Z", *WIND), "N"),
     **dict.fromkeys(MOMENTS, "N*m"),
-    **dict.fromkeys((*ANGLES, *CONTROL_COLUMNS), "deg"),
+    **dict.fromkeys((*ANGLES, *CONTROLS), "deg"),
     **dict.fromkeys((*LINEAR, "U"), "m/s"),
     **dict.fromkeys(ANGULAR, "rad/s"),
     "R": "m",
@@ -56,7 +57,7 @@ class _Kind:
 def _kind(name: str) -> _Kind | None:
     """The kind of a column by its name, None for an unknown one."""
     primed = name.endswith("'")
-    plain = name.removesuffix("'")
+    plain = one_name(name.removesuffix("'"))
     force = plain.removeprefix("se_")
     if force in FORCES:
         role = "error" if plain != force else "force"
@@ -69,16 +70,15 @@ def _kind(name: str) -> _Kind | None:
         return _Kind("angle", "angle", plain, primed)
     if plain in PROPELLER:
         return _Kind("propeller", PROPELLER[plain], plain, primed)
-    if plain in CONTROL_COLUMNS:
-        return _Kind("control", "angle", CONTROL_COLUMNS[plain], primed)
+    if plain in CONTROLS:
+        return _Kind("control", "angle", plain, primed)
     return _Kind(plain, PLAIN[plain], plain, primed) if plain in PLAIN else None
 
 
 def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
     """SI factor of a column, errors placed at its header."""
     line = cells.first_line - 1
-    bare = header.name.removeprefix("se_")
-    unit = require_unit(header, cells.file, line, f"{header.name} [{'-' if kind.primed else EXAMPLES[bare]}]")
+    unit = require_unit(header, cells.file, line, f"{header.name} [{'-' if kind.primed else EXAMPLES[kind.name]}]")
     try:
         return factor(unit, "none" if kind.primed else kind.dimension)
     except UnitsError as why:
@@ -106,14 +106,15 @@ def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
-    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *FORCES, *PROPELLER))
+    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *CONTROLS, *FORCES, *PROPELLER))
+    near = did_you_mean(header.name)
     return InputError(
         f"the unknown column {shown(header.text)}",
         f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
         file=cells.file,
         line=cells.first_line - 1,
         column=header.text,
-        advice="Name other columns under labels or ignore of the [[table]] in campaign.toml.",
+        advice=f"{near} Name other columns under labels or ignore of the [[table]] in campaign.toml.".lstrip(),
     )
 
 
@@ -181,7 +182,7 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
     for row, text in enumerate(texts):
         names = set()
         for token in text.replace(";", " ").split():
-            name = CONTROL_COLUMNS.get(token, token.removesuffix("'"))
+            name = one_name(token.removesuffix("'"))
             if name not in headers or name.startswith("se_"):
                 raise InputError(
                     shown(token), "names of columns, separated by blanks", file=cells.file, line=cells.line(row),
