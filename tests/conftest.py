@@ -227,11 +227,11 @@ def suboff_page(suboff_document: Document) -> bytes:
 
 
 @pytest.fixture(scope="session")
-def publication() -> Callable[[str], Any]:
-    """A publication as it comes out, by the name of its validation, computed once."""
+def publication(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Any]:
+    """A publication as it comes out, by the name of its validation, computed once for all workers."""
     from coeflab.api.validations import validation
 
-    return cache(validation)
+    return cache(lambda name: once(tmp_path_factory, f"publication_{name}", lambda: validation(name)))
 
 
 def _missing(why: str) -> None:

@@ -602,3 +602,13 @@ def test_a_force_along_the_flow_is_known_by_a_word_and_warned_of_as_a_force_of_t
     found = proposals(RawTable(Path("t.csv"), (RawColumn(name, "N", np.array([1.0, 2.0])),)))[0]
     assert found.text == (f"{read} [N]" if read else "")
     assert bool(unturned(name, read_column_map("-Z [N]"))) == (read in ("lift", "drag", "side"))
+
+
+@pytest.mark.parametrize("half", ["", "starboard"])
+def test_a_form_says_that_forces_are_of_the_whole_body_unless_a_half_is_declared(half: str, tmp_path: Path) -> None:
+    """Forces of a half whose other half nobody doubled are wrong by a factor of two."""
+    file = tmp_path / "attack.csv"
+    file.write_text("alpha [deg],Z [N],M [N m]\n" + "".join(f"{a},{-3 * a},{2 * a}\n" for a in range(-6, 8, 2)))
+    more = ["--set", f"campaign.half_model={half}"] if half else []
+    said = CliRunner().invoke(app, ["import", str(file), "--out", str(tmp_path / "out"), *more]).output
+    assert ("whole body" in said) == (not half)

@@ -58,13 +58,13 @@ ONE_FIN = X_FINS.rsplit("[[fin]]", 3)[0]
 @pytest.mark.parametrize(
     ("made", "half", "length", "chord"),
     [
-        pytest.param(named("suboff_aff8"), Half.WHOLE, 70, 20, id="groves, one plane with edges in it"),
-        pytest.param(named("suboff_aff8"), Half.PORT, 70, 20, id="groves, its half"),
+        pytest.param(named("suboff_aff8"), Half.WHOLE, 52, 20, id="groves, one plane with edges in it"),
+        pytest.param(named("suboff_aff8"), Half.PORT, 52, 20, id="groves, its half"),
         pytest.param(named("myring_auv"), Half.WHOLE, 70, 16, id="myring, fins to port and starboard"),
-        pytest.param(written(X_FINS), Half.WHOLE, 60, 20, id="finned, mirrored twice"),
-        pytest.param(written(X_FINS), Half.UPPER, 60, 20, id="finned, mirrored once"),
-        pytest.param(written(ONE_FIN), Half.WHOLE, 60, 20, id="finned, no plane"),
-        pytest.param(in_one_patch, Half.WHOLE, 90, 20, id="mesh, one patch with X fins"),
+        pytest.param(written(X_FINS), Half.WHOLE, 46, 20, id="finned, mirrored twice"),
+        pytest.param(written(X_FINS), Half.UPPER, 46, 20, id="finned, mirrored once"),
+        pytest.param(written(ONE_FIN), Half.WHOLE, 46, 20, id="finned, no plane"),
+        pytest.param(in_one_patch, Half.WHOLE, 66, 20, id="mesh, one patch with X fins"),
         pytest.param(named("tow_spheroid"), Half.WHOLE, 60, 20, id="primitives"),
     ],
 )

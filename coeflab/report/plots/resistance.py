@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.axes import Axes
 
 from coeflab.fits.results.straight_runs import StraightRuns
+from coeflab.report.figures.resistance import draw_straight_runs
 from coeflab.report.plots.axes import axes_of
 
 
@@ -18,18 +18,7 @@ def plot_straight_runs(runs: StraightRuns, ax: Axes | None = None) -> Axes:
     ax : Axes, optional
     """
     axes = axes_of(ax)
-    (points,) = axes.plot(runs.speed, runs.primes, "o", label="runs")
-    ends = np.array([runs.speed.min(), runs.speed.max()])
-    axes.plot(ends, [runs.value] * 2, color=points.get_color(), label="X0'")
-    axes.fill_between(
-        ends,
-        runs.value - runs.u95,
-        runs.value + runs.u95,
-        color=points.get_color(),
-        alpha=0.2,
-        linewidth=0.0,
-        label="U95",
-    )
+    draw_straight_runs(axes, runs)
     axes.set_xlabel("U [m/s]")
     axes.set_ylabel("X'")
     axes.set_title(f"X0', {runs.campaign}")
