@@ -253,8 +253,8 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
     for group in Group:
         if not (own := [line for line in lines if line.group is group]):
             continue
-        whole = "" if any(line.key.endswith("half_model") for line in lines) else ", forces of the whole body"
-        out.append(TITLES[group].format(whole=whole))
+        undoubled = "" if any(line.key.endswith("half_model") for line in lines) else ", forces of the whole body"
+        out.append(TITLES[group].format(whole=undoubled))
         for line in own:
             head = f"{'>' if line.key in changed else ' '}{line.number:3d}{'?' if group is Group.OPEN else ' '} {_cut(line.key, KEY):<{most}}  "
             text = _LONG_NUMBER.sub(lambda m: f"{float(m[0]):.6g}", _one_line(line.value))
