@@ -57,7 +57,7 @@ def other_masses(subject: str, links: Iterable[Element], link: str) -> tuple[Fin
     return left_out(
         subject,
         "masses",
-        [e.get("name", "") for e in links if e.get("name") != link and e.find("inertial/mass") is not None],
+        [e.get("name", "") for e in links if e.get("name", "") != link and e.find("inertial/mass") is not None],
     )
 
 

@@ -209,7 +209,7 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
     element, model = found[0], found[0].find("hydrodynamic_model")
     _refuse_shapes(model, file)
     name = element.get("name", "")
-    inertials = [i for e in root.iter("link") if e.get("name") == name and (i := e.find("inertial")) is not None]
+    inertials = [i for e in root.iter("link") if e.get("name", "") == name and (i := e.find("inertial")) is not None]
     inertial = inertials[0] if inertials else None
     read = {tag: _matrix(model, tag, x, file) for tag in MATRICES}
     axes = {

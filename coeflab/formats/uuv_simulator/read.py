@@ -109,7 +109,7 @@ def _afloat(
     (BuoyantObject.cc, ApplyBuoyancyForce: AddForceAtRelativePosition), z up.
     """
     element = next(
-        e for e in root.iter("link") if e.get("name") == link.link and e.find("hydrodynamic_model") is not None
+        e for e in root.iter("link") if e.get("name", "") == link.link and e.find("hydrodynamic_model") is not None
     )
     neutral = (element.findtext("neutrally_buoyant") or "").strip().lower() in ("1", "true")
     volume = link.mass / density if neutral and link.mass else link.volume
@@ -130,7 +130,7 @@ CURRENT = ("flow_velocity_topic", "use_global_current", "default_current")
 def _left_out(root: Element, link: FossenLink) -> tuple[Finding, ...]:
     """What the file says of the vehicle's motion and a parameter file does not hold."""
     name = root.get("name", "") or link.link
-    links = [e for e in root.iter("link") if e.get("name") == link.link]
+    links = [e for e in root.iter("link") if e.get("name", "") == link.link]
     model = next(m for e in links if (m := e.find("hydrodynamic_model")) is not None)
     plugins = tuple(root.iter("plugin"))
     own = next((p for p in plugins if model in p.iter("hydrodynamic_model")), model)
