@@ -81,14 +81,14 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
     fins: list[tuple[LiftDrag, Joint | None]] = []
     unread: list[str] = []
     for plugin in root.iter("plugin"):
-        if _is(plugin, "thruster"):
+        if is_system(plugin, "thruster"):
             result = _thruster(plugin, found, {t.name for t in thrusters}, findings, subject, file)
             if result is None:
                 unread.append(f"Thruster of {one_line(plugin.findtext('joint_name') or 'no joint')}")
             else:
                 thrusters.append(result)
             read.append(plugin)
-        elif _is(plugin, "lift-drag") and not _is(plugin, "advanced"):
+        elif is_system(plugin, "lift-drag") and not is_system(plugin, "advanced"):
             foil = read_lift_drag(plugin, file)
             if foil.link not in found.links:
                 unread.append(f"LiftDrag of {foil.link or 'no link'}")
@@ -101,7 +101,8 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
     return Actuators(tuple(thrusters), surfaces, controls, drift, tuple(read), (*findings, *words))
 
 
-def _is(plugin: Element, what: str) -> bool:
+def is_system(plugin: Element, what: str) -> bool:
+    """Whether a plugin is gz-sim's system of that name, such as ``lift-drag``."""
     name, file = plugin.get("name", "").lower(), plugin.get("filename", "").lower().rpartition("/")[2]
     own = file.removeprefix("lib").startswith(("gz-sim", "ignition-gazebo")) or name.startswith(
         ("gz::sim::systems::", "ignition::gazebo::systems::")
