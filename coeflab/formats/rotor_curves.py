@@ -73,10 +73,10 @@ def where(pieces: Pieces, value: float) -> float | None:
 
 def per_command(pieces: Pieces, gain: float, factor: float = 1.0) -> Pieces:
     """Over a command that the speed is ``gain`` times of; values times a factor."""
-    out = (
-        Piece(*sorted((p.low / gain, p.high / gain)), tuple(factor * c * gain**k for k, c in enumerate(p.coefficients)))
-        for p in pieces
-    )
+    out = []
+    for p in pieces:
+        ends = p.low / gain, p.high / gain
+        out.append(Piece(min(ends), max(ends), tuple(factor * c * gain**k for k, c in enumerate(p.coefficients))))
     return tuple(sorted(out))
 
 

@@ -19,7 +19,7 @@ from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
 NAME = "plausibility"
-FURTHEST = 8.0  # s, of a thruster or centre from the centre of gravity
+FURTHEST, INSIDE = 8.0, 1.0  # s, of a thruster, of the centre of buoyancy from the centre of gravity
 STEEPEST, LEAST = 45.0, 0.02  # deg of trim at rest; s, of the lever that makes it
 LARGEST_FIN = 20.0  # of 1/2 rho s^2, per radian: a wing of ten times the body's own section
 THRUST = (1e-4, 30.0)  # of the weight, one thruster at its largest
@@ -43,17 +43,12 @@ def size_findings(p: ParameterFile) -> list[Check]:
 
 def _places(p: ParameterFile, size: float) -> Iterator[Finding]:
     """Thrusters and the centre of buoyancy, from the centre of gravity."""
-    centre = centre_of_gravity(p)
-    places = {t.name: t.position for t in p.thrusters}
-    if p.hydrostatics is not None:
-        places["centre of buoyancy"] = p.hydrostatics.centre_of_buoyancy
-    far = {name: float(np.linalg.norm(np.array(at) - centre)) for name, at in places.items()}
-    wrong = {name: x for name, x in far.items() if x > FURTHEST * size}
-    if wrong:
-        yield Finding.of(
-            "size.place", ", ".join(wrong), Severity.WARN, statistic=max(wrong.values()), threshold=FURTHEST * size,
-            names=tuple(wrong),
-        )  # fmt: skip
+    centre, afloat = centre_of_gravity(p), p.hydrostatics
+    places = [(t.name, t.position, FURTHEST * size) for t in p.thrusters]
+    places += [] if afloat is None else [("centre of buoyancy", afloat.centre_of_buoyancy, INSIDE * size)]
+    for name, at, most in places:
+        if (far := float(np.linalg.norm(np.array(at) - centre))) > most:
+            yield Finding.of("size.place", name, Severity.WARN, statistic=far, threshold=most)
 
 
 def _trim(p: ParameterFile, size: float) -> Iterator[Finding]:

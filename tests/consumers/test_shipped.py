@@ -192,8 +192,8 @@ actual = None
 for row in rows:
     u = np.array([*row[:3], 0.0, *row[3:3 + v.dimU - 4]])
     actual = u if actual is None else np.array([*u[:4], *actual[4:]])  # thrusters alone are on their way
-    middle, after = v.turned(actual, u, h/2), v.turned(actual, u, h)
-    a = rate(s, actual); b = rate(s + h/2*a, middle); c = rate(s + h/2*b, middle)
+    now, middle, after = (v.turned(actual, u, t) for t in (0.0, h/2, h))
+    a = rate(s, now); b = rate(s + h/2*a, middle); c = rate(s + h/2*b, middle)
     s = s + h/6 * (a + 2*b + 2*c + rate(s + h*c, after))
     actual = after
     s[:4] /= np.linalg.norm(s[:4])

@@ -1,4 +1,4 @@
-"""Thrusters of Stonefish and uuv_simulator: thrust, torque and lag against the laws of their sources, stepped here as written there."""
+"""Thrusters and fins of Stonefish and uuv_simulator: thrust, torque, lag, lift against the laws of their sources, written here as there."""
 
 from __future__ import annotations
 
@@ -146,3 +146,43 @@ def test_what_is_left_out_of_uuv_simulator_has_its_name(tmp_path: Path) -> None:
     other = urdf(tmp_path, "Basic", {}, "Yoerger")
     assert other.parameters.thrusters == ()
     assert other.left_out["actuators"] == ["Thruster main"]
+
+
+FIN = """<joint name="{n}j" type="revolute"><limit lower="-0.5" upper="0.5" velocity="0"/><origin xyz="{at}" rpy="{rpy}"/><axis xyz="0 0 1"/>
+<parent link="r/base"/><child link="{n}"/></joint><link name="{n}"><inertial><mass value="0.001"/></inertial></link>
+<gazebo><plugin name="{n}p" filename="libuuv_fin_ros_plugin.so"><dynamics><type>FirstOrder</type><timeConstant>0.2</timeConstant></dynamics>
+<liftdrag>{law}</liftdrag><link_name>{n}</link_name><joint_name>{n}j</joint_name></plugin></gazebo>"""
+LIFTS = {
+    "<type>Quadratic</type><lift_constant>9.8</lift_constant><drag_constant>6.5</drag_constant>": 9.8,
+    "<type>TwoLines</type><area>0.02</area><fluid_density>1025</fluid_density><a0>0</a0><alpha_stall>0.3</alpha_stall><cla>2.5</cla>"
+    "<cla_stall>0</cla_stall><cda>0.1</cda><cda_stall>0</cda_stall>": 0.5 * 1025.0 * 0.02 * 2.5,
+}  # fmt: skip
+TAIL = (("a", "-0.4 0 0.04", "0 0 0"), ("b", "-0.4 -0.04 0", "${0.5*pi} 0 0"), ("c", "-0.4 0 -0.04", "${pi} 0 0"), ("d", "-0.4 0.04 0", "-${0.5*pi} 0 0"))  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LIFTS)
+def test_fins_of_uuv_simulator(tmp_path: Path, law: str) -> None:
+    """A cross of fins .4 m aft, by hand: k = dL/d(angle) / U^2 of each; two turn about z, two about y."""
+    k = LIFTS[law]
+    fins = "".join(FIN.format(n=n, at=at, rpy=rpy, law=law) for n, at, rpy in TAIL)
+    text = URDF.format(law=LAWS["Basic"], tags="", rotor="ZeroOrder").replace("</robot>", fins + "</robot>")
+    found = read(tmp_path, text)
+    p = found.parameters
+    hand = {
+        "Ydr": 2.0 * k,
+        "Ndr": -0.8 * k,
+        "Zds": -2.0 * k,
+        "Mds": -0.8 * k,
+        "Nv": 0.8 * k - 55.0,  # and the ideal fluid's (5 - 60) kg
+        "Yr": 0.8 * k - 5.0,
+        "Mw": -0.8 * k + 55.0,
+    }
+    for symbol, due in hand.items():
+        c = p.coefficient(symbol) or p.coefficient(f"{symbol}|u|")
+        assert c is not None, symbol
+        assert c.value * p.scaling.unit(c.symbol, RHO) == pytest.approx(due, rel=1e-5), symbol
+    assert {s.control: (s.limit, s.rate) for s in p.surfaces} == {"dr": (0.5, None), "ds": (0.5, None)}
+    assert found.left_out["late_fins"] == [f"0.2 s of {n}p" for n, _, _ in TAIL]
+    assert "joints" not in found.left_out
+    other = read(tmp_path, text.replace("<type>Quad", "<type>Other").replace("<type>Two", "<type>Other"))
+    assert other.left_out["actuators"] == [f"Fin {n}p" for n, _, _ in TAIL]

@@ -13,7 +13,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -97,8 +97,10 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
                 fins.append((foil, named or found.joint_of(foil.link)))
             read.append(plugin)
     findings += left_out(subject, "actuators", unread)
-    controls, surfaces, drift, words = _fins(fins, found, subject)
-    return Actuators(tuple(thrusters), surfaces, controls, drift, tuple(read), (*findings, *words))
+    of_fins = fins_by_slopes(fins, found, subject)
+    return Actuators(
+        tuple(thrusters), of_fins.surfaces, of_fins.controls, of_fins.drift, tuple(read), (*findings, *of_fins.findings)
+    )
 
 
 def is_system(plugin: Element, what: str) -> bool:
@@ -160,9 +162,25 @@ def _thruster(
                              position=(x, y, z), direction=(a, b, c), curve=curve)  # fmt: skip
 
 
-def _fins(
-    fins: list[tuple[LiftDrag, Joint | None]], found: Assembly, subject: str
-) -> tuple[dict[str, float], tuple[ParameterSurface, ...], Array, list[Finding]]:  # fmt: skip
+class Fins(NamedTuple):
+    """Fins as `Actuators` has them."""
+
+    controls: dict[str, float]
+    surfaces: tuple[ParameterSurface, ...]
+    drift: Array
+    findings: list[Finding]
+
+
+def fins_by_slopes(fins: list[tuple[LiftDrag, Joint | None]], found: Assembly, subject: str) -> Fins:
+    """Foils on joints by their slopes at a straight course.
+
+    Parameters
+    ----------
+    fins : list of (LiftDrag, Joint or None)
+    found : Assembly
+    subject : str
+        Whom the findings are about.
+    """
     controls: dict[str, float] = {}
     limits: dict[Literal["dr", "ds"], tuple[float, float | None]] = {}
     drift, odd, read = np.zeros((6, 6)), [], []
@@ -197,7 +215,7 @@ def _fins(
     if read:
         findings.append(Finding.of("model.fins", subject, Severity.NOTE, names=tuple(dict.fromkeys(read))))
     surfaces = tuple(ParameterSurface(control=c, limit=low, rate=rate) for c, (low, rate) in limits.items())
-    return controls, surfaces, drift, findings
+    return Fins(controls, surfaces, drift, findings)
 
 
 def _slopes(foil: LiftDrag, link: Pose) -> Array:

@@ -152,7 +152,8 @@ def _model(actuator: Element, density: float, diameter: float, right: bool, path
         case "fluid_dynamics":
             per = density * diameter**4 / TURN**2
             sides = of("thrust_coeff", "reverse"), of("thrust_coeff", "forward")
-            ahead = squares(*(way * per * k for k in (sides if right else sides[::-1])))
+            below, above = sides if right else sides[::-1]
+            ahead = squares(way * per * below, way * per * above)
             about = -per * diameter * of("torque_coeff")
             return ahead, squares(about, about)
         case _:

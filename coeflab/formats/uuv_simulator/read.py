@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -14,8 +15,10 @@ from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
+from coeflab.formats.gazebo.assembly import assembly
 from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
+from coeflab.formats.uuv_simulator.fins import fins_of
 from coeflab.formats.uuv_simulator.law import (
     FRD,
     MATRICES,
@@ -26,7 +29,7 @@ from coeflab.formats.uuv_simulator.law import (
     read_fossen_link,
     unfolded,
 )
-from coeflab.formats.uuv_simulator.thrusters import Driven, thrusters_of
+from coeflab.formats.uuv_simulator.thrusters import Driven, plain, thrusters_of
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.imported_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -84,12 +87,19 @@ def read(
         )
     name = root.get("name", "") or link.link
     afloat, not_afloat = _afloat(root, link, rho, name, path)
-    driven = thrusters_of(root, link.link, name, Xacro(root, path), path)
+    x = Xacro(root, path)
+    links = assembly(plain(root, x), link.link, path) if root.find(".//joint") is not None else None
+    driven = thrusters_of(root, links, name, x, path)
+    fins, of_fins = fins_of(root, links, name, x, path)
+    driven = driven._replace(plugins=(*driven.plugins, *of_fins), findings=(*driven.findings, *fins.findings))
+    form = _form(link)
+    absolute = form.absolute.copy()
+    absolute[:, :, 0] += fins.drift
     stated = LinkModel(
         model=root.get("name", ""),
         link=link.link,
         density=rho,
-        form=_form(link),
+        form=replace(form, absolute=absolute),
         added=np.einsum("il,ljk->ijk", link.arm, momentum_quadratics(link.added_mass)),
         matrix=link.arm @ link.added_mass,
         mass=link.mass,
@@ -101,6 +111,8 @@ def read(
         findings=(*_left_out(root, link, driven), *not_afloat),
         hydrostatics=afloat,
         thrusters=driven.thrusters,
+        surfaces=fins.surfaces,
+        controls=fins.controls,
     )
     return link_file(stated, path, citations, length, speed)
 
@@ -138,7 +150,7 @@ def _left_out(root: Element, link: FossenLink, driven: Driven) -> tuple[Finding,
     plugins = tuple(root.iter("plugin"))
     own = next((p for p in plugins if model in p.iter("hydrodynamic_model")), model)
     others = [p for p in plugins if not any(p is q for q in driven.plugins)]
-    turned = {(p.findtext("jointName") or "").strip() for p in driven.plugins}
+    turned = {(p.findtext(tag) or "").strip() for p in driven.plugins for tag in ("jointName", "joint_name")}
     joints = [j.get("name", "") for j in root.iter("joint") if j.get("type", "fixed") != "fixed"]
     ignored = link.quadratic - np.diag(np.diag(link.quadratic))
     off = [f"<quadratic_damping> row {i + 1} column {j + 1}" for i, j in np.argwhere(ignored)]

@@ -19,7 +19,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding
 from coeflab.core.text.xml import numbers
-from coeflab.formats.gazebo.assembly import Assembly, assembly, pose_of
+from coeflab.formats.gazebo.assembly import Assembly, pose_of
 from coeflab.formats.left_out import left_out
 from coeflab.formats.rotor_curves import (
     FASTEST,
@@ -48,34 +48,33 @@ class Driven(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-class _Unknown(ValueError):  # noqa: N818 - never leaves this file
+class UnknownLawError(ValueError):
     """A law that is not known here, or a place that the file does not state."""
 
 
-def thrusters_of(root: Element, hull: str, subject: str, x: Xacro, path: Path) -> Driven:
+def thrusters_of(root: Element, links: Assembly | None, subject: str, x: Xacro, path: Path) -> Driven:
     """The thrusters that joints hold to a link.
 
     Parameters
     ----------
     root : Element
-    hull : str
-        Name of the link.
+    links : Assembly or None
+        Of the hull.
     subject : str
         Whom findings are about.
     x : Xacro
     path : path
     """
     plugins = [p for p in root.iter("plugin") if FILE.fullmatch(p.get("filename", "").rpartition("/")[2])]
-    links = assembly(_plain(root, x), hull, path) if plugins else None
     out: dict[str, ParameterThruster] = {}
     unread: list[str] = []
     free: list[str] = []
     for plugin in plugins:
         name = plugin.get("name", "") or (plugin.findtext("linkName") or "").strip()
         try:
-            name = _text(name, x)
+            name = text_of(name, x)
             found = None if links is None or name in out else _thruster(plugin, name, links, free, x, path)
-        except _Unknown:
+        except UnknownLawError:
             found = None
         if found is None:
             unread.append(f"Thruster {name}")
@@ -86,8 +85,8 @@ def thrusters_of(root: Element, hull: str, subject: str, x: Xacro, path: Path) -
     )
 
 
-def _plain(root: Element, x: Xacro) -> Element:
-    """Links and joints alone, every expression of xacro computed; without those that need what another file defines."""
+def plain(root: Element, x: Xacro) -> Element:
+    """Links and joints as URDF has them, every expression of xacro computed; without those that need what another file defines."""
     out = Element("robot")
     for e in (*root.iter("link"), *root.iter("joint")):
         if e.find("hydrodynamic_model") is None and e.get("name") is not None:
@@ -108,15 +107,15 @@ def _computed(element: Element, x: Xacro) -> Element:
 def _thruster(
     plugin: Element, name: str, found: Assembly, free: list[str], x: Xacro, path: Path
 ) -> ParameterThruster | None:  # fmt: skip
-    called, link = (_text(plugin.findtext(tag) or "", x).strip() for tag in ("jointName", "linkName"))
+    called, link = (text_of(plugin.findtext(tag) or "", x).strip() for tag in ("jointName", "linkName"))
     joint = next((j for j in found.joints if j.name == called), None) or found.joint_of(link)
     if joint is None or link not in found.links or not np.any(joint.axis):
-        raise _Unknown
+        raise UnknownLawError
     at = found.links[link].then(pose_of(found.elements[link].find("inertial"), path)).place
-    efficiency, share = (e if 0.0 <= (e := _value(plugin, t, 1.0, x, path)) <= 1.0 else 1.0 for t in EFFICIENCIES)
-    gain = _value(plugin, "gain", 1.0, x, path)
+    efficiency, share = (e if 0.0 <= (e := value_of(plugin, t, 1.0, x, path)) <= 1.0 else 1.0 for t in EFFICIENCIES)
+    gain = value_of(plugin, "gain", 1.0, x, path)
     if not gain * share:
-        raise _Unknown
+        raise UnknownLawError
     pieces = per_command(held(_conversion(plugin, x, path), -FASTEST, FASTEST), 1.0, efficiency)
     least, most = _ends(plugin, "thrustMin", "thrustMax", x, path)
     low, high = (where(pieces, v) for v in ((least, most) if rise(pieces) > 0.0 else (most, least)))
@@ -131,7 +130,7 @@ def _thruster(
 
 def _ends(plugin: Element, low: str, high: str, x: Xacro, path: Path) -> tuple[float, float]:
     """Limits, infinite where the plugin takes none: one is missing, or they are not in order."""
-    found = _value(plugin, low, -math.inf, x, path), _value(plugin, high, math.inf, x, path)
+    found = value_of(plugin, low, -math.inf, x, path), value_of(plugin, high, math.inf, x, path)
     return found if found[0] < found[1] else (-math.inf, math.inf)
 
 
@@ -139,8 +138,8 @@ def _lag(plugin: Element, x: Xacro, path: Path) -> float | None:
     """Time constant, s; None of a rotor that is at its speed at once."""
     kind = (plugin.findtext("dynamics/type") or "").strip()
     if kind not in ("FirstOrder", "ZeroOrder"):
-        raise _Unknown
-    found = _value(plugin, "dynamics/timeConstant", 0.0, x, path) if kind == "FirstOrder" else 0.0
+        raise UnknownLawError
+    found = value_of(plugin, "dynamics/timeConstant", 0.0, x, path) if kind == "FirstOrder" else 0.0
     return found if found > 0.0 else None
 
 
@@ -148,7 +147,7 @@ def _conversion(plugin: Element, x: Xacro, path: Path) -> Pieces:
     """Thrust over the rotor's speed."""
 
     def of(tag: str) -> float:
-        return _value(plugin, f"conversion/{tag}", math.nan, x, path)
+        return value_of(plugin, f"conversion/{tag}", math.nan, x, path)
 
     match (plugin.findtext("conversion/type") or "").strip():
         case "Basic":
@@ -156,29 +155,31 @@ def _conversion(plugin: Element, x: Xacro, path: Path) -> Pieces:
         case "Bessa":
             dead = of("deltaL"), of("deltaR")
             if not dead[0] <= 0.0 <= dead[1]:
-                raise _Unknown
+                raise UnknownLawError
             out = squares(of("rotorConstantL"), of("rotorConstantR"), dead)
         case "LinearInterp":
-            both = [_text(plugin.findtext(f"conversion/{tag}") or "", x) for tag in ("inputValues", "outputValues")]
+            both = [text_of(plugin.findtext(f"conversion/{tag}") or "", x) for tag in ("inputValues", "outputValues")]
             speeds, values = (numbers(text, (len(text.split()) or 1,), "conversion", path) for text in both)
             points = dict(zip(speeds, values, strict=False))
             if len(speeds) != len(values) or len(points) < 2:
-                raise _Unknown
+                raise UnknownLawError
             out = lines(sorted(points), [points[s] for s in sorted(points)])
         case _:
-            raise _Unknown
+            raise UnknownLawError
     if any(math.isnan(c) for p in out for c in p.coefficients):
-        raise _Unknown
+        raise UnknownLawError
     return out
 
 
-def _text(raw: str, x: Xacro) -> str:
+def text_of(raw: str, x: Xacro) -> str:
+    """A text of xacro computed; `UnknownLawError` where it needs what another file defines."""
     try:
         return x.text(raw)
     except InputError:
-        raise _Unknown from None
+        raise UnknownLawError from None
 
 
-def _value(plugin: Element, tag: str, default: float, x: Xacro, path: Path) -> float:
+def value_of(plugin: Element, tag: str, default: float, x: Xacro, path: Path) -> float:
+    """The number in a tag."""
     text = plugin.findtext(tag)
-    return default if text is None else numbers(_text(text, x), (1,), tag, path)[0]
+    return default if text is None else numbers(text_of(text, x), (1,), tag, path)[0]
