@@ -109,12 +109,17 @@ class Publication:
         **facts
             What its texts name.
         """
-        it = self.content["figures"][anchor]
-        return laws_figure(anchor, *self._filled([it["title"], it["caption"], it["description"]], facts), plots)
+        named, title, caption, description = self.words(anchor, **facts)
+        return laws_figure(named, title, caption, description, plots)
 
-    def statements(self, **facts: Any) -> tuple[str, ...]:
-        """Its statements."""
-        return tuple(self._filled(self.content["statements"], facts))
+    def words(self, anchor: str, **facts: Any) -> tuple[str, ...]:
+        """The anchor of a figure and the texts that the file has of it: title, caption, description."""
+        it = self.content["figures"][anchor]
+        return (anchor, *self._filled([it[key] for key in ("title", "caption", "description") if key in it], facts))
+
+    def texts(self, key: str, **facts: Any) -> tuple[str, ...]:
+        """One of its lists of texts, such as ``statements``."""
+        return tuple(self._filled(self.content[key], facts))
 
     def acceptance(self, tables: Iterable[ComparedTable], statements: Iterable[str], **more: Any) -> Acceptance:
         """The publication reproduced.

@@ -75,7 +75,7 @@ def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
     )
     correlations = [f"{start}{', '.join(group)}." for group in several]
     cannot = [f"Cannot be made. {text}" for text in PAPER.content["cannot"]]
-    return PAPER.statements(reach=reach, weights="; ".join(weights), correlations=correlations, cannot=cannot)
+    return PAPER.texts("statements", reach=reach, weights="; ".join(weights), correlations=correlations, cannot=cannot)
 
 
 # ---- steady turns by root finding, in time and through the parameter file ----------------------------------------

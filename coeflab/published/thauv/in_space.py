@@ -215,14 +215,8 @@ def dive_file(glider: Glider, phase: GliderPhase, name: str) -> ParameterFile:
     stated = Stated(
         name, glider.title, UNIT, at, coefficients, datum=Datum("cb"), matrix=added,
         mass=MassProperties(masses.total, masses.total * float(centre[0]), None, centre, rigid),
-        notes=(
-            f"{glider.name} on the orders of '{phase.name}': net mass {phase.net_mass:g} kg, stroke {phase.position:g} m, roller "
-            f"{np.degrees(phase.roller):g} deg, all at rest. Simulators hold neither moving pistons, roller nor buoyancy engine.",
-            "Polar of Table 3 as powers of w/V, up to the fourth in X and the third in Z and M: within 0.02 % of the force at 8 deg. Drift "
-            "comes in up to the second order.",
-            "m3 - m1 and the moments of the masses are calibrated on the six published speeds, pitch damping on 170 s until a dive is "
-            "steady. Moments of inertia: of the mass model with assumed radii of gyration, the rest of the assumed totals is water.",
-            "All of the motion to the side, and the thrusters, are assumed: the paper prints none of it.",
+        notes=PAPER.texts(
+            "notes_dive", glider=glider.name, phase=phase.name, net=phase.net_mass, stroke=phase.position, roller=np.degrees(phase.roller),
         ),
     )  # fmt: skip
     folder = Path(str(shipped("cfd_data") / "thauv"))

@@ -49,7 +49,9 @@ SPHEROID = {"A11/m": (0.1563, 0.2335), "A22/m": (0.7619, 0.6816), "A55/m": (0.08
 def acceptance() -> Acceptance:
     """Everything that the paper prints, its errata, and what theory says of the model."""
     tables = (*compared(), *moved())
-    return PAPER.acceptance(tables, PAPER.statements(), figures=tuple(figures()), pages=(("urv_motion.html", page()),))
+    return PAPER.acceptance(
+        tables, PAPER.texts("statements"), figures=tuple(figures()), pages=(("urv_motion.html", page()),)
+    )
 
 
 def compared() -> tuple[ComparedTable, ...]:

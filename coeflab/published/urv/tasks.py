@@ -165,12 +165,14 @@ def control(runs: dict[str, ControlledRun]) -> ComparedTable:
         Row("station keeping of a heavy vehicle", "force down that is asked for", "N", -excess, float(lifted[2]), 1e-9),
     ]  # fmt: skip
     words = [
-        f"{TITLES[name]}: up to {1e3 * float(run.apart.max()):.2g} mm and {np.degrees(float(run.turned.max())):.2g} deg off station, the end "
-        f"effector up to {1e3 * float(run.end_apart.max()):.2g} mm off its track; thrust up to {float(np.abs(run.thrust).max()):.2g} N, "
-        f"joint torque up to {float(np.abs(run.torque).max()):.2g} N m; {'; '.join(run.status) or 'nothing at its limit'}."
-        for name, run in runs.items()
-        if name in TITLES
-    ]
+        PAPER.text(
+            "run", title=title, apart=1e3 * float(run.apart.max()), turned=np.degrees(float(run.turned.max())),
+            end=1e3 * float(run.end_apart.max()), thrust=float(np.abs(run.thrust).max()), torque=float(np.abs(run.torque).max()),
+            status="; ".join(run.status) or PAPER.text("no_limit"),
+        )
+        for name, title in PAPER.content["runs"].items()
+        if (run := runs.get(name)) is not None
+    ]  # fmt: skip
     return PAPER.table("control", rows, words=words)
 
 
@@ -179,76 +181,24 @@ def _fading(pace: float, time: Array, error: float) -> Array:
     return np.asarray(error * (1.0 + pace * time) * np.exp(-pace * time))
 
 
-TITLES = {
-    "torque": "Computed torque, torque-driven thrusters",
-    "voltage": "Computed torque, voltage-driven thrusters",
-    "station": "Station keeping without the model, torque-driven thrusters",
-    "end": "End effector on a straight line, computed torque",
-}
-
-
 def figures() -> Iterator[tuple[str, Figure]]:
     """Our pictures: of the paper's only figure, and of the runs under control."""
     runs = tasks()
     end, selected = runs["end"], runs["torque"]
-    yield (
-        "urv_frames",
-        arm.frames_figure(
-            arm.ArmMotion(end.chain, model.hull(), selected.time[:1], selected.state[:1]),
-            "urv-frames",
-            "Our picture of the paper's Figure 1: frame 0 on the vehicle at c₀ from its centre of mass, x forward, y left and z up; frames 1 "
-            "to 3 of the arm; north, east, down. Hull and links are the chosen spheroid and cylinders.",
-        ),
-    )
-    yield (
-        "urv_poses",
-        arm.poses_figure(
-            arm.ArmMotion(end.chain, model.hull(), end.time, end.state), "urv-poses", "End effector on a straight line",
-            "Computed torque, torque-driven thrusters. The line is the path of the end effector. urv_motion.html plays it.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_path",
-        arm.path_figure(
-            end.end, end.end_wanted, "urv-path", "Path of the end effector",
-            "The same run; dots where the track asks for it. The axes have scales of their own.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_joints",
-        arm.joints_figure(selected, "urv-joints", "Joints that move while the vehicle keeps its station"),
-    )
-    named = [
-        (TITLES[name].split(", ")[-1] if name != "station" else "station keeping", runs[name])
-        for name in ("torque", "voltage", "station")
-    ]
-    yield (
-        "urv_station",
-        arm.station_figure(
-            named, "urv-station", "Station keeping while the joints move",
-            "Computed torque with torque-driven and with voltage-driven thrusters, and station keeping without the model.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_thrust",
-        arm.thrust_figure(
-            selected,
-            "urv-thrust",
-            "Thrust while the joints move",
-            "Torque-driven thrusters; dots where thrust is asked for.",
-        ),
-    )
+    hull, w = model.hull(), PAPER.words
+    at_rest = arm.ArmMotion(end.chain, hull, selected.time[:1], selected.state[:1])
+    yield "urv_frames", arm.frames_figure(at_rest, *w("urv-frames"))
+    moved = arm.ArmMotion(end.chain, hull, end.time, end.state)
+    yield "urv_poses", arm.poses_figure(moved, *w("urv-poses"))
+    yield "urv_path", arm.path_figure(end.end, end.end_wanted, *w("urv-path"))
+    yield "urv_joints", arm.joints_figure(selected, *w("urv-joints"))
+    named = {"torque-driven thrusters": "torque", "voltage-driven thrusters": "voltage", "station keeping": "station"}
+    yield "urv_station", arm.station_figure([(label, runs[name]) for label, name in named.items()], *w("urv-station"))
+    yield "urv_thrust", arm.thrust_figure(selected, *w("urv-thrust"))
 
 
 def page() -> bytes:
     """The straight line of the end effector, as a page that plays it."""
     run = tasks()["end"]
-    words = (
-        f"Vehicle with links 1 to 3 of a PUMA 560: the end effector goes {float(np.linalg.norm(REACH)):.2g} m along a straight line while the "
-        "vehicle keeps its station, by computed torque with torque-driven thrusters."
-    )
-    return arm.animation(
-        arm.ArmMotion(run.chain, model.hull(), run.time, run.state),
-        "URV with an arm: end effector on a straight line",
-        words,
-    )
+    words = PAPER.text("page", reach=float(np.linalg.norm(REACH)))
+    return arm.animation(arm.ArmMotion(run.chain, model.hull(), run.time, run.state), PAPER.text("page_title"), words)
