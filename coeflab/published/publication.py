@@ -29,7 +29,7 @@ from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.report.document import Figure
 from coeflab.report.figures.laws import Plot, laws_figure
 
-FINEST = 0.1  # of the tolerance: a zero is shown no finer than that, so that every machine says the same
+FINEST = 10.0  # parts of the tolerance: a zero is shown no finer than one, so that every machine says the same
 
 
 class Row(NamedTuple):
@@ -59,9 +59,17 @@ class Row(NamedTuple):
     is_zero: bool = False
 
     @classmethod
-    def none(cls, case: str, quantity: str, unit: str, found: float | Array, within: float | None = None) -> Row:
+    def none(
+        cls,
+        case: str,
+        quantity: str,
+        unit: str,
+        found: float | Array,
+        within: float | None = None,
+        basis: Basis | None = None,
+    ) -> Row:
         """Zero by theory; of arrays the largest."""
-        return cls(case, quantity, unit, 0.0, float(np.max(np.abs(found))), within, is_zero=True)
+        return cls(case, quantity, unit, 0.0, float(np.max(np.abs(found))), within, basis, is_zero=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +162,7 @@ def _compared(row: Row, of: Mapping[str, Any]) -> Compared:
     within, digits = own(row.within, "within", 0.0), of.get("digits", "")
     against, found = row.against, row.found
     if row.is_zero and found is not None:
-        found = max(found, FINEST * within)
+        found = max(found, within / FINEST)
     if digits and found is not None:
         against, found = float(format(against, digits)), float(format(found, digits))
     basis = Basis(own(row.basis, "basis", Basis.CONSISTENCY))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import combinations
 from math import isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
-from coeflab.law.coefficient import Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import half_spaces, inside
 from coeflab.law.symbols import ANGULAR, MOTIONS, PORT_STARBOARD
 from coeflab.law.terms import Term, canonical, design
@@ -286,6 +287,25 @@ class FittedModel:
         if self.remainder is not None and self.remainder.rejected[i]:
             return None, Status.FORM_REJECTED, parts
         return float(np.hypot(scatter, form or 0.0)), Status.FORM_ASSUMED, parts
+
+    def coefficient(self, i: int, citation: str, unknown: Status = Status.NOT_DETERMINED, **more: Any) -> Coefficient:
+        """One of its coefficients as `worth` has it, with where it comes from.
+
+        Parameters
+        ----------
+        i : int
+        citation : str
+        unknown : Status
+            Without a value.
+        **more
+            Of `Coefficient`, beside these or in their place.
+        """
+        u95, status, parts = self.worth(i, unknown)
+        own = {
+            "symbol": self.symbols[i], "value": self.recommended(i), "u95": u95, "status": status, "body": self.body, "parts": parts,
+            "origin": "fit", "table": self.table, "campaign": self.campaign, "n_points": self.n_points, "citation": citation,
+        }  # fmt: skip
+        return Coefficient(**{**own, **more})
 
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.

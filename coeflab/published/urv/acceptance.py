@@ -100,7 +100,7 @@ def _transformations() -> ComparedTable:
         joint = link.joint
         turn, shift = denavit_hartenberg(joint.theta + float(Q[j]), joint.d, joint.a, joint.alpha)
         apart = np.hstack([turn, shift[:, None]]) - printed[j][:3]
-        rows.append(Row.none(f"A_{j}^{j + 1}", "largest entry apart", "1, m", apart))
+        rows.append(Row.none(f"A_{j}^{j + 1}", "largest entry apart", "1, m", apart, basis=Basis.CALIBRATION))
         whole = whole @ printed[j]
         place = whole @ np.append(link.centre_of_mass, 1.0)
         expected = np.asarray(model.ATTACHMENT) + place[:3]
@@ -111,7 +111,8 @@ def _transformations() -> ComparedTable:
             ("mass", model.MASSES[j], link.mass), ("centre of mass", model.CENTRES[j], link.centre_of_mass),
             ("inertia", model.INERTIAS[j], np.diag(link.inertia)),
         ):  # fmt: skip
-            rows.append(Row.none(f"link {j + 1}", f"{name} of the file, apart", "SI", np.asarray(printed_) - held))
+            apart = np.asarray(printed_) - held
+            rows.append(Row.none(f"link {j + 1}", f"{name} of the file, apart", "SI", apart, basis=Basis.CALIBRATION))
     apart = FLU @ at.end - np.asarray(model.ATTACHMENT) - (whole @ [*chain.tool, 1.0])[:3]
     rows.append(Row.none("equation 27", "end effector by 4 x 4 matrices, apart", "m", apart))
     return PAPER.table("transformations", rows)
