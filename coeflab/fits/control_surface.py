@@ -27,8 +27,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import measured, one_of, parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
@@ -193,8 +193,7 @@ def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str,
     symbol, sign = DERIVATIVES[model.response]
     k = area.area / scaling.length**2
     i = model.symbols.index(f"{model.response}1")
-    found = model.coefficient(
-        i, citation, Status.TOO_FEW_POINTS, symbol=symbol.replace("ds", surface), value=finite(float(model.fit.coefficients[i])),
+    found = coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, symbol=symbol.replace("ds", surface), value=finite(float(model.fit.coefficients[i])),
         estimator=f"{model.response}1, {model.form}",
     )  # fmt: skip
     return found.scaled(sign * k, "1")
@@ -244,6 +243,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     coefficients = [c for c in made if c is not None]
     covariance = np.diag([np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients])
     settings = {"effective": chosen.effective, "cubic": chosen.cubic, "surface": chosen.surface, **area_settings(area)}
-    return FitResult.of(
+    return result_of(
         "control_surface", first, scaling, coefficients, covariance, citations=citations, settings=settings, models=tuple(models)
     )  # fmt: skip

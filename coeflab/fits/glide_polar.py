@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.types import brief
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Domain, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
@@ -439,7 +439,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         degrees.append(_fitted(rows, name, "deg"))
     models = (*radians, *(degrees if chosen.angle_unit == "deg" else ()))
     settings = {"angle_unit": chosen.angle_unit, "noise": chosen.noise, "printed": " ".join(chosen.printed)}
-    result = FitResult.of(
+    result = result_of(
         "glide_polar", first, scaling, *_derivatives(radians, scaling, first, chosen.munk), citations=citations,
         settings=settings | ({"munk": f"{chosen.munk!r}"} if chosen.munk else {}), models=models,
     )  # fmt: skip

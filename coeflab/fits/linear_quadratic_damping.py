@@ -20,8 +20,8 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult, independent
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -138,8 +138,7 @@ def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Co
     low, high = float(model.domain.low[0]), float(model.domain.high[0])
     over = f"{model.form}, {axis} from {low:g} to {high:g} {'rad/s' if axis in ANGULAR else 'm/s'}"
     out = [
-        model.coefficient(
-            i, citation, Status.TOO_FEW_POINTS, value=finite(float(model.fit.coefficients[i])),
+        coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, value=finite(float(model.fit.coefficients[i])),
             unit=derivative(model.symbols[i]).unit, estimator=over, law="rest",
         )
         for i in index
@@ -214,7 +213,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         blocks.append(block)
     if not models and shortfall is not None:
         raise shortfall
-    result = FitResult.of(
+    result = result_of(
         "linear_quadratic_damping", first, scaling, coefficients, independent(blocks), citations=citations,
         settings={"axes": " ".join(chosen.axes), "terms": chosen.terms, "offset": chosen.offset}, models=tuple(models),
         conditions=first.conditions,

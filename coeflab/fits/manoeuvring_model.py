@@ -23,8 +23,8 @@ from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, next_terms_in_words, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.sweeps import secant
 from coeflab.fits.statistics.remainder import companions
 from coeflab.law.coefficient import Coefficient, Status
@@ -239,7 +239,7 @@ def _coefficients(model: FittedModel, citation: str, *, lines: bool) -> list[Coe
             more["window"] = _window(model, i)
             if straight := bent.get(model.terms[i].suffix, ""):
                 more["estimator"] += f"; U95 holds {model.response}{straight}, which the set has not"
-        out.append(model.coefficient(i, citation, **more))
+        out.append(coefficient_of(model, i, citation, **more))
     return out
 
 
@@ -333,7 +333,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         "weights": chosen.weights,
     }  # fmt: skip
     covariance = _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every)
-    return FitResult.of(
+    return result_of(
         "manoeuvring_model", first, scaling, every, covariance, citations=citations, settings=settings, models=finished,
         campaign=campaign, body=body, poolings=joint.poolings, differences=apart,
     )  # fmt: skip

@@ -25,7 +25,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.oscillation import Explained, OscillatedForce, Oscillation, describing
 from coeflab.fits.rows.oscillating import oscillated
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, SAME, AtZero, RunScatter, at_zero_amplitude
@@ -226,7 +226,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             "no run without a mean drift", "runs of one motion about straight ahead", file=series_of[0].name
         )
     first, each = series_of[0], tuple(found.values())
-    result = FitResult.of(
+    result = result_of(
         "planar_motion", replace(first, reference_point=first.point), scaling, coefficients, _covariance(each, coefficients), citations=citations,
         settings={"harmonics": str(chosen.harmonics), "steady_below": f"{chosen.steady_below:g}", **_taken_out(first)},
         oscillations=each,

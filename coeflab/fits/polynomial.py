@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
-from coeflab.fits.results.fit_result import FitResult, independent
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, coefficient_of, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.statistics.linear_model import sharpened
@@ -99,8 +99,7 @@ def _coefficients(
     if chosen.variable in ("v", "w"):
         low, high = float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
     out = [
-        model.coefficient(
-            i, citation, Status.TOO_FEW_POINTS, symbol=model.symbols[i].removesuffix("'"),
+        coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, symbol=model.symbols[i].removesuffix("'"),
             estimator=model.one_size(i) or model.form, window=(low, high), window_over=chosen.variable,
         )
         for i in keep
@@ -152,7 +151,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         "variable": chosen.variable, "degree": str(chosen.degree), "parity": chosen.parity,
         "extrapolation": chosen.extrapolation, **area_settings(area),
     }  # fmt: skip
-    return FitResult.of(
+    return result_of(
         "polynomial", first, scaling, coefficients, independent([block for _, block in parts]), citations=citations,
         settings=settings, models=models,
     )  # fmt: skip

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent
+from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
@@ -393,7 +393,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         coefficients.append(ahead)
         own = np.nan if ahead.u95 is None else (ahead.u95 / 2.0) ** 2
         covariance = independent([covariance, np.array([[own]])])
-    result = FitResult.of(
+    result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift),
         sweeps=tuple(sweeps), straight=straight,
     )  # fmt: skip

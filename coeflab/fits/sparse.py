@@ -22,8 +22,8 @@ from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult, independent
-from coeflab.fits.results.fitted_model import FittedModel, every_third_point, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
 from coeflab.law.coefficient import Coefficient
@@ -150,7 +150,7 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
 
 def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
     refit = f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice"
-    return [model.coefficient(i, citation, estimator=model.one_size(i) or refit) for i in range(len(model.symbols))]
+    return [coefficient_of(model, i, citation, estimator=model.one_size(i) or refit) for i in range(len(model.symbols))]
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -190,7 +190,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             models += [model] if model is not None else []
     first = tables[0]
     coefficients = [c for m in models for c in _coefficients(m, first.source.citation)]
-    return FitResult.of(
+    return result_of(
         "sparse", first, scaling, coefficients, independent([m.covariance for m in models]), citations=citations,
         settings=settings, models=tuple(models),
     )  # fmt: skip

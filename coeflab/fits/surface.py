@@ -15,7 +15,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
@@ -270,6 +270,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         **sweeps.area_settings(area),
     }  # fmt: skip
     models = tuple(_model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names))
-    return FitResult.of(
+    return result_of(
         "surface", tables[0], scaling, (), np.zeros((0, 0)), citations=citations, settings=settings, models=models
     )

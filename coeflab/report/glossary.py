@@ -55,9 +55,11 @@ def terms() -> tuple[Term, ...]:
     """All of glossary.toml."""
     content = own_toml(own_text(files("coeflab.report") / "glossary.toml"))
     return tuple(
-        Term(name, **{k: tuple(v) if isinstance(v, list) else v for k, v in each.items()})
-        for name, each in content.items()
-    )
+        Term(
+            name, it["meaning"], tuple(it.get("sources", ())), tuple(it.get("spellings", ())), it.get("page", ""), it.get("by_name", True)
+        )
+        for name, it in content.items()
+    )  # fmt: skip
 
 
 def linked_html(text: str, seen: set[str], *, listed: bool = True) -> str:

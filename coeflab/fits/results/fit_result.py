@@ -24,7 +24,7 @@ from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Coefficient, CoefficientSet
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed
 from coeflab.tables.force_table import ForceTable
 
@@ -391,42 +391,6 @@ class FitResult:
     findings: tuple[Finding, ...] = ()
     shared: tuple[Shared, ...] = ()
 
-    @classmethod
-    def of(
-        cls,
-        fit: str,
-        first: ForceTable,
-        scaling: Scaling,
-        coefficients: Sequence[Coefficient],
-        covariance: Array,
-        *,
-        citations: tuple[str, ...],
-        settings: dict[str, str],
-        **more: Any,
-    ) -> FitResult:
-        """Coefficients about the point of a table.
-
-        Parameters
-        ----------
-        fit : str
-            Plugin name.
-        first : ForceTable
-            Campaign, body, point and datum, unless ``more`` says others.
-        scaling : Scaling
-        coefficients : sequence of Coefficient
-        covariance : (n, n) array
-            Of standard uncertainties; what has no U95 is NaN in the result.
-        citations, settings, **more
-            As the fields.
-        """
-        unknown = np.isnan(np.diag(covariance)) | np.array([c.u95 is None for c in coefficients], dtype=bool)
-        covariance = np.where(unknown | unknown[:, None], np.nan, covariance)
-        own: dict[str, Any] = {"campaign": first.campaign, "body": first.body, "sweeps": (), **more}
-        held = CoefficientSet(
-            tuple(coefficients), covariance, scaling, first.reference_point, first.datum, own["body"], own.pop("conditions", None)
-        )  # fmt: skip
-        return cls(fit=fit, coefficients=held, citations=citations, settings=settings, **own)
-
     @property
     def law(self) -> str:
         """The fit whose force law the coefficients belong to."""
@@ -452,6 +416,42 @@ class FitResult:
             if s.symbol == symbol.removesuffix("'"):
                 return s
         raise KeyError(symbol)
+
+
+def result_of(
+    fit: str,
+    first: ForceTable,
+    scaling: Scaling,
+    coefficients: Sequence[Coefficient],
+    covariance: Array,
+    *,
+    conditions: Conditions | None = None,
+    **more: Any,
+) -> FitResult:
+    """Coefficients about the point of a table as the result of a fit.
+
+    Parameters
+    ----------
+    fit : str
+        Plugin name.
+    first : ForceTable
+        Campaign, body, point and datum, unless ``more`` says others.
+    scaling : Scaling
+    coefficients : sequence of Coefficient
+    covariance : (n, n) array
+        Of standard uncertainties; what has no U95 is NaN in the result.
+    conditions : Conditions, optional
+        Of coefficients in SI.
+    **more
+        Further fields of `FitResult`.
+    """
+    unknown = np.isnan(np.diag(covariance)) | np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance = np.where(unknown | unknown[:, None], np.nan, covariance)
+    own: dict[str, Any] = {"campaign": first.campaign, "body": first.body, "sweeps": (), **more}
+    held = CoefficientSet(
+        tuple(coefficients), covariance, scaling, first.reference_point, first.datum, own["body"], conditions
+    )
+    return FitResult(fit, coefficients=held, **own)
 
 
 def independent(blocks: Sequence[Array]) -> Array:

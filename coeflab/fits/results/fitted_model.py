@@ -288,25 +288,6 @@ class FittedModel:
             return None, Status.FORM_REJECTED, parts
         return float(np.hypot(scatter, form or 0.0)), Status.FORM_ASSUMED, parts
 
-    def coefficient(self, i: int, citation: str, unknown: Status = Status.NOT_DETERMINED, **more: Any) -> Coefficient:
-        """One of its coefficients as `worth` has it, with where it comes from.
-
-        Parameters
-        ----------
-        i : int
-        citation : str
-        unknown : Status
-            Without a value.
-        **more
-            Of `Coefficient`, beside these or in their place.
-        """
-        u95, status, parts = self.worth(i, unknown)
-        own = {
-            "symbol": self.symbols[i], "value": self.recommended(i), "u95": u95, "status": status, "body": self.body, "parts": parts,
-            "origin": "fit", "table": self.table, "campaign": self.campaign, "n_points": self.n_points, "citation": citation,
-        }  # fmt: skip
-        return Coefficient(**{**own, **more})
-
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
 
@@ -341,6 +322,29 @@ class FittedModel:
         """Value and 95 % half-width of one coefficient."""
         i = self.symbols.index(symbol)
         return float(self.fit.coefficients[i]), float(self.half_width[i])
+
+
+def coefficient_of(
+    model: FittedModel, i: int, citation: str, unknown: Status = Status.NOT_DETERMINED, **more: Any
+) -> Coefficient:
+    """One coefficient of a model as `FittedModel.worth` has it, with where it comes from.
+
+    Parameters
+    ----------
+    model : FittedModel
+    i : int
+    citation : str
+    unknown : Status
+        Without a value.
+    **more
+        Of `Coefficient`, beside these or in their place.
+    """
+    u95, status, parts = model.worth(i, unknown)
+    own = {
+        "symbol": model.symbols[i], "value": model.recommended(i), "u95": u95, "status": status, "body": model.body, "parts": parts,
+        "origin": "fit", "table": model.table, "campaign": model.campaign, "n_points": model.n_points, "citation": citation,
+    }  # fmt: skip
+    return Coefficient(**{**own, **more})
 
 
 COLLINEAR = 0.98  # the half-width is five times that of either term alone: 1 / sqrt(1 - 0.98^2)
