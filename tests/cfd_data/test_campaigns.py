@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.provenance import works, sha256_of
+from coeflab.core.provenance import sha256_of, works
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
