@@ -22,7 +22,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("simpleFoam") is None, reason="OpenFOAM is not installed"),
 ]
-# Re 1000, laminar: 17,491 cells settle within 220 iterations.
+# Re 1000, laminar: 5,588 cells settle within 220 iterations.
 TANK = """
 [tank]
 name = "finned_spheroid"
@@ -37,8 +37,8 @@ yaw = [0.2, 0.4]
 [solver.openfoam]
 wall = "none"
 turbulence = "laminar"
-cells_per_length = 40
-cells_per_chord = 8
+cells_per_length = 20
+cells_per_chord = 5
 ahead = 1.0
 behind = 1.0
 beside = 1.0
