@@ -15,12 +15,11 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
-from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
 from coeflab.law.terms import Term, power_terms
@@ -265,23 +264,12 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
-    first = tables[0]
-    return FitResult(
-        fit="surface",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "variables": " ".join(chosen.variables),
-            "degree": str(chosen.degree),
-            "form": chosen.form,
-            "parity": " ".join(chosen.parity) or "port-starboard symmetry",
-            "extrapolation": chosen.extrapolation,
-            **sweeps.area_settings(area),
-        },
-        models=tuple(
-            _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names)
-        ),
+    settings = {
+        "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
+        "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
+        **sweeps.area_settings(area),
+    }  # fmt: skip
+    models = tuple(_model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names))
+    return result_of(
+        "surface", tables[0], scaling, (), np.zeros((0, 0)), citations=citations, settings=settings, models=models
     )
