@@ -15,18 +15,9 @@ from typing import Literal
 
 import numpy as np
 
-from coeflab.arm import kane
+from coeflab.arm import kane, thrusters
 from coeflab.arm.chain import STILL, Chain, Flow
 from coeflab.arm.motion import Equations, Track, at_rest, equations_of, limited, march
-from coeflab.arm.thrusters import (
-    Thruster,
-    TorqueThruster,
-    VoltageThruster,
-    require_all_directions,
-    thruster_forces,
-    thruster_matrix,
-    thruster_rates,
-)
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import axes_in_earth
@@ -253,8 +244,8 @@ class _Loop:
     ) -> None:
         self.chain, self.controller, self.track, self.station, self.flow = chain, controller, track, station, flow
         self.equations: Equations = equations_of(chain)
-        self.inverse = require_all_directions(chain.thrusters)
-        self.matrix = thruster_matrix(chain.thrusters)
+        self.inverse = thrusters.require_all_directions(chain.thrusters)
+        self.matrix = thrusters.thruster_matrix(chain.thrusters)
         self.size = 13 + 2 * chain.count
         self.at_start = kane.mass_matrix(chain, start[7 : 7 + chain.count])
         self.gains = tuple(gain_of(t, chain.density) for t in chain.thrusters)
@@ -283,7 +274,7 @@ class _Loop:
 
     def thrusts(self, state: Array, asked: Array) -> Array:
         """(m,) thrusts that act, N."""
-        return thruster_forces(
+        return thrusters.thruster_forces(
             self.chain.thrusters, state[self.size :], self.commands(state, asked), self.chain.density
         )
 
@@ -297,11 +288,13 @@ class _Loop:
         asked = self.asked(time, state)
         commands = self.commands(state, asked)
         density, propellers = self.chain.density, state[self.size :]
-        pushed = self.matrix @ thruster_forces(self.chain.thrusters, propellers, commands, density)
+        pushed = self.matrix @ thrusters.thruster_forces(self.chain.thrusters, propellers, commands, density)
         m, force = self.equations(state[: self.size], self.flow.at(time))
         changed = np.linalg.solve(m, force + np.concatenate([pushed, limited(self.chain, asked[6:])]))
         moved = kane.displacement_rates(self.chain.count, state)
-        return np.concatenate([moved, changed, thruster_rates(self.chain.thrusters, propellers, commands, density)])
+        return np.concatenate(
+            [moved, changed, thrusters.thruster_rates(self.chain.thrusters, propellers, commands, density)]
+        )
 
 
 def wanted_accelerations(
@@ -332,7 +325,7 @@ def _turn_left(attitude: Array, wanted: Array) -> Array:
     return np.asarray(vector if scalar >= 0.0 else -vector)
 
 
-def gain_of(thruster: Thruster, density: float) -> float:
+def gain_of(thruster: thrusters.Thruster, density: float) -> float:
     """Thrust over Omega |Omega|, N s^2/rad^2, where the thruster turns steadily at rest; one without a model has 1."""
     model = thruster.model
     if model is None:
@@ -341,7 +334,9 @@ def gain_of(thruster: Thruster, density: float) -> float:
     return 1.0 / (turning * abs(turning))
 
 
-def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: float, density: float) -> float:
+def demand(
+    thruster: thrusters.Thruster, gain: float, thrust: float, state: Array, pace: float, density: float
+) -> float:
     """Torque, N m, or voltage, V, that brings a propeller to the speed of a thrust at ``pace``, 1/s; without a model the thrust.
 
     The speed is the root of thrust over gain, but for a straight line through zero that is as wide as the thrust of 1 rad/s, so that no
@@ -353,22 +348,22 @@ def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: f
     square = thrust / gain
     aim = square / (square * square + IDLE**4) ** 0.25
     idle = float(model.rates(state, 0.0, density)[0])
-    power = model.beta if isinstance(model, TorqueThruster) else model.drive
+    power = model.beta if isinstance(model, thrusters.TorqueThruster) else model.drive
     wanted = (pace * (aim - float(state[0])) - idle) / power
     return float(np.clip(wanted, -model.strongest, model.strongest))
 
 
-def most_thrust(thruster: Thruster, gain: float, density: float) -> float:
+def most_thrust(thruster: thrusters.Thruster, gain: float, density: float) -> float:
     """Largest steady thrust, N."""
     model = thruster.model
     if model is None or not np.isfinite(model.strongest):
         return np.inf
-    if isinstance(model, TorqueThruster):
+    if isinstance(model, thrusters.TorqueThruster):
         return model.thrust * model.beta * model.strongest / model.alpha
     return _most_by_voltage(model, gain, density)
 
 
-def _most_by_voltage(model: VoltageThruster, gain: float, density: float) -> float:
+def _most_by_voltage(model: thrusters.VoltageThruster, gain: float, density: float) -> float:
     """Of the voltage model: damping Omega + load Q = drive V, Q by the square of Omega."""
     volts, state = model.steady(1.0, density)
     turning = float(state[0])
