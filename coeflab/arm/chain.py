@@ -25,10 +25,10 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import inertia_doubt, rigid_body_inertia
+from coeflab.law.water import ROUND_DENSITY
 
 JointKind = Literal["revolute", "prismatic"]
 FLU = np.diag([1.0, -1.0, -1.0])
-FRESH = 1000.0
 NODES = 12  # of a strip; Gauss's rule is exact for |v| v where v does not turn round within it
 Ints = NDArray[np.int64]
 
@@ -248,7 +248,7 @@ class Chain:
     mount: Array = field(default_factory=FLU.copy)
     tool: Array = field(default_factory=lambda: np.zeros(3))
     thrusters: tuple[Thruster, ...] = ()
-    density: float = FRESH
+    density: float = ROUND_DENSITY
     gravity: float = STANDARD_GRAVITY
     statements: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
