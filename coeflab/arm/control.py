@@ -19,7 +19,7 @@ from coeflab.arm import kane, thrusters
 from coeflab.arm.chain import STILL, Chain, Flow
 from coeflab.arm.motion import Equations, Track, at_rest, equations_of, limited, march
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import axes_in_earth
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Ended
@@ -32,6 +32,7 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("position attitude")
 class Station:
     """Where the vehicle is to stay.
 
@@ -45,10 +46,6 @@ class Station:
 
     position: Array = field(default_factory=lambda: np.zeros(3))
     attitude: Array = field(default_factory=lambda: np.array(LEVEL))
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "position", locked(self.position))
-        object.__setattr__(self, "attitude", locked(self.attitude))
 
 
 @brief
@@ -85,6 +82,7 @@ class Controller:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time state wanted propellers ordered thrust torque end end_wanted")
 class ControlledRun:
     """A motion under control, one row a time.
 
@@ -129,10 +127,6 @@ class ControlledRun:
     ended: Ended
     why: str = ""
     saturated: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("time", "state", "wanted", "propellers", "ordered", "thrust", "torque", "end", "end_wanted"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def status(self) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from coeflab.bodies.mesh import solids as silhouette
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
 from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
@@ -49,6 +49,7 @@ SLICES = 40  # of a cylinder that is seen in part
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("hull time states")
 class ArmMotion:
     """What a picture of a motion takes.
 
@@ -67,10 +68,6 @@ class ArmMotion:
     hull: Array
     time: Array
     states: Array
-
-    def __post_init__(self) -> None:
-        for name in ("hull", "time", "states"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def ends(self) -> Array:

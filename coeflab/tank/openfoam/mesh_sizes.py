@@ -15,7 +15,7 @@ import numpy as np
 
 from coeflab.core.declarations import ABOVE_ZERO, TABLE, Declaration, Pure, Within
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, locking
 from coeflab.law.scaling import Conditions
 from coeflab.tank.openfoam.features import foils, is_appended
 from coeflab.tank.openfoam.layers import Layers, Wall, layers
@@ -91,6 +91,7 @@ class MeshKeys(Declaration):
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high")
 class Region:
     """A box in which cells have at least a level.
 
@@ -108,13 +109,10 @@ class Region:
     high: Array
     level: int
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "low", locked(self.low))
-        object.__setattr__(self, "high", locked(self.high))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high inside")
 class MeshSizes:
     """What the dictionaries of a mesh are written from.
 
@@ -142,8 +140,6 @@ class MeshSizes:
     inside: Array
 
     def __post_init__(self) -> None:
-        for name in ("low", "high", "inside"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         object.__setattr__(self, "counts", locked(self.counts, int))
         for name in ("levels", "layers"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
