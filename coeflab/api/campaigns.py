@@ -11,8 +11,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.law.scaling import Scaling
-from coeflab.study.fitting import FEW_ROWS
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study

@@ -26,6 +26,7 @@ from coeflab.fits.joint.rows import Component, about_one_point, differences, joi
 from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.sweeps import secant
+from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.remainder import companions
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -285,12 +286,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Returns
     -------
     FitResult
-        One model per component; coefficients that the rows leave open have no value and say so.
+        One model per component; coefficients that the rows leave open have no value and say so, as do those of a component
+        with no more rows than terms.
 
     Raises
     ------
     InputError
-        Unknown, repeated or unexcited terms; more terms than rows; equations that are unreadable or cannot hold.
+        Unknown, repeated or unexcited terms; more terms than rows of every component; equations that are unreadable or cannot hold.
     """
     given = {k: split_equations(o) if k == "constraints" and isinstance(o, str) else o for k, o in options.items()}
     chosen = parse_options(Options, given, "manoeuvring_model")
@@ -300,10 +302,11 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     asked = asked_terms(chosen.terms, _set_of(chosen) or "none", chosen.components, tables,
                         intercepts=chosen.intercepts == "yes", place="manoeuvring_model")  # fmt: skip
     weighted = chosen.weights == "yes"
-    components = {
-        c: replace(_component(c, asked, tables, scaling.length, weighted=weighted), lines=not chosen.terms)
-        for c in dict.fromkeys(t.component for t in asked.fitted)
-    }
+    names = tuple(dict.fromkeys(t.component for t in asked.fitted))
+    parts, few = each_with_rows(
+        names, lambda c: _component(c, asked, tables, scaling.length, weighted=weighted), joint_name(t.campaign for t in tables)
+    )  # fmt: skip
+    components = {p.name: replace(p, lines=not chosen.terms) for p in parts}
     stated = {c: p.data.rows.errors is not None for c, p in components.items()}
     n_runs = sum(map(len, tables))
     joint = joint_models(components, equations, "manoeuvring model", n_runs=n_runs)
@@ -327,6 +330,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
                     estimator="no motion in the tables")
         for t in asked.idle
     ]  # fmt: skip
+    few = (*few, *(why.finding(campaign) for why in joint.short.values()))
+    short = {c for f in few for c in str(f["variable"]).split(", ")}
+    open_ones += [
+        Coefficient(t.symbol, None, None, Status.TOO_FEW_POINTS, body, origin="fit", campaign=campaign,
+                    estimator="no more usable rows than terms")
+        for t in asked.fitted if t.component in short
+    ]  # fmt: skip
     every = coefficients + open_ones
     settings = {
         "terms": " ".join(t.symbol for t in asked.fitted), "constraints": ", ".join(map(str, equations)) or "none",
@@ -335,7 +345,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     covariance = _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every)
     return result_of(
         "manoeuvring_model", first, scaling, every, covariance, citations=citations, settings=settings, models=finished,
-        campaign=campaign, body=body, poolings=joint.poolings, differences=apart,
+        campaign=campaign, body=body, poolings=joint.poolings, differences=apart, findings=few,
     )  # fmt: skip
 
 

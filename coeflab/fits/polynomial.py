@@ -15,6 +15,7 @@ from coeflab.fits.results.fit_result import FitResult, independent, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, coefficient_of, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.linear_model import sharpened
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -130,7 +131,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        No such sweep, a response that the tables lack, more terms than rows, or an area without its name.
+        No such sweep, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
     chosen = parse_options(Options, options, "polynomial")
     area = area_of(chosen.area, chosen.area_name, scaling)
@@ -143,8 +144,10 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(
             f"no usable force in a sweep over {chosen.variable}", "one of X Y Z K M N", column="polynomial.responses"
         )
-    models = tuple(_model(allowed(used, n, area) or used, n, terms, area, chosen, said) for n in dict.fromkeys(names))
     first = tables[0]
+    models, few = each_with_rows(
+        tuple(dict.fromkeys(names)), lambda n: _model(allowed(used, n, area) or used, n, terms, area, chosen, said), first.campaign
+    )  # fmt: skip
     parts = [_coefficients(m, chosen, area, first.source.citation) for m in models]
     coefficients = [c for some, _ in parts for c in some]
     settings = {
@@ -153,5 +156,5 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     }  # fmt: skip
     return result_of(
         "polynomial", first, scaling, coefficients, independent([block for _, block in parts]), citations=citations,
-        settings=settings, models=models,
+        settings=settings, models=models, findings=few,
     )  # fmt: skip

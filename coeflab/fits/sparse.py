@@ -25,6 +25,7 @@ from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
 from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
+from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling
@@ -104,8 +105,10 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
     """The fitted model, or None where nothing is chosen; and the selection in short."""
     rows, intercept = data.rows, chosen.intercepts == "yes"
     if len(rows.y) < FEWEST_A_FOLD * chosen.folds:
-        raise InputError(f"{len(rows.y)} usable rows of {component}", f"{FEWEST_A_FOLD} or more for each of "
-                         f"{chosen.folds} folds", column="sparse.folds", advice="Ask for fewer folds.")  # fmt: skip
+        raise TooFewRowsError(
+            f"{len(rows.y)} usable rows of {component}", f"{FEWEST_A_FOLD} or more for each of {chosen.folds} folds", component, rows.labels,
+            FEWEST_A_FOLD * chosen.folds, column="sparse.folds", advice="Ask for fewer folds.",
+        )  # fmt: skip
     matrix = design(terms, rows.x)
     selection = select(
         matrix, rows.y, run, seed=chosen.seed, folds=chosen.folds, resamples=chosen.ensembles, intercept=intercept
@@ -168,7 +171,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        Unknown component or variable, or too few rows for the folds.
+        Unknown component or variable, or too few rows of every component for the folds.
     """
     chosen = parse_options(Options, options, "sparse")
     run = scaled_optimizer(chosen.optimizer)
@@ -182,15 +185,19 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     if unknown := [c for c in components if c not in COMPONENTS]:
         raise InputError(shown(unknown[0]), f"some of {', '.join(COMPONENTS)}", column="sparse.components")
     terms = library(variables, chosen.degree, absolute=chosen.absolute == "yes")
-    models, settings = [], {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
-    with one_thread():
-        for c in components:
-            allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
-            model, settings[c] = _model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)
-            models += [model] if model is not None else []
+    settings = {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
+
+    def one(c: str) -> tuple[str, FittedModel | None, str]:
+        allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
+        return c, *_model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)
+
     first = tables[0]
+    with one_thread():
+        found, few = each_with_rows(components, one, first.campaign)
+    settings |= {c: short for c, _, short in found}
+    models = [model for _, model, _ in found if model is not None]
     coefficients = [c for m in models for c in _coefficients(m, first.source.citation)]
     return result_of(
         "sparse", first, scaling, coefficients, independent([m.covariance for m in models]), citations=citations,
-        settings=settings, models=tuple(models),
+        settings=settings, models=tuple(models), findings=few,
     )  # fmt: skip

@@ -19,6 +19,7 @@ from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
+from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
@@ -211,9 +212,9 @@ def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area,
     fitted = {form: _fitted(rows, chosen, form, area) for form in FORMS}
     model = fitted[chosen.form]
     if model is None:
-        raise InputError(
-            f"{len(rows.y)} usable rows of {name}", f"more rows than terms, and at least one term, for {chosen.form}",
-            column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
+        raise TooFewRowsError(
+            f"{len(rows.y)} usable rows of {name}", f"more rows than terms, and at least one term, for {chosen.form}", name, rows.labels,
+            len(rows.y) + 1, column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
         )  # fmt: skip
     full = fitted["tensor"] or fitted["total"] if chosen.form == "additive" else model
     freer = f"Try a higher degree, such as degree = {chosen.degree + 1}"
@@ -252,7 +253,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        No such rows, a response that the tables lack, more terms than rows, or an area without its name.
+        No such rows, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
     chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
@@ -264,12 +265,23 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
+    first = tables[0]
     settings = {
         "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
         "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
         **sweeps.area_settings(area),
     }  # fmt: skip
-    models = tuple(_model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names))
+    models, few = each_with_rows(
+        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said), first.campaign
+    )  # fmt: skip
     return result_of(
-        "surface", tables[0], scaling, (), np.zeros((0, 0)), citations=citations, settings=settings, models=models
+        "surface",
+        first,
+        scaling,
+        (),
+        np.zeros((0, 0)),
+        citations=citations,
+        settings=settings,
+        models=models,
+        findings=few,
     )
