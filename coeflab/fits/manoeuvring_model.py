@@ -23,12 +23,12 @@ from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, next_terms_in_words, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.sweeps import secant
 from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.remainder import companions
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import (
@@ -228,34 +228,19 @@ def _window(model: FittedModel, index: int) -> tuple[float, float] | None:
 
 def _coefficients(model: FittedModel, citation: str, *, lines: bool) -> list[Coefficient]:
     bent = {t.factors[0][0]: t.suffix for t in companions(model.terms)} if lines else {}
-    shared: dict[str, Any] = {
-        "body": model.body, "origin": "fit", "table": model.table, "campaign": model.campaign,
-        "n_points": model.n_points, "citation": citation,
-        "estimator": f"joint least squares, {model.response}' = {' + '.join(model.symbols)}",
-    }  # fmt: skip
+    joint = f"joint least squares, {model.response}' = {' + '.join(model.symbols)}"
     out = []
     for i, symbol in enumerate(model.symbols):
-        value = model.recommended(i)
-        u95, status, parts = model.worth(i)
-        if value is None:
-            out.append(
-                Coefficient(
-                    symbol, None, None, status, **(shared | {"estimator": model.one_size(i) or shared["estimator"]})
-                )
-            )
-            continue
-        at_rest = not np.any(model.terms[i].evaluate(model.x))
-        straight = bent.get(model.terms[i].suffix, "")
-        added = (
-            {"estimator": f"{shared['estimator']}; U95 holds {model.response}{straight}, which the set has not"}
-            if straight
-            else {}
-        )
-        own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
-        out.append(
-            Coefficient(symbol, value, u95, status, parts=parts,
-                        window=None if at_rest else _window(model, i), **(shared | added | (own if at_rest else {})))
-        )  # fmt: skip
+        more: dict[str, Any] = {"estimator": joint}
+        if model.recommended(i) is None:
+            more["estimator"] = model.one_size(i) or joint
+        elif not np.any(model.terms[i].evaluate(model.x)):
+            more = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
+        else:
+            more["window"] = _window(model, i)
+            if straight := bent.get(model.terms[i].suffix, ""):
+                more["estimator"] += f"; U95 holds {model.response}{straight}, which the set has not"
+        out.append(coefficient_of(model, i, citation, **more))
     return out
 
 
@@ -352,31 +337,16 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
                     estimator="no more usable rows than terms")
         for t in asked.fitted if t.component in short
     ]  # fmt: skip
-    every = tuple(coefficients + open_ones)
-    return FitResult(
-        fit="manoeuvring_model",
-        campaign=campaign,
-        body=body,
-        coefficients=CoefficientSet(
-            every,
-            _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every),
-            scaling,
-            first.reference_point,
-            first.datum,
-            body,
-        ),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "terms": " ".join(t.symbol for t in asked.fitted),
-            "constraints": ", ".join(map(str, equations)) or "none",
-            "weights": chosen.weights,
-        },
-        models=finished,
-        poolings=joint.poolings,
-        differences=apart,
-        findings=few,
-    )
+    every = coefficients + open_ones
+    settings = {
+        "terms": " ".join(t.symbol for t in asked.fitted), "constraints": ", ".join(map(str, equations)) or "none",
+        "weights": chosen.weights,
+    }  # fmt: skip
+    covariance = _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every)
+    return result_of(
+        "manoeuvring_model", first, scaling, every, covariance, citations=citations, settings=settings, models=finished,
+        campaign=campaign, body=body, poolings=joint.poolings, differences=apart, findings=few,
+    )  # fmt: skip
 
 
 def _component(

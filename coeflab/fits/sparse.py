@@ -22,12 +22,12 @@ from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, every_third_point, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
-from coeflab.law.coefficient import Coefficient, CoefficientSet
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Term, design, symmetric
@@ -152,30 +152,8 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
 
 
 def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
-    out = []
-    for i, symbol in enumerate(model.symbols):
-        u95, status, parts = model.worth(i)
-        out.append(
-            Coefficient(
-                symbol, model.recommended(i), u95, status, model.body, parts=parts,
-                origin="fit", table=model.table, campaign=model.campaign, n_points=model.n_points, citation=citation,
-                estimator=model.one_size(i)
-                or f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
-            )
-        )  # fmt: skip
-    return out
-
-
-def _covariance(models: Sequence[FittedModel], coefficients: Sequence[Coefficient]) -> Array:
-    """That of each model; nothing between models, whose terms were chosen apart."""
-    out, at = np.zeros((len(coefficients), len(coefficients))), 0
-    for m in models:
-        block = slice(at, at + len(m.symbols))
-        out[block, block] = m.covariance
-        at = block.stop
-    void = np.isnan(np.diag(out)) | [c.value is None for c in coefficients]
-    out[void, :] = out[:, void] = np.nan
-    return out
+    refit = f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice"
+    return [coefficient_of(model, i, citation, estimator=model.one_size(i) or refit) for i in range(len(model.symbols))]
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -219,21 +197,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     settings |= {c: short for c, _, short in found}
     models = [model for _, model, _ in found if model is not None]
     coefficients = [c for m in models for c in _coefficients(m, first.source.citation)]
-    return FitResult(
-        fit="sparse",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(
-            tuple(coefficients),
-            _covariance(models, coefficients),
-            scaling,
-            first.reference_point,
-            first.datum,
-            first.body,
-        ),
-        sweeps=(),
-        citations=citations,
-        settings=settings,
-        models=tuple(models),
-        findings=few,
-    )
+    return result_of(
+        "sparse", first, scaling, coefficients, independent([m.covariance for m in models]), citations=citations,
+        settings=settings, models=tuple(models), findings=few,
+    )  # fmt: skip

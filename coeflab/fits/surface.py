@@ -15,13 +15,12 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
-from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
 from coeflab.law.terms import Term, power_terms
@@ -267,24 +266,22 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
     first = tables[0]
+    settings = {
+        "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
+        "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
+        **sweeps.area_settings(area),
+    }  # fmt: skip
     models, few = each_with_rows(
         tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said), first.campaign
     )  # fmt: skip
-    return FitResult(
-        fit="surface",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
+    return result_of(
+        "surface",
+        first,
+        scaling,
+        (),
+        np.zeros((0, 0)),
         citations=citations,
-        settings={
-            "variables": " ".join(chosen.variables),
-            "degree": str(chosen.degree),
-            "form": chosen.form,
-            "parity": " ".join(chosen.parity) or "port-starboard symmetry",
-            "extrapolation": chosen.extrapolation,
-            **sweeps.area_settings(area),
-        },
+        settings=settings,
         models=models,
         findings=few,
     )

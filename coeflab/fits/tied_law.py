@@ -29,7 +29,7 @@ from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
 from coeflab.fits import FITS
-from coeflab.fits.results.fit_result import FitResult, Sweep, Tied
+from coeflab.fits.results.fit_result import FitResult, Sweep, Tied, independent, result_of
 from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.fits.statistics.linear_model import fit_linear
@@ -435,28 +435,13 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
             blocks.append(block)
             moves.append(moved)
     sensitivity = np.vstack(moves) if moves else np.zeros((0, len(among.coefficients)))
-    covariance = sensitivity @ np.nan_to_num(among.covariance) @ sensitivity.T
-    at = 0
-    for block in blocks:
-        covariance[at : at + len(block), at : at + len(block)] += block
-        at += len(block)
-    for i, c in enumerate(every):
-        if c.u95 is None:
-            covariance[i, :] = covariance[:, i] = np.nan
-        else:
-            covariance[i, i] = (c.u95 / 2.0) ** 2
-    first = tables[0]
-    return FitResult(
-        fit="tied_law",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(tuple(every), covariance, scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
-        citations=citations,
-        settings={"at_rest": chosen.at_rest},
-        tied=Tied(found.fit, tuple(c.symbol for c in among.coefficients), sensitivity, tuple(rest)),
+    covariance = sensitivity @ np.nan_to_num(among.covariance) @ sensitivity.T + independent(blocks)
+    np.fill_diagonal(covariance, [np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in every])
+    tied = Tied(found.fit, tuple(c.symbol for c in among.coefficients), sensitivity, tuple(rest))
+    return result_of(
+        "tied_law", tables[0], scaling, every, covariance, citations=citations, settings={"at_rest": chosen.at_rest}, tied=tied,
         findings=tuple(said),
-    )
+    )  # fmt: skip
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
