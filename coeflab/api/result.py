@@ -314,6 +314,28 @@ class Result(Mapping[str, Coefficient]):
             column="symbol",
         )  # fmt: skip
 
+    def _plot_tied(self, symbol: str, ax: Axes | None) -> Axes | None:
+        """The law of a term that is tied to a slope, over the points of that slope; None of any other coefficient."""
+        from coeflab.law.terms import read_term
+        from coeflab.report.plots.slope import plot_tied
+
+        c = self[symbol]
+        tied = next((f for f in self.fits if f.tied is not None and c in f.coefficients.coefficients), None)
+        variables = set() if tied is None else {v for v, _, _ in read_term(c.symbol, "symbol").term.factors}
+        if tied is None or tied.tied is None or c.value is None or c.window is None or len(variables) != 1:
+            return None
+        (variable,) = variables
+        slopes = next(f for f in self.fits if f.fit == tied.tied.fit and f.campaign == c.campaign)
+        sweep = next(s for s in slopes.sweeps if s.component == c.symbol[0] and s.variable == variable)
+        every = (*slopes.coefficients.coefficients, *tied.coefficients.coefficients)
+        law = {
+            x.symbol: x.value for x in every
+            if x.value is not None and x.symbol[0] == c.symbol[0] and {v for v, _, _ in read_term(x.symbol, "symbol").term.factors} == variables
+        }  # fmt: skip
+        low, high = np.sin(c.window) if variable in ("v", "w") else c.window
+        rest = [v for table, term, v in tied.tied.set_up if table == sweep.table and term == f"{c.symbol[0]}0"]
+        return plot_tied(sweep, c.symbol, law, (float(low), float(high)), sum(rest), ax)
+
     def points(self, symbol: str) -> Points:
         """What a slope was fitted to, primed.
 
@@ -339,7 +361,8 @@ class Result(Mapping[str, Coefficient]):
         Parameters
         ----------
         symbol : str or sequence of str, optional
-            One symbol: the points, the curve and the slope with U95; of `laws` that law. None or several: a forest, or the one law.
+            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to; of `laws` that law.
+            None or several: a forest, or the one law.
         ax : Axes, optional
             To draw into, in the style that is set; by default that of a new figure. A colour of your own:
             ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.
@@ -374,6 +397,8 @@ class Result(Mapping[str, Coefficient]):
 
                 self[symbol]
                 return plot_model([m for f in self.fits for m in f.models], symbol, ax)
+            if (drawn := self._plot_tied(symbol, ax)) is not None:
+                return drawn
             from coeflab.report.plots.slope import plot_forms, plot_slope
 
             return (plot_forms if kind else plot_slope)(self._sweep(symbol), ax)

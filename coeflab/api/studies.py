@@ -90,6 +90,33 @@ class Study(plain.Study):
         write_all(file.parent, {file.name if name == own else name: content for name, content in result.items()})
         return file
 
+    def figures(self, folder: str | Path, *, full: bool = False, style: str | Path | None = None) -> tuple[Path, ...]:
+        """Write every figure of the report as SVG, PDF and PNG, and its numbers as CSV.
+
+        Parameters
+        ----------
+        folder : str or Path
+            To write into; made where it is not there.
+        full : bool
+            Those of the appendix too.
+        style : str or Path, optional
+            A style of Matplotlib, or its name.
+
+        Returns
+        -------
+        tuple of Path
+            Of the files, sorted.
+
+        Raises
+        ------
+        InputError
+            No such style.
+        """
+        _, drawn, _ = report_files(self, ["figures"], full=full, style=style)
+        content = {Path(name).name: file for name, file in drawn.items()}
+        write_all(Path(folder), content)
+        return tuple(Path(folder) / name for name in sorted(content))
+
     def plot(self, symbol: str | None = None, ax: Axes | None = None) -> Axes:
         """A slope, or without a symbol every coefficient; see `Result.plot`."""
         return self.result.plot(symbol, ax)

@@ -322,7 +322,8 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
         not median["speed"]
         and (u := next((c for c in columns if c.said.name == "u" and not c.said.primed), None)) is not None
     ):
-        median["speed"] = f"{float(np.nanmedian(np.abs(u.values))):.12g}" if np.any(u.values) else ""
+        half = float(np.nanmedian(np.abs(u.values))) if np.any(u.values) else 0.0
+        median["speed"] = f"{half:.12g}" if half else ""  # most rows of one velocity at a time stand still along x
     for role, asks, choices, cancels in (
         ("density", "Density of the water, kg/m^3", "kg/m^3: 998.2 fresh, 1025 sea", "1000" if pure else ""),
         ("speed", "Speed, m/s", "m/s", "1" if pure and plain else ""),

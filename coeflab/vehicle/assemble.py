@@ -7,7 +7,7 @@ From fitted models to those of a parameter file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
@@ -297,6 +298,19 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
     return mass.moved(shift), [f"mass properties moved by {shift[0]:+.6g} m along x to the reference point"]
 
 
+def _unequipped(body: Body | None, name: str) -> Iterator[Finding]:
+    """That masses, thrusters and controls of a body are left out, as the file is of none of its configurations."""
+    if body is None or body.configuration(name) is not None:
+        return
+    what = [f"{len(found)} {word}{'s' * (len(found) > 1)}" for word, found in (("thruster", body.thrusters), ("control", body.controls)) if found]
+    if what := ["mass"] * any(c.mass is not None for c in body.configurations) + what:
+        known = tuple(dict.fromkeys((*([body.name] if body.mass_model is not None else []), *(c.name for c in body.configurations))))
+        yield Finding.of(
+            "parameter_file.unequipped", name, Severity.WARN, advice=f'campaign.body = "{known[0]}"', body=body.name, lacks=tuple(what),
+            configurations=known,
+        )  # fmt: skip
+
+
 def assemble(
     group: PlannedParameterFile,
     study: str,
@@ -416,6 +430,7 @@ def assemble(
                     *(() if found is None else found.findings),
                     *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),
+                    *_unequipped(body, group.body),
                 ]
             )
         ),

@@ -37,7 +37,12 @@ def command(
     shift: str = typer.Option(
         "0", "--shift", metavar="LENGTH", help="Of it in the dive, ahead; the climb is the opposite."
     ),
-    lasts: str = typer.Option("600", "--lasts", metavar="TIME", help="Of dive and climb each; bare in s."),
+    lasts: str = typer.Option(
+        "600", "--lasts", metavar="TIME", help="Of dive and climb each, with --depth the longest; bare in s."
+    ),
+    depth: str = typer.Option(
+        "", "--depth", metavar="LENGTH", help="At which the dive ends; the climb ends at the surface. Bare in m."
+    ),
     pitch_damping: str = typer.Option(
         "", "--pitch-damping", metavar="VALUE", help="N m/(m/s rad/s); estimated from the shape unless given."
     ),
@@ -79,6 +84,7 @@ def command(
         for option, text, dimension in (
             ("--engine", engine, "mass"), ("--net-mass", net_mass, "mass"), ("--travel", travel, "length"), ("--shift", shift, "length"),
             ("--lasts", lasts, "time"), ("--engine-at", engine_at or "0", "length"), ("--pitch-damping", pitch_damping or "0", "none"),
+            ("--depth", depth or "0", "length"),
         )
     }  # fmt: skip
     hull = cf.read_body(body)
@@ -86,6 +92,7 @@ def command(
     ordered = Ordered(
         numbers["--engine"], numbers["--engine-at"] if engine_at else None, sliding, numbers["--travel"], numbers["--net-mass"],
         numbers["--shift"], numbers["--lasts"], numbers["--pitch-damping"] if pitch_damping else _estimated(hull, density), not munk,
+        not pitch_damping, numbers["--depth"] if depth else None,
     )  # fmt: skip
     made = glider_of(stem(hull.name), cf.read_table(campaign), hull, hull.added_mass(method, density), ordered)
     written = {} if out is None else write_all(out, {f"{made.name}.glider.toml": made.file()})

@@ -1,0 +1,61 @@
+"""Tables as people have them of a craft without a bow, and of coefficients over two angles: numbers by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import coeflab as cf
+from coeflab.core.errors import InputError
+
+AT = {"frame": "FRD", "about": "midship", "density": 1000, "length": 0.5, "contains_inertia": False, "arm_point": "reference point"}
+A, B = (0.3, 0.2, 0.1), (12.0, 9.0, 0.2)
+
+
+def one_at_a_time() -> dict[str, Any]:
+    """u, v and r, each alone, with a row at rest each."""
+    each = np.linspace(-1.0, 1.0, 9)
+    v = np.zeros((27, 3))
+    for i in range(3):
+        v[9 * i : 9 * i + 9, i] = each
+    f = -(np.array(A) + np.array(B) * np.abs(v)) * v
+    motion = dict(zip(("u [m/s]", "v [m/s]", "r [rad/s]"), v.T, strict=True))
+    return motion | dict(zip(("X [N]", "Y [N]", "N [N m]"), f.T, strict=True))
+
+
+def test_rows_that_stand_still_are_primed_by_the_speed_that_is_said() -> None:
+    with pytest.raises(InputError, match="speed"):
+        cf.read_table(one_at_a_time(), **AT)
+    table = cf.read_table(one_at_a_time(), speed=0.9, **AT)
+    u, v = table.motion["u"], table.motion["v"]
+    np.testing.assert_allclose(table.speed, np.where(u + v == 0.0, 0.9, np.hypot(u, v)))
+    (found,) = (f for f in table.findings if f.code == "assumed.on_the_spot")
+    assert (found["rows"], found.statistic) == (11, 0.9)
+    result = cf.fit(table, "linear_quadratic_damping")
+    for symbol, a, b in (("Xu", *_of(0)), ("Yv", *_of(1)), ("Nr", *_of(2))):
+        unit = table.scaling.unit(symbol, 1000.0, 0.9)
+        square = f"{symbol}|{symbol[1]}|"
+        assert result[symbol].value * unit == pytest.approx(-a, rel=1e-6)
+        assert result[square].value * table.scaling.unit(square, 1000.0, 0.9) == pytest.approx(-b, rel=1e-6)
+
+
+def _of(i: int) -> tuple[float, float]:
+    return A[i], B[i]
+
+
+@pytest.mark.parametrize("said", ["side", "side [coefficient]"])
+def test_coefficients_take_the_area_that_all_share(said: str) -> None:
+    beta = np.radians(np.arange(-20.0, 21.0, 4.0))
+    drag, side, yaw = 0.4 + beta**2, -2.0 * beta, 0.5 * beta
+    table = {"beta [deg]": np.degrees(beta), "C_D [-]": drag, "C_S [-]": side, "C_n [-]": yaw}
+    at = {"frame": "FRD", "about": "midship", "density": 1010, "speed": 1.5, "beta": "+", "length": "1.4 m hull"}
+    found = cf.read_table(table, columns={"C_S": said, "C_D": "drag", "C_n": "N"}, area="0.03 m^2", **at)
+    q = 0.5 * 1010 * 1.5**2 * 0.03
+    np.testing.assert_allclose(found.forces["Y"], q * (side * np.cos(beta) - drag * np.sin(beta)), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found.forces["N"], q * 1.4 * yaw, rtol=1e-9, atol=1e-9)
+    primed = cf.read_table(table, columns={"C_S": said, "C_D": "drag", "C_n": "N"}, area="prime", **at)
+    np.testing.assert_allclose(primed.forces["N"], 0.5 * 1010 * 1.5**2 * 1.4**3 * yaw, rtol=1e-9, atol=1e-9)
+    with pytest.raises(InputError, match="area"):
+        cf.read_table(table, columns={"C_S": said}, **at)
