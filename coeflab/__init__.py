@@ -210,7 +210,10 @@ def __getattr__(name: str) -> Any:
         return getattr(import_module(f"coeflab.{home}"), name)
     if name in _HOME:
         return getattr(import_module(f"coeflab.{_HOME[name]}"), name)
-    raise AttributeError(f"module 'coeflab' has no attribute {name!r}")
+    near = "" if name.startswith("_") else import_module("coeflab.core.missed").nearest(name, __all__, verbs=True)
+    raise AttributeError(
+        f"module 'coeflab' has no attribute {name!r}{f'. Did you mean coeflab.{near}?' if near else ''}"
+    )
 
 
 def __dir__() -> list[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
 from coeflab.core.texts import remark
@@ -54,6 +55,7 @@ class Points(NamedTuple):
     labels: tuple[str, ...]
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Result(Mapping[str, Coefficient]):
     """Coefficients by symbol: ``result["Yv'"].value``, ``.u95``, ``.status``.
@@ -292,7 +294,7 @@ class Result(Mapping[str, Coefficient]):
                 comparisons=(), parameter_files={}, inputs=(),
             )  # fmt: skip
             self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
-        return self._found[0]
+        return tuple(c.spoken() for c in self._found[0])
 
     def _straight(self, symbol: str) -> StraightRuns | None:
         """Runs at several speeds that give X0', where no sweep does."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from coeflab.api.result import Result
 from coeflab.api.vehicle import Vehicle
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
+from coeflab.core.missed import suggesting
 from coeflab.study import study as plain
 from coeflab.study.run import run as carried_out
 from coeflab.study.study import Plan
@@ -26,6 +27,7 @@ __all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Study(plain.Study):
     """Everything that a plan gives: tables, fits, comparisons, parameter files, checks; see `coeflab.run`.
@@ -213,4 +215,5 @@ def run(plan: Plan | str | Path, progress: Callable[[str], None] = lambda _: Non
     True
     """
     found = carried_out(plan, progress)
+    found = replace(found, checks=tuple(c.spoken() for c in found.checks))
     return Study(**{f.name: getattr(found, f.name) for f in fields(plain.Study)})

@@ -22,7 +22,9 @@ from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model
 from coeflab.bodies import body as plain
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
+from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import fits_about
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Vehicle:
     """What a simulator needs of a vehicle: coefficients with covariance, mass, added mass, thrusters, controls.
@@ -94,7 +97,7 @@ class Vehicle:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader has to know, in words."""
-        return self.file.remarks
+        return all_spoken(self.file.remarks)
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value and u95 primed, value_si with its unit, status, origin.
@@ -232,7 +235,7 @@ class Vehicle:
         >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
         True
         """
-        return tuple(plausibility(self.file))
+        return tuple(c.spoken() for c in plausibility(self.file))
 
     def simulate(self, manoeuvre: str, **options: Any) -> Motion:
         """A manoeuvre; see `coeflab.simulate`."""

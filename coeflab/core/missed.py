@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any, TypeVar
 
@@ -15,7 +16,8 @@ ELSEWHERE = {
     "figures": "figure",
     "figures(folder)": "savefigure savefig figuresto",
     "simulation.figures": "figure metric overshoot",
-    "plot()": "draw show fig figure ax picture plotfit plottrack view sketch",
+    "point": "solution equilibrium operatingpoint",
+    "plot()": "curve draw show fig figure ax picture plotfit plottrack view sketch",
     "report(path)": "html tohtml write writereport save pdf topdf document",
     "save(path)": "write tojson json dump tofile store saveas topath savefile",
     "file.to_json()": "tojson json dumps asjson",
@@ -73,13 +75,39 @@ ELSEWHERE = {
     "run(folder)": "start execute launch submit go",
     "figure_table()": "table",
 }  # fmt: skip
-_OF: dict[str, list[str]] = {}
-for _here, _words in ELSEWHERE.items():
-    for _word in _words.split():
-        _OF.setdefault(_word, []).append(_here)
+VERBS = {
+    "read_table": "load loadtable open opentable readcsv loadcsv readexcel readdata loaddata fromdataframe fromdict importtable import data forcetable",
+    "read_body": "loadbody readmesh loadmesh readstl mesh hull shape",
+    "read_body(...).added_mass()": "addedmass computeaddedmass massmatrix",
+    "read_vehicle": "loadvehicle readparameters loadparameters parameters auv readparameterfile",
+    "fit": "fittable regress regression curvefit slope derivative coefficient solve",
+    "vehicle": "makevehicle createvehicle buildvehicle newvehicle merge",
+    "simulate": "simulation sim manoeuvre maneuver zigzag turningcircle move",
+    "export": "write save toxdyn dump",
+    "compare": "diff comparison",
+    "trim": "equilibrium operatingpoint steady steadystate",
+    "read_vehicle(...).linear()": "linear linearize linearise statespace",
+    "run": "study runplan plan runstudy report",
+    "fit(...).plot()": "plot draw figure",
+    "next_tests": "design plantests nexttest doe next",
+    "shipped_names": "list names available examples datasets",
+    "validation": "validate validations",
+    "tow": "tank towtank cfd openfoam",
+}  # fmt: skip
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def _by_word(words: Mapping[str, str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for here, elsewhere in words.items():
+        for word in elsewhere.split():
+            found.setdefault(word, []).append(here)
+    return found
+
+
+_OF_NOUNS, _OF_VERBS = _by_word(ELSEWHERE), _by_word(VERBS)
+
+
+def nearest(name: str, known: Iterable[str], verbs: bool = False) -> str:
     """What to type in the place of a name that there is not; empty where nothing is near.
 
     Parameters
@@ -87,19 +115,21 @@ def nearest(name: str, known: Iterable[str]) -> str:
     name : str
     known : iterable of str
         Names that there are; ``[]`` where items are taken.
+    verbs : bool
+        Of the package, not of a noun.
 
     Examples
     --------
     >>> nearest("to_dataframe", ("frame", "plot")), nearest("plots", ("frame", "plot")), nearest("cov", ("frame",))
     ('frame()', 'plot', '')
     """
-    names = [n for n in known if not n.startswith("_")]
+    names = {n for n in known if not n.startswith("_")}
     folded = name.casefold().replace("_", "")
     for word in (folded, folded.removesuffix("s"), folded.removesuffix("es")):
-        for here in _OF.get(word, ()):
-            if (here[0] == "[" and "[]" in names) or here.partition(".")[0].partition("(")[0].partition("[")[0] in names:
+        for here in (_OF_VERBS if verbs else _OF_NOUNS).get(word, ()):
+            if ("[]" if here[0] == "[" else re.split(r"\W", here)[0]) in names:
                 return here
-    near = get_close_matches(name, names, 1, 0.6)
+    near = get_close_matches(name, sorted(names), 1, 0.6)
     return near[0] if near else ""
 
 
@@ -118,4 +148,6 @@ def _missed(noun: object, name: str) -> Any:
     near = nearest(name, [*dir(kind), *(["[]"] if hasattr(kind, "__getitem__") else [])])
     meant = f" Did you mean {'' if near[:1] == '[' else '.'}{near}?" if near else ""
     every = ", ".join(n for n in dir(kind) if not n.startswith("_"))
-    raise AttributeError(f"{kind.__name__!r} has no {name!r}.{meant}" if meant else f"{kind.__name__!r} has no {name!r}; it has {every}")
+    raise AttributeError(
+        f"{kind.__name__!r} has no {name!r}.{meant}" if meant else f"{kind.__name__!r} has no {name!r}; it has {every}"
+    )

@@ -136,7 +136,10 @@ def glider_of(name: str, table: ForceTable, body: Body, added: AddedMass, ordere
     place = 0.0 if slides is None else float(slides.centre[0] - middle[0])
     phases = tuple(
         GliderPhase(called, way * ordered.net_mass, place + way * ordered.shift, lasts=ordered.lasts, until_depth=until)
-        for called, way, until in (("dive", 1.0, ordered.depth), ("climb", -1.0, None if ordered.depth is None else 0.0))
+        for called, way, until in (
+            ("dive", 1.0, ordered.depth),
+            ("climb", -1.0, None if ordered.depth is None else 0.0),
+        )
     )
     engine_at = 0.0 if ordered.engine_at is None else ordered.engine_at - float(middle[0])
     return Glider(

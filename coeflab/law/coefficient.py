@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.missed import suggesting
 from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, RefusedError, stored
 from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import Array, in_angles, locked
@@ -92,6 +93,7 @@ class Parts:
 WITHOUT_VALUE = (Status.NO_TABLE, Status.TOO_FEW_POINTS, Status.NOT_DETERMINED)
 
 
+@suggesting
 @stored(
     "symbol value u95 unit value_si unit_si status origin parts table? campaign? estimator? window? n_points? citation? law? "
     "potential?"

@@ -137,14 +137,11 @@ def interpreted(
         Columns whose sign a person has settled, by default all of ``said``.
     """
     in_frame = frame_of(_with_frame(raw, settings))
-    known = {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}
-    offers = proposals(raw, known, in_frame)
     cut = _cut_of(settings)
-    offers = tuple(_of_half(one, cut, in_frame) for one in offers) if cut else offers
+    offers = _offers(raw, said, settings, in_frame, cut)
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()
-    offers = tuple(_of_open_sizes(c, o, said, known) for c, o in zip(raw.columns, offers, strict=True))
     for column, offer in zip(raw.columns, offers, strict=True):
         one = _said_of(column, said)
         if one is not None and lacks_sizes(column, one):
@@ -315,12 +312,23 @@ def _said_of(column: RawColumn, said: Mapping[str, ColumnMap]) -> ColumnMap | No
     return next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
 
 
-def _of_open_sizes(
-    column: RawColumn, offer: Proposal, said: Mapping[str, ColumnMap], known: Mapping[str, object]
-) -> Proposal:
-    """The offer, or, where a person called the column a coefficient without its area, that by the area that all share."""
-    one = _said_of(column, said)
-    return offer if one is None or not lacks_sizes(column, one) else coefficient_as_said(one, known)
+def _offers(
+    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, frame: Axes | None, cut: Cut | None
+) -> tuple[Proposal, ...]:
+    """What every column may be; where a person called one a coefficient without its area, that by the area that all share."""
+    known = {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}
+    out = []
+    for column, offer in zip(raw.columns, proposals(raw, known, frame), strict=True):
+        one = _said_of(column, said)
+        lacks = one is not None and lacks_sizes(column, one)
+        out.append(
+            coefficient_as_said(one, known)
+            if one is not None and lacks
+            else _of_half(offer, cut, frame)
+            if cut
+            else offer
+        )
+    return tuple(out)
 
 
 def _in_vain(

@@ -292,7 +292,9 @@ def _assumed(
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
     still = np.all([columns.velocity.get(c, 0.0) == np.zeros(len(columns)) for c in LINEAR], axis=0)
     if "U" not in columns.headers and surge_column(campaign) in columns.velocity and np.any(still):
-        yield Finding.of("assumed.on_the_spot", name, Severity.NOTE, statistic=campaign.conditions.speed, rows=int(still.sum()))
+        yield Finding.of(
+            "assumed.on_the_spot", name, Severity.NOTE, statistic=campaign.conditions.speed, rows=int(still.sum())
+        )
 
 
 def _place(point: Array) -> str:

@@ -302,9 +302,17 @@ def _unequipped(body: Body | None, name: str) -> Iterator[Finding]:
     """That masses, thrusters and controls of a body are left out, as the file is of none of its configurations."""
     if body is None or body.configuration(name) is not None:
         return
-    what = [f"{len(found)} {word}{'s' * (len(found) > 1)}" for word, found in (("thruster", body.thrusters), ("control", body.controls)) if found]
+    what = [
+        f"{len(found)} {word}{'s' * (len(found) > 1)}"
+        for word, found in (("thruster", body.thrusters), ("control", body.controls))
+        if found
+    ]
     if what := ["mass"] * any(c.mass is not None for c in body.configurations) + what:
-        known = tuple(dict.fromkeys((*([body.name] if body.mass_model is not None else []), *(c.name for c in body.configurations))))
+        known = tuple(
+            dict.fromkeys(
+                (*([body.name] if body.mass_model is not None else []), *(c.name for c in body.configurations))
+            )
+        )
         yield Finding.of(
             "parameter_file.unequipped", name, Severity.WARN, advice=f'campaign.body = "{known[0]}"', body=body.name, lacks=tuple(what),
             configurations=known,

@@ -126,4 +126,6 @@ def test_a_tachometer_at_rest_turns_no_rotor_astern(tmp_path: Path, air: Paramet
     found = bench_test([path], air, "rotor1")
     assert found.command == pytest.approx((0.0, *LEVELS), abs=1e-6)
     curve = next(t for t in with_curves(air, found).thrusters if t.name == "rotor1").curve
-    assert [(s.low, *s.coefficients) for s in curve.segments] == [pytest.approx((0.0, 0.0, *THRUST), rel=1e-3, abs=1e-9)]
+    assert [(s.low, *s.coefficients) for s in curve.segments] == [
+        pytest.approx((0.0, 0.0, *THRUST), rel=1e-3, abs=1e-9)
+    ]

@@ -10,7 +10,14 @@ import pytest
 import coeflab as cf
 from coeflab.core.errors import InputError
 
-AT = {"frame": "FRD", "about": "midship", "density": 1000, "length": 0.5, "contains_inertia": False, "arm_point": "reference point"}
+AT = {
+    "frame": "FRD",
+    "about": "midship",
+    "density": 1000,
+    "length": 0.5,
+    "contains_inertia": False,
+    "arm_point": "reference point",
+}
 A, B = (0.3, 0.2, 0.1), (12.0, 9.0, 0.2)
 
 

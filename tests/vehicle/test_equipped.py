@@ -95,8 +95,17 @@ def test_masses_and_thrusters_of_a_plans_body(tmp_path: Path, of: str) -> None:
         assert [(f["lacks"], f.advice) for f in left_out] == [(("mass", "1 thruster"), 'campaign.body = "petrel"')]
         return
     assert left_out == []
-    assert file.mass is not None and file.hydrostatics is not None
-    assert (file.mass.mass, tuple(file.mass.centre), file.hydrostatics.volume) == (3.1, (0.0, 0.0, 0.012), pytest.approx(0.003))
+    assert file.mass is not None
+    assert file.hydrostatics is not None
+    assert (file.mass.mass, tuple(file.mass.centre), file.hydrostatics.volume) == (
+        3.1,
+        (0.0, 0.0, 0.012),
+        pytest.approx(0.003),
+    )
     (rotor,) = file.thrusters
-    assert (rotor.position, rotor.direction, rotor.tilt_axis) == ((0.21, 0.19, -0.04), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+    assert (rotor.position, rotor.direction, rotor.tilt_axis) == (
+        (0.21, 0.19, -0.04),
+        (0.0, 0.0, -1.0),
+        (0.0, 1.0, 0.0),
+    )
     assert rotor.curve.segments[-1].coefficients[-1] == pytest.approx(9.0 / 3000.0**2)

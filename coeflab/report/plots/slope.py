@@ -37,7 +37,12 @@ FINE = 121
 
 
 def plot_tied(
-    sweep: Sweep, symbol: str, law: Mapping[str, float], window: tuple[float, float], at_rest: float, ax: Axes | None = None
+    sweep: Sweep,
+    symbol: str,
+    law: Mapping[str, float],
+    window: tuple[float, float],
+    at_rest: float,
+    ax: Axes | None = None,
 ) -> Axes:
     """The points of a sweep and the force law over the range that it was fitted to.
 
@@ -59,7 +64,9 @@ def plot_tied(
     columns = {sweep.variable: x}
     y = at_rest + sum(value * read_term(s, symbol).term.evaluate(columns) for s, value in law.items())
     handles = draw_points(axes, sweep, palette=colours)
-    drawn = axes.plot(on_axis(sweep, x), y, color=colours["b"], linewidth=1.4, label=" + ".join(map(primed, law)), zorder=2.5)
+    drawn = axes.plot(
+        on_axis(sweep, x), y, color=colours["b"], linewidth=1.4, label=" + ".join(map(primed, law)), zorder=2.5
+    )
     axes.set_xlabel(axis_name(sweep).replace("  ", " "))
     axes.set_ylabel(f"{sweep.component}'")
     axes.set_title(f"{primed(symbol)}, {sweep.campaign}")
