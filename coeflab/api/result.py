@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.missed import suggesting
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
@@ -91,7 +92,21 @@ class Result(Mapping[str, Coefficient]):
         return "".join(html_by("fit", f) for f in self.fits)
 
     def _all(self) -> list[Coefficient]:
-        return [c for f in self.fits for c in f.coefficients.coefficients]
+        every = [c for f in self.fits for c in f.coefficients.coefficients]
+        return [every[i] for i in self._rows()]
+
+    def _rows(self) -> list[int]:
+        """Places among all coefficients of those that stand in the result: without a value none that another campaign gives."""
+        every = [c for f in self.fits for c in f.coefficients.coefficients]
+        valued = {c.symbol for c in every if c.value is not None}
+        return [i for i, c in enumerate(every) if c.value is not None or c.symbol not in valued]
+
+    def _given_elsewhere(self) -> Iterator[Finding]:
+        """Which campaign has no value of what another one gives."""
+        shown_here = {id(c) for c in self._all()}
+        for f in self.fits:
+            if lacks := [primed(c.symbol) for c in f.coefficients.coefficients if id(c) not in shown_here]:
+                yield Finding.of("sweep.given_elsewhere", f.campaign, Severity.NOTE, symbols=lacks)
 
     def __getitem__(self, symbol: str) -> Coefficient:
         """A coefficient by its symbol, with or without prime.
@@ -183,7 +198,8 @@ class Result(Mapping[str, Coefficient]):
         >>> round(float(2.0 * result.covariance[i, i] ** 0.5 / result["Yv'"].u95), 6)
         1.0
         """
-        return covariance_of(self.fits)
+        rows = self._rows()
+        return np.asarray(covariance_of(self.fits)[np.ix_(rows, rows)])
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value. Of laws alone a row a term.
@@ -234,11 +250,17 @@ class Result(Mapping[str, Coefficient]):
                 for s, v, u in zip(law.model.symbols, law.frame()["value"], law.frame()["u95"], strict=True)
             ]
         names = ", ".join(dict.fromkeys(f.campaign for f in self.fits))
+        headers: tuple[str, ...] = ("", "value", "U95", "U95 %", "points", "status")
+        if len(set(self.symbols)) < len(self.symbols):
+            headers, rows = (
+                (*headers, "campaign"),
+                [(*row, c.campaign) for row, c in zip(rows, self._all(), strict=True)],
+            )
         by = self.fits[0].coefficients.scaling
         return Shown(
-            f"{names}, primed by {by.length_name} {by.length:.5g} m", ("", "value", "U95", "U95 %", "points", "status"), tuple(rows),
-            tuple(remark(f) for f in dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING)),
-            left=frozenset({0, 5}),
+            f"{names}, primed by {by.length_name} {by.length:.5g} m", headers, tuple(rows),
+            tuple(map(remark, [*dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING), *self._given_elsewhere()])),
+            left=frozenset({0, 5, 6}),
         )  # fmt: skip
 
     def samples(self, n: int, seed: int = 1) -> pd.DataFrame:
