@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -66,3 +67,21 @@ def test_coefficients_take_the_area_that_all_share(said: str) -> None:
     np.testing.assert_allclose(primed.forces["N"], 0.5 * 1010 * 1.5**2 * 1.4**3 * yaw, rtol=1e-9, atol=1e-9)
     with pytest.raises(InputError, match="area"):
         cf.read_table(table, columns={"C_S": said}, **at)
+
+
+@pytest.mark.parametrize("length", [1900, "1900", "1900 LOA", 0.004])
+def test_a_bare_length_of_no_hull_is_asked_back(length: Any, tmp_path: Path) -> None:
+    """mm without their unit: primes of forces would be 1e6 too small. With its unit it counts."""
+    table = {"v [m/s]": np.linspace(-0.3, 0.3, 5), "Y [N]": np.linspace(30.0, -30.0, 5)}
+    at = {"frame": "FRD", "about": "midship", "density": 1000, "speed": 2.0}
+    with pytest.raises(InputError, match=r'Then write "(1900 mm|0.004 km)"; if not, "(1900|0.004) m"'):
+        cf.read_table(table, length=length, **at)
+    assert cf.read_table(table, length="1900 mm LOA", **at).scaling.length == pytest.approx(1.9)
+    assert cf.read_table(table, length="1900 m LOA", **at).scaling.length == 1900.0
+    with pytest.raises(InputError, match="without a unit"):
+        cf.fit(cf.read_table(table, length=1.9, **at), length=float(str(length).split()[0]), length_name="LOA")
+    (tmp_path / "plan.toml").write_text(
+        f'[study]\nname = "a"\n[scaling]\nlength = {str(length).split()[0]}\nlength_name = "L"\n[[table]]\ncampaign = "suboff_roddy_2"\n'
+    )
+    with pytest.raises(InputError, match=r"line 4.*without a unit"):
+        cf.read_plan(tmp_path / "plan.toml")
