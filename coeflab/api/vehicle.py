@@ -20,6 +20,7 @@ from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.keywords import all_spoken
@@ -399,7 +400,7 @@ def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:
 
 def _of_datum(hull: Body, result: Result) -> Body:
     """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
-    datum = result.fits[0].coefficients.datum.id
+    datum = next((f.coefficients.datum.id for f in result.fits if f.coefficients.datum != ANYWHERE), hull.datum.id)
     bare = hull.datum.id.startswith("origin of ") and hull.datum.id != datum
     return hull.counted_from(datum) if bare else hull
 
@@ -407,9 +408,13 @@ def _of_datum(hull: Body, result: Result) -> Body:
 def _fitted_file(result: Result, base: ParameterFile, hull: Body) -> ParameterFile:
     """The parameter file of fits alone, primed and about the point of the vehicle, to which each helps the others."""
     point = np.array(base.reference_point.point)
-    fits = [replace(f, coefficients=replace(f.coefficients, body=hull.name), body=hull.name) for f in result.fits]
+    at = (hull.datum, point)
+    fits = [
+        replace(f, coefficients=replace(f.coefficients, body=hull.name).counted_from(*at), body=hull.name)
+        for f in result.fits
+    ]
     fits = list(fits_about(fits, point, base.scaling))
-    tables = [replace(t, body=hull.name).about(point) for t in result.tables]
+    tables = [replace(t, body=hull.name).counted_from(*at).about(point) for t in result.tables]
     inputs = tuple(dict.fromkeys(f for t in result.tables for f in t.files))
     group = PlannedParameterFile(stem(hull.name), hull.name, tuple(f.campaign for f in fits), ())
     return assemble(group, base.name, fits, tables, [], (), None, base.conditions, inputs)

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Datum
+from coeflab.core.axes import ANYWHERE, Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.missed import suggesting
@@ -282,6 +282,10 @@ class CoefficientSet:
     def _repr_html_(self) -> str:
         """Values and intervals, for notebooks."""
         return html_by("coefficients", self)
+
+    def counted_from(self, datum: Datum, point: Array) -> CoefficientSet:
+        """The set about a point, where its numbers hold about every point; else as it is."""
+        return replace(self, datum=datum, reference_point=point) if self.datum == ANYWHERE else self
 
     def __getitem__(self, symbol: str) -> Coefficient:
         name = symbol.removesuffix("'")

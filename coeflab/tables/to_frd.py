@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Axes, angle_sign
+from coeflab.core.axes import ANYWHERE, Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
-from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.assumptions import assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
@@ -312,6 +312,12 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             f"again with --option density={declared:g}.",
         )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
+    turns = [*(c for c in MOMENTS if c in columns.forces), *rates, *["R"] * (columns.radius is not None)]
+    if campaign.datum == ANYWHERE and turns:
+        yield InputError(
+            f"datum = {shown(ANYWHERE.id)} with {', '.join(turns)}", "the point of the body that places count from",
+            file=campaign.path, key="axes.datum", advice="Moments and rates are other numbers about every point.",
+        )  # fmt: skip
     if columns.radius is not None:
         if rates:
             yield columns.fail(

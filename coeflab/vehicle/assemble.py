@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import brief
@@ -361,8 +362,16 @@ def assemble(
         raise InputError(
             "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
         )
+    first = next((f.coefficients for f in chosen if f.coefficients.datum != ANYWHERE), chosen[0].coefficients)
+    if body is not None:
+        first = first.counted_from(body.datum, body.reference_point)
+    at = (first.datum, first.reference_point)
+    chosen = [
+        f if f.coefficients.datum != ANYWHERE else replace(f, coefficients=f.coefficients.counted_from(*at))
+        for f in chosen
+    ]
+    tables = [t.counted_from(*at) for t in tables]
     sets = [f.coefficients for f in chosen]
-    first = sets[0]
     for s, f in zip(sets, chosen, strict=True):
         first.scaling.require(s.scaling)
         if f.body != group.body:

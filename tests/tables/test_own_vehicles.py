@@ -85,3 +85,26 @@ def test_a_bare_length_of_no_hull_is_asked_back(length: Any, tmp_path: Path) -> 
     )
     with pytest.raises(InputError, match=r"line 4.*without a unit"):
         cf.read_plan(tmp_path / "plan.toml")
+
+
+def test_forces_alone_need_no_point() -> None:
+    """A drift test of forces without moments and rates holds about every point: nobody is asked, and others give the point."""
+    beta, rate = np.radians(np.arange(-12.0, 13.0, 3.0)), np.linspace(-0.3, 0.3, 9)
+    at = {"frame": "FRD", "length": 2.0, "density": 1000, "speed": 2.0}
+    drift = cf.read_table(
+        {"beta [deg]": np.degrees(beta), "Y [N]": -480.0 * np.sin(beta)}, name="drift", beta="+", **at
+    )
+    assert (drift.datum.id, drift.reference_point.tolist()) == ("anywhere", [0.0, 0.0, 0.0])
+    assert cf.fit(drift)["Yv'"].value == pytest.approx(-480.0 / 8000.0)
+    for more in ({"N [N m]": beta}, {"r [rad/s]": beta}):
+        with pytest.raises(InputError, match="about"):
+            cf.read_table({"beta [deg]": np.degrees(beta), "Y [N]": beta} | more, beta="+", **at)
+    turning = {"r [rad/s]": rate, "Y [N]": 20.0 * rate, "N [N m]": -30.0 * rate}
+    arm = cf.read_table(
+        turning, name="arm", about="nose, 1 m aft", contains_inertia=False, arm_point="reference point", **at
+    )
+    joint = cf.fit([drift, arm], terms=["Yv", "Yr", "Nr"])
+    assert joint.fits[0].coefficients.datum.id == "nose"
+    assert (joint["Yv'"].value, joint["Nr'"].value) == pytest.approx((-0.06, -30.0 / 16000.0))
+    auv = cf.vehicle("spheroid_example", mass=390, coefficients=cf.fit(drift))
+    assert auv["Yv'"].value * auv.file.scaling.length**2 == pytest.approx(-0.06 * 4.0, rel=1e-3)
