@@ -233,7 +233,7 @@ class Result(Mapping[str, Coefficient]):
         >>> print(cf.fit("suboff_roddy_2").summary())  # doctest: +ELLIPSIS
         suboff_roddy_2, primed by ...
         """
-        rows = [
+        rows: list[tuple[str, ...]] = [
             (
                 primed(c.symbol),
                 *with_u95(c.value, c.u95),
@@ -254,7 +254,7 @@ class Result(Mapping[str, Coefficient]):
         if len(set(self.symbols)) < len(self.symbols):
             headers, rows = (
                 (*headers, "campaign"),
-                [(*row, c.campaign) for row, c in zip(rows, self._all(), strict=True)],
+                [(*row, c.campaign or "") for row, c in zip(rows, self._all(), strict=True)],
             )
         by = self.fits[0].coefficients.scaling
         return Shown(
