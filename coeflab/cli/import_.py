@@ -169,7 +169,6 @@ def _first_slopes(folder: Path) -> bool:
 
     Below it what the checks find, as `coeflab fit` says it; true where one fails.
     """
-    from coeflab import Status
     from coeflab.api.campaigns import first_fit
     from coeflab.api.importing import FILE
     from coeflab.core.finding import Severity
@@ -185,12 +184,12 @@ def _first_slopes(folder: Path) -> bool:
     else:
         found = tables.coefficients_in(study, show.width())
         selected = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
-        without = Status.NOT_DETERMINED.replace("_", " ")
-        lacking = [row[0] for row in found.rows if row[1] == without] if first.by == MODEL else []
+        open_ones = {f"{c.symbol}'" for f in study.fits for c in f.coefficients.coefficients if c.value is None}
+        lacking = [row[0] for row in found.rows if row[0] in open_ones] if first.by == MODEL else []
         notes = [
             _brief(note)
             for note in found.notes
-            if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
+            if not note.startswith(("Not shown", *([f"{tables.NO_VALUE}:"] if lacking else [])))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
         notes += [

@@ -15,7 +15,9 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 def command(
     ctx: typer.Context,
     source: str = typer.Argument(
-        ..., metavar="SOURCE", help="A table or campaign, a parameter file, or a body of which nothing was run."
+        ...,
+        metavar="SOURCE",
+        help="A plan of one vehicle, a table or campaign, a parameter file, or a body of which nothing was run.",
     ),
     wanted: str = typer.Option(
         "",

@@ -28,6 +28,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
+from coeflab.vehicle.arm_curvatures import less_ideal_products
 from coeflab.vehicle.drag_reynolds import drag_elsewhere
 from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
@@ -147,7 +148,7 @@ def gathered(
             used, other = (
                 (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)
             )
-            if other is not None:
+            if other is not None and (other.value is not None or other.campaign != used.campaign):
                 given = "no value" if other.value is None else f"{other.value:.6g}"
                 notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
             if used is c:
@@ -299,6 +300,21 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
     return mass.moved(shift), [f"mass properties moved by {shift[0]:+.6g} m along x to the reference point"]
 
 
+def _from_one_datum(
+    chosen: list[FitResult], tables: Sequence[ForceTable], body: Body | None
+) -> tuple[CoefficientSet, list[FitResult], list[ForceTable]]:
+    """The set whose point counts, fits and tables, where what holds about every point is about that one."""
+    first = next((f.coefficients for f in chosen if f.coefficients.datum != ANYWHERE), chosen[0].coefficients)
+    if body is not None:
+        first = first.counted_from(body.datum, body.reference_point)
+    at = (first.datum, first.reference_point)
+    fits = [
+        f if f.coefficients.datum != ANYWHERE else replace(f, coefficients=f.coefficients.counted_from(*at))
+        for f in chosen
+    ]
+    return first, fits, [t.counted_from(*at) for t in tables]
+
+
 def _unequipped(body: Body | None, name: str) -> Iterator[Finding]:
     """That masses, thrusters and controls of a body are left out, as the file is of none of its configurations."""
     if body is None or body.configuration(name) is not None:
@@ -362,15 +378,7 @@ def assemble(
         raise InputError(
             "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
         )
-    first = next((f.coefficients for f in chosen if f.coefficients.datum != ANYWHERE), chosen[0].coefficients)
-    if body is not None:
-        first = first.counted_from(body.datum, body.reference_point)
-    at = (first.datum, first.reference_point)
-    chosen = [
-        f if f.coefficients.datum != ANYWHERE else replace(f, coefficients=f.coefficients.counted_from(*at))
-        for f in chosen
-    ]
-    tables = [t.counted_from(*at) for t in tables]
+    first, chosen, tables = _from_one_datum(chosen, tables, body)
     sets = [f.coefficients for f in chosen]
     for s, f in zip(sets, chosen, strict=True):
         first.scaling.require(s.scaling)
@@ -425,6 +433,8 @@ def assemble(
             notes.append(
                 f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
+    found_by_fits = list(dict.fromkeys(f for fit in chosen for f in fit.findings))
+    coefficients, found_by_fits = less_ideal_products(coefficients, found_by_fits, hull, first.scaling)
     result = ParameterFile(
         name=group.name,
         body=group.body,
@@ -443,7 +453,7 @@ def assemble(
         findings=tuple(
             dict.fromkeys(
                 [
-                    *(f for fit in chosen for f in fit.findings),
+                    *found_by_fits,
                     *(() if found is None else found.findings),
                     *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),

@@ -36,6 +36,7 @@ from coeflab.vehicle.imported_numbers import (
 )
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
+from coeflab.vehicle.sizes import size_findings
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -363,7 +364,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice, what the file was written with; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, sizes, points, what stands twice, what the file was written with; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -378,6 +379,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *_munk(parameters),
         *damping_findings(parameters, signs),
         *sign_findings(parameters),
+        *([] if _in_air(parameters) else size_findings(parameters)),
         *law_findings(parameters),
         *twice_findings(parameters),
         *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isinf, isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,10 @@ from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.slopes import Estimate
-from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.coefficient import Coefficient, CoefficientSet
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed
+from coeflab.tables.force_table import ForceTable
 
 DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
@@ -413,6 +416,49 @@ class FitResult:
             if s.symbol == symbol.removesuffix("'"):
                 return s
         raise KeyError(symbol)
+
+
+def result_of(
+    fit: str,
+    first: ForceTable,
+    scaling: Scaling,
+    coefficients: Sequence[Coefficient],
+    covariance: Array,
+    *,
+    conditions: Conditions | None = None,
+    **more: Any,
+) -> FitResult:
+    """Coefficients about the point of a table as the result of a fit.
+
+    Parameters
+    ----------
+    fit : str
+        Plugin name.
+    first : ForceTable
+        Campaign, body, point and datum, unless ``more`` says others.
+    scaling : Scaling
+    coefficients : sequence of Coefficient
+    covariance : (n, n) array
+        Of standard uncertainties; what has no U95 is NaN in the result.
+    conditions : Conditions, optional
+        Of coefficients in SI.
+    **more
+        Further fields of `FitResult`.
+    """
+    unknown = np.isnan(np.diag(covariance)) | np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance = np.where(unknown | unknown[:, None], np.nan, covariance)
+    own: dict[str, Any] = {"campaign": first.campaign, "body": first.body, "sweeps": (), **more}
+    held = CoefficientSet(
+        tuple(coefficients), covariance, scaling, first.reference_point, first.datum, own["body"], conditions
+    )
+    return FitResult(fit, coefficients=held, **own)
+
+
+def independent(blocks: Sequence[Array]) -> Array:
+    """The covariance of coefficients by groups that share no errors."""
+    from scipy.linalg import block_diag
+
+    return np.asarray(block_diag(*blocks)) if blocks else np.zeros((0, 0))
 
 
 def covariance_of(fits: Sequence[FitResult]) -> Array:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import combinations
 from math import isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
-from coeflab.law.coefficient import Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import half_spaces, inside
 from coeflab.law.symbols import ANGULAR, MOTIONS, PORT_STARBOARD
 from coeflab.law.terms import Term, canonical, design
@@ -321,6 +322,29 @@ class FittedModel:
         """Value and 95 % half-width of one coefficient."""
         i = self.symbols.index(symbol)
         return float(self.fit.coefficients[i]), float(self.half_width[i])
+
+
+def coefficient_of(
+    model: FittedModel, i: int, citation: str, unknown: Status = Status.NOT_DETERMINED, **more: Any
+) -> Coefficient:
+    """One coefficient of a model as `FittedModel.worth` has it, with where it comes from.
+
+    Parameters
+    ----------
+    model : FittedModel
+    i : int
+    citation : str
+    unknown : Status
+        Without a value.
+    **more
+        Of `Coefficient`, beside these or in their place.
+    """
+    u95, status, parts = model.worth(i, unknown)
+    own = {
+        "symbol": model.symbols[i], "value": model.recommended(i), "u95": u95, "status": status, "body": model.body, "parts": parts,
+        "origin": "fit", "table": model.table, "campaign": model.campaign, "n_points": model.n_points, "citation": citation,
+    }  # fmt: skip
+    return Coefficient(**{**own, **more})
 
 
 COLLINEAR = 0.98  # the half-width is five times that of either term alone: 1 / sqrt(1 - 0.98^2)

@@ -309,6 +309,15 @@ class Lumped(NamedTuple):
     names: tuple[str, ...]
 
 
+def own_inertia(inertial: Element, file: Path | str | None = None) -> Array | None:
+    """(3, 3) in the axes of an <inertial>; None without all three moments."""
+    entries = {(i, j): inertial.findtext(f"inertia/i{'xyz'[i]}{'xyz'[j]}") for i in range(3) for j in range(i, 3)}
+    if any(entries[i, i] is None for i in range(3)):
+        return None
+    values = {k: numbers(v or "0", (1,), "inertia", file)[0] for k, v in entries.items()}
+    return np.array([[values[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
+
+
 def lumped(found: Assembly, own: tuple[float, Array, Array | None], file: Path | str | None = None) -> Lumped:
     """All that is held to the hull as one body, moving joints at zero.
 
@@ -329,13 +338,8 @@ def lumped(found: Assembly, own: tuple[float, Array, Array | None], file: Path |
         if mass <= 0.0:
             continue
         at = pose.then(pose_of(inertial, file))
-        entries = {(i, j): inertial.findtext(f"inertia/i{'xyz'[i]}{'xyz'[j]}") for i in range(3) for j in range(i, 3)}
-        inertia = None
-        if all(entries[i, i] is not None for i in range(3)):
-            values = {k: numbers(v or "0", (1,), "inertia", file)[0] for k, v in entries.items()}
-            plain = np.array([[values[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
-            inertia = at.turn @ plain @ at.turn.T
-        parts.append((mass, at.place, inertia))
+        plain = own_inertia(inertial, file)
+        parts.append((mass, at.place, None if plain is None else at.turn @ plain @ at.turn.T))
         names.append(name)
     total = math.fsum(p[0] for p in parts)
     centre = sum((p[0] * p[1] for p in parts), np.zeros(3)) / total

@@ -87,7 +87,7 @@ class Xacro(Mapping[str, float]):
         if expression is None:
             return self._known(self._arguments, argument or "")
         name = expression.strip()
-        if _NAME.fullmatch(name):
+        if _NAME.fullmatch(name) and (name != "pi" or name in self._raw):
             return self._known(self._raw, name)
         try:
             return repr(float(evaluate(name.replace("**", "^"), self, _FUNCTIONS)))

@@ -439,7 +439,7 @@ def five_dof_file(huuv: FiveDof) -> ParameterFile:
     content = {
         **base.model_dump(),
         "name": "huuv_5dof" if huuv.masses == "stated" else "huuv_5dof_geometry",
-        "body": "HUUV, five degrees of freedom",
+        "body": "HUUV",
         "mass": MassProperties(c["m"], 0.0, own["pitch_inertia"], centre).primed(primes, density),
         "models": models,
         "added_mass": _added_mass(huuv),

@@ -218,7 +218,7 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
     body: dict[str, Any] = {
         "schema_version": SCHEMA_VERSION,
         "name": "huuv",
-        "body": "HUUV, horizontal plane",
+        "body": "HUUV",
         "scaling": primes,
         "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "cb"},
         "conditions": Conditions(chosen["density"], chosen["speed"]),

@@ -307,7 +307,7 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
     result = tank_room.collected(tow)
     if tow.solver.table is not None and not json and not tank_room.filled(tow):
         show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
-        show.text(f"Run list: {folder / 'external' / 'run_list.csv'}")
+        show.text(f"Run list: {folder / tow.tank.solver / 'run_list.csv'}")
         show.text("Next:")
         show.sentence(f"  {_next(tow, result, folder)}")
         return
@@ -436,7 +436,7 @@ def _status(folder: Path, json: bool) -> None:
         if json:
             show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
             return
-        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        where = tow.tank.options.get("table") or folder / tow.tank.solver / "forces.csv"
         show.sentence(f"{plan['name']}: {plan['solver']} needs no runs; {done} of {many} rows of {where} are filled.")
         show.sentence(f"Next: coeflab tow {shlex.quote(str(folder))} --collect")
         return
@@ -528,7 +528,7 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
     place = shlex.quote(str(folder))
     states = {r.state for r in made.runs if not r.counts}
     if tow.solver.table is not None and states:
-        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        where = tow.tank.options.get("table") or folder / tow.tank.solver / "forces.csv"
         return f"fill in {where}, then coeflab tow {place} --collect"
     if states - {JobState.UNCONVERGED, JobState.DIVERGED, JobState.FINISHED}:
         return f"coeflab tow {place} --continue"
