@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, brief, in_angles, locked
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.results.straight_runs import StraightRuns
@@ -166,6 +166,7 @@ class LeftOut:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x y curve fitted by_row se")
 class Sweep:
     """One force component over one motion variable, and the coefficient that it gives.
 
@@ -258,14 +259,6 @@ class Sweep:
     by_symmetry: str = ""
     bias: float = 0.0
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked(self.x))
-        object.__setattr__(self, "y", locked(self.y))
-        for name in ("curve", "fitted", "by_row"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-        if self.se is not None:
-            object.__setattr__(self, "se", locked(self.se))
-
     @property
     def is_angle(self) -> bool:
         """Whether the motion variable is the sine of an angle."""
@@ -297,6 +290,7 @@ class Sweep:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("moves")
 class Tied:
     """What coefficients of one fit owe to those of another that they were tied to.
 
@@ -317,12 +311,10 @@ class Tied:
     moves: Array
     set_up: tuple[tuple[str, str, float], ...]
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "moves", locked(self.moves))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("covariance")
 class Shared:
     """What the coefficients of one fit have in common with those of another, whose numbers moved them to another point.
 
@@ -337,9 +329,6 @@ class Shared:
     fit: str
     campaign: str
     covariance: Array
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "covariance", locked(self.covariance))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

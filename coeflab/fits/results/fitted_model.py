@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
-from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
@@ -33,6 +33,7 @@ from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x y")
 class SetAside:
     """Points beside a fit.
 
@@ -47,10 +48,6 @@ class SetAside:
     x: Mapping[str, Array]
     y: Array
     labels: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked_columns(self.x))
-        object.__setattr__(self, "y", locked(self.y))
 
     def only(self, keep: NDArray[np.bool_]) -> SetAside:
         """Some of the points."""
@@ -93,6 +90,7 @@ class Extrapolation(StrEnum):
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high spaces")
 class Domain:
     """Where a model may be read.
 
@@ -111,10 +109,6 @@ class Domain:
     high: Array
     spaces: Array
     rule: Extrapolation = Extrapolation.REFUSE
-
-    def __post_init__(self) -> None:
-        for name in ("low", "high", "spaces"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @classmethod
     def of(
@@ -144,6 +138,7 @@ class Domain:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x shared y")
 class FittedModel:
     """One response as a linear combination of terms.
 
@@ -199,11 +194,6 @@ class FittedModel:
     not_assessed: tuple[str, ...] = ()
     set_aside: SetAside | None = None
     remainder: Remainder | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked_columns(self.x))
-        object.__setattr__(self, "shared", locked_columns(self.shared))
-        object.__setattr__(self, "y", locked(self.y))
 
     @property
     def n_points(self) -> int:

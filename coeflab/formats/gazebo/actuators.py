@@ -20,7 +20,7 @@ import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.wording import one_line
 from coeflab.formats.gazebo.assembly import Assembly, Joint, Pose
 from coeflab.formats.gazebo.lift_drag import LiftDrag, at_hull, read_lift_drag
@@ -37,6 +37,7 @@ WAYS: tuple[tuple[Literal["dr", "ds"], int], ...] = (("dr", 2), ("ds", 1))
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("drift")
 class Actuators:
     """Thrusters and fins about the hull's origin, FRD.
 
@@ -59,9 +60,6 @@ class Actuators:
     drift: Array
     read: tuple[Element, ...]
     findings: tuple[Finding, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "drift", locked(self.drift))
 
 
 def actuators(root: Element, found: Assembly, subject: str, file: Path | str | None = None) -> Actuators:

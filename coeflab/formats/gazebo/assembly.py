@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import about_another
 from coeflab.law.transforms import rotation
 
@@ -58,6 +58,7 @@ HERE = Pose(np.eye(3), np.zeros(3))
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("place axis")
 class Joint:
     """A joint in the frame of the hull.
 
@@ -85,10 +86,6 @@ class Joint:
     low: float
     high: float
     rate: float | None
-
-    def __post_init__(self) -> None:
-        for name in ("place", "axis"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 @brief

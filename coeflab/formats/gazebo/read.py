@@ -51,6 +51,7 @@ from coeflab.formats.gazebo.systems import GZ_SIM
 from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import MOST, left_out, other_plugins, unread_tags
 from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
+from coeflab.law.water import ROUND_DENSITY
 from coeflab.vehicle.imported_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
@@ -62,7 +63,6 @@ reads = "SDF with the Hydrodynamics plugin"
 signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> positive."
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
-FRESH = 1000.0
 TURN, FREE = 2.0 * math.pi + 1e-3, 1e6  # rad; limits of joints that turn freely are written as huge numbers
 OF_BOX = (0.5, 2.5, 4.5)  # a cylinder has 1.5 times the water of its ellipsoid, a box 2
 
@@ -272,6 +272,11 @@ def _links(root: Element, link: GzLink, path: Path) -> list[Check]:
                 names=tuple(map(one_line, held.elements))[:MOST],
             )
         )
+    for j in held.joints:
+        if j.low > j.high:
+            out.append(
+                Finding.of("model.limits", f"joint {one_line(j.name)}"[:100], Severity.WARN, low=j.low, high=j.high)
+            )
     for name in held.links:
         inertial = held.elements[name].find("inertial") if name in held.elements else None
         matrix = None if inertial is None else own_inertia(inertial, path)
@@ -309,7 +314,7 @@ def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
     if box is None or not np.all(box > 0.0):
         return []
     own = np.diag(_added_mass(link))
-    due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or FRESH))
+    due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or ROUND_DENSITY))
     hull = held.elements.get(held.hull)
     boxed = hull is not None and hull.find("collision/geometry/box") is not None
     low, high = OF_BOX[0], OF_BOX[2 if boxed else 1]
@@ -344,7 +349,7 @@ def _units(root: Element, link: GzLink, path: Path) -> list[Check]:
                 out.append(
                     as_check("gazebo", Finding.of("model.gravity_up", "<gravity>", Severity.FAIL, statistic=upward))
                 )
-    held, density = assembly(root, link.link.rpartition("::")[2], path), link.density or FRESH
+    held, density = assembly(root, link.link.rpartition("::")[2], path), link.density or ROUND_DENSITY
     volume = displaced_by(held, path).volume
     # A collision is often a rough box: only the ratios of units are told by it.
     if link.mass and link.mass > 0.0 and imperial(density * volume / link.mass):

@@ -12,20 +12,11 @@ from coeflab.identify.tuning import Tuning, largest_correlations
 from coeflab.motion import steady_state
 from coeflab.motion.marching import idle, integrated_forces
 from coeflab.motion.vehicle import vehicle
+from coeflab.published.huuv import tuning
 from coeflab.published.huuv.figures import paper_figures, tuning_figures
 from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
 from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, parameter_file, read_huuv, thrust
-from coeflab.published.huuv.tuning import (
-    ERRORS,
-    IN_WORDS,
-    hidden_rows,
-    origin_rows,
-    pool_rows,
-    predicted_rows,
-    tuned,
-    tuned_rows,
-)
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Acceptance, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -45,16 +36,16 @@ def acceptance() -> Acceptance:
     file, five = parameter_file(huuv), read_five_dof(huuv)
     whole = five_dof_file(five)
     dives = dived(whole)
-    halves = {source: tuned(huuv, source) for source in (MATLAB, TRACKER)}
+    halves = {source: tuning.tuned(huuv, source) for source in (MATLAB, TRACKER)}
     return PAPER.acceptance(
         (
             *turned(huuv, file),
             simulated_rows(huuv),
-            origin_rows(huuv),
-            tuned_rows(halves[MATLAB]),
-            pool_rows(halves[TRACKER]),
-            predicted_rows(huuv),
-            hidden_rows(huuv, halves[MATLAB]),
+            tuning.origin_rows(huuv),
+            tuning.tuned_rows(halves[MATLAB]),
+            tuning.pool_rows(halves[TRACKER]),
+            tuning.predicted_rows(huuv),
+            tuning.hidden_rows(huuv, halves[MATLAB]),
             *stated_rows(five, whole),
             *moving_rows(five, dives),
         ),
@@ -66,12 +57,15 @@ def acceptance() -> Acceptance:
 
 
 def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
-    pairs = [f"{IN_WORDS[a]} with {IN_WORDS[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB])]
+    pairs = [
+        f"{tuning.IN_WORDS[a]} with {tuning.IN_WORDS[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB])
+    ]
     start = "Correlations on the MATLAB half: "
     several = grouped(pairs, THREE_LINES - len(start) - 1, ", ".join)
     reach = max(float(np.degrees(np.nanmax(t.figures[:, 1]))) for t in huuv.turns.values())
     weights = (
-        f"{source} {u:g} m/s, {np.degrees(beta):.2g} deg, {radius:g} m" for source, (u, beta, radius) in ERRORS.items()
+        f"{source} {u:g} m/s, {np.degrees(beta):.2g} deg, {radius:g} m"
+        for source, (u, beta, radius) in tuning.ERRORS.items()
     )
     correlations = [f"{start}{', '.join(group)}." for group in several]
     cannot = [f"Cannot be made. {text}" for text in PAPER.content["cannot"]]

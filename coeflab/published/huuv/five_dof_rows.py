@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.bodies.closed_forms import plate_added_mass
 from coeflab.bodies.shape import Cylinder, Parts, Plate
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import momentum_force
 from coeflab.motion.dynamics import from_euler
 from coeflab.motion.simulation import simulate
@@ -43,6 +43,7 @@ STRAIGHT = tuple(np.arange(20.0, 101.0, 10.0))
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time depth pitch speed end")
 class Dive:
     """A simulated start with the elevators deflected, all (n,): s, m, rad, m/s; and u v w q r at its end."""
 
@@ -51,10 +52,6 @@ class Dive:
     pitch: Array
     speed: Array
     end: Array
-
-    def __post_init__(self) -> None:
-        for name in ("time", "depth", "pitch", "speed", "end"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def dived(file: ParameterFile) -> dict[float, Dive]:

@@ -14,25 +14,9 @@ from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.law.transforms import denavit_hartenberg
 from coeflab.published.publication import Row, publication
-from coeflab.published.urv import model
+from coeflab.published.urv import model, theory
 from coeflab.published.urv.model import ADDED, BIAS, DENSITY, FIRST_ROW, MASS, cylinder, dry, wet
 from coeflab.published.urv.tasks import control, energy, figures, page, tasks
-from coeflab.published.urv.theory import (
-    RATES,
-    SECOND,
-    SPEEDS,
-    SWING,
-    Q,
-    drag,
-    earth,
-    flow,
-    from_nothing,
-    motion_of_link_1,
-    only,
-    principles,
-    propulsion,
-    towed,
-)
 from coeflab.report.acceptance import Acceptance, Basis, ComparedTable
 
 PAPER = publication("urv")
@@ -57,7 +41,7 @@ def acceptance() -> Acceptance:
 def compared() -> tuple[ComparedTable, ...]:
     """What needs no motion in time."""
     return (
-        _link_1(), _transformations(), _mass_matrix(), _bias(), _added_mass(), _spheroid(), principles(), flow(), drag(), propulsion(), earth(), errata(),
+        _link_1(), _transformations(), _mass_matrix(), _bias(), _added_mass(), _spheroid(), theory.principles(), theory.flow(), theory.drag(), theory.propulsion(), theory.earth(), errata(),
     )  # fmt: skip
 
 
@@ -71,12 +55,12 @@ def moved() -> tuple[ComparedTable, ...]:
 
 def _link_1() -> ComparedTable:
     chain = dry()
-    at = kane.pose(chain, Q)
-    moving = kane.partial_velocities(chain, at)[1] @ in_frame_0(chain, SPEEDS)
-    push, turned = motion_of_link_1(chain, RATES[:7])
+    at = kane.pose(chain, theory.Q)
+    moving = kane.partial_velocities(chain, at)[1] @ in_frame_0(chain, theory.SPEEDS)
+    push, turned = theory.motion_of_link_1(chain, theory.RATES[:7])
     found = {"p": FLU @ at.centre[1], "w": FLU @ moving[3:], "v": FLU @ moving[:3], "alpha": turned, "a": push}
     units = {"p": "m", "w": "rad/s", "v": "m/s", "alpha": "rad/s^2", "a": "m/s^2"}
-    paper = model.link_1_by_paper(float(Q[0]), SPEEDS, RATES)
+    paper = model.link_1_by_paper(float(theory.Q[0]), theory.SPEEDS, theory.RATES)
     rows = [
         Row(
             "link 1", f"{name}_1, {axis}", units[name], float(paper[name][i]), float(found[name][i]),
@@ -86,19 +70,19 @@ def _link_1() -> ComparedTable:
         for i, axis in enumerate("xyz")
     ]  # fmt: skip
     down = np.array([0.3, -0.4, np.sqrt(0.75)])
-    pulled = in_frame_0(chain, kane.weight(chain, Q, FLU @ down))
+    pulled = in_frame_0(chain, kane.weight(chain, theory.Q, FLU @ down))
     whole = model.VEHICLE_MASS + sum(model.MASSES)
     rows.append(Row("gravity along x", "(F_1)grav", "N", whole * chain.gravity * 0.3, float(pulled[0]), 1e-9))
     return PAPER.table("link_1", rows)
 
 
 def _transformations() -> ComparedTable:
-    chain, printed = dry(), model.printed_matrices(Q)
+    chain, printed = dry(), model.printed_matrices(theory.Q)
     rows, whole = [], np.eye(4)
-    at = kane.pose(chain, Q)
+    at = kane.pose(chain, theory.Q)
     for j, link in enumerate(chain.links):
         joint = link.joint
-        turn, shift = denavit_hartenberg(joint.theta + float(Q[j]), joint.d, joint.a, joint.alpha)
+        turn, shift = denavit_hartenberg(joint.theta + float(theory.Q[j]), joint.d, joint.a, joint.alpha)
         apart = np.hstack([turn, shift[:, None]]) - printed[j][:3]
         rows.append(Row.none(f"A_{j}^{j + 1}", "largest entry apart", "1, m", apart, basis=Basis.CALIBRATION))
         whole = whole @ printed[j]
@@ -130,7 +114,7 @@ def _given(case: str, names: tuple[str, ...], numbers: tuple[float, ...], found:
 
 def _mass_matrix() -> ComparedTable:
     chain = dry()
-    found = in_frame_0(chain, kane.mass_matrix(chain, Q))
+    found = in_frame_0(chain, kane.mass_matrix(chain, theory.Q))
     rows = _given("diagonal", SPEED_NAMES, MASS, np.diag(found), "kg, kg m^2")
     rows += _given("row 1", SPEED_NAMES[1:], FIRST_ROW, found[0, 1:], "kg, kg m")
     rows.append(Row.none("whole matrix", "asymmetry", "kg, kg m^2", found - found.T))
@@ -139,13 +123,13 @@ def _mass_matrix() -> ComparedTable:
 
 def _bias() -> ComparedTable:
     chain = dry()
-    found = in_frame_0(chain, kane.bias(chain, Q, in_frame_0(chain, SPEEDS)))
+    found = in_frame_0(chain, kane.bias(chain, theory.Q, in_frame_0(chain, theory.SPEEDS)))
     return PAPER.table("bias", _given("C", SPEED_NAMES, BIAS, found, "N, N m"))
 
 
 def _added_mass() -> ComparedTable:
     air, water = dry(), wet()
-    found = in_frame_0(water, kane.mass_matrix(water, Q) - kane.mass_matrix(air, Q))
+    found = in_frame_0(water, kane.mass_matrix(water, theory.Q) - kane.mass_matrix(air, theory.Q))
     return PAPER.table("added_mass", _given("diagonal", SPEED_NAMES, ADDED, np.diag(found), "kg, kg m^2"))
 
 
@@ -196,11 +180,11 @@ def _of_inertia() -> list[Row]:
         forms = [model.spheroid_by_paper(1.0, 0.4, printed=printed)[i] for printed in (True, False)]
         rows += pair("1 e of the spheroid", name, "1", (wrong, forms[0]), (true, forms[1]), FOUR_DIGITS)
     water = wet()
-    body, whole = kane.mass_matrix(dry(), Q)[1, 1], kane.mass_matrix(water, Q)[1, 1]
+    body, whole = kane.mass_matrix(dry(), theory.Q)[1, 1], kane.mass_matrix(water, theory.Q)[1, 1]
     rows += pair(
         "2 sign of I_A", "M_22", "kg", (MASS[1] - ADDED[1], 2.0 * body - whole), (MASS[1] + ADDED[1], whole), 1.1e-6
     )
-    radius, length = SWING["radius"], SWING["length"]
+    radius, length = theory.SWING["radius"], theory.SWING["length"]
     across = DENSITY * np.pi * radius**2 * length
     quarter, end, right = (
         kane.mass_matrix(model.swung(radius, length, water), np.zeros(1)) - kane.mass_matrix(model.swung(radius, length, NO_WATER), np.zeros(1))
@@ -213,30 +197,30 @@ def _of_inertia() -> list[Row]:
     chain, spin = model.swung(radius, length), np.array([0.3, 0.5, 0.9])
     moving = in_frame_0(chain, np.array([0.0, 0.0, 0.0, spin[0], spin[1], 0.0, spin[2]]))
     result = [
-        from_nothing(chain, np.zeros(1), moving, law(chain, np.zeros(1), moving))
+        theory.from_nothing(chain, np.zeros(1), moving, law(chain, np.zeros(1), moving))
         for law in (model.bias_by_equation_16, kane.bias)
     ]
     gained = -turning / 12.0 * float(np.prod(spin))
-    rows += pair("4 equation 16", "power from nothing", "W", (gained, result[0]), (0.0, result[1]), SECOND)
+    rows += pair("4 equation 16", "power from nothing", "W", (gained, result[0]), (0.0, result[1]), theory.SECOND)
     return rows
 
 
 def _of_drag() -> list[Row]:
     """Erratum 5."""
-    rows, radius, length = [], SWING["radius"], SWING["length"]
+    rows, radius, length = [], theory.SWING["radius"], theory.SWING["length"]
     chain = model.swung(radius, length)
-    rate, per = SWING["rate"], 0.5 * DENSITY * model.BASIC * 2.0 * radius
+    rate, per = theory.SWING["rate"], 0.5 * DENSITY * model.BASIC * 2.0 * radius
     force, moment = model.drag_by_equation_21(radius, length, np.zeros(3), rate)
     lost = (
         -float(force[1] * rate * length / 2.0 + moment[2] * rate),
-        -rate * float(kane.drag(chain, np.zeros(1), only(6, rate, 7))[6]),
+        -rate * float(kane.drag(chain, np.zeros(1), theory.only(6, rate, 7))[6]),
     )
     size = per * rate**3 * length**4
     rows += pair(
         "5 moment of equation 21, swung", "power lost", "W", (size * 5.0 / 12.0, lost[0]), (size / 4.0, lost[1])
     )
     oblique = np.sqrt(0.5) * np.array([1.0, 1.0, 0.0])
-    sides = model.drag_by_equation_21(radius, length, oblique, 0.0)[0][1], towed(chain, oblique)[1]
+    sides = model.drag_by_equation_21(radius, length, oblique, 0.0)[0][1], theory.towed(chain, oblique)[1]
     forces = (-per * length / 4.0, float(sides[0])), (-per * length / 2.0, float(sides[1]))
     rows += pair("5 sin^2 in C_D, at 45 deg and 1 m/s", "force", "N", *forces)
     return rows
@@ -246,8 +230,14 @@ def _of_frames() -> list[Row]:
     """Errata 6 to 9."""
     rows, water = [], wet()
     torques = np.array([1.0, 2.0, 3.0])
-    printed = FLU @ model.equation_23(kane.pose(water, Q).axis, torques)
-    axes = np.array([[0.0, 0.0, 1.0], [-np.sin(Q[0]), np.cos(Q[0]), 0.0], [-np.sin(Q[0]), np.cos(Q[0]), 0.0]])
+    printed = FLU @ model.equation_23(kane.pose(water, theory.Q).axis, torques)
+    axes = np.array(
+        [
+            [0.0, 0.0, 1.0],
+            [-np.sin(theory.Q[0]), np.cos(theory.Q[0]), 0.0],
+            [-np.sin(theory.Q[0]), np.cos(theory.Q[0]), 0.0],
+        ]
+    )
     moments = (float(axes.T[1] @ torques), float(printed[1])), (0.0, _reaction(water, torques))
     rows += pair("6 equation 23, tau = 1, 2, 3 N m", "moment on the vehicle, y", "N m", *moments)
     rise = model.turn_by_paper(np.zeros(3)) @ np.array([0.0, 0.0, 1.0]), water.mount @ np.array([0.0, 0.0, 1.0])
@@ -258,7 +248,7 @@ def _of_frames() -> list[Row]:
     rows += pair(
         "7 equation 29, roll 60 deg", "pitch rate for w_y = 1 rad/s", "rad/s", (1.0, rates[0]), (0.5, rates[1]), 1e-11
     )
-    astern = only(0, -0.5, 6)
+    astern = theory.only(0, -0.5, 6)
     taken = float(astern @ kane.drag(replace(water, links=()), np.zeros(0), astern))
     size = 0.5 * DENSITY * model.AREA * 0.5**3
     given = 0.5 * DENSITY * model.AREA * float(astern @ astern) * 0.5
@@ -268,14 +258,14 @@ def _of_frames() -> list[Row]:
         (0.0, float(water.inertias[1][2, 0, 0])),
     )
     rows += pair("8 added mass of link 2", "along its drag axis", "kg", *masses)
-    a = model.link_1_by_paper(float(Q[0]), SPEEDS, RATES)["a"]
-    literal, gap = model.a_1_as_printed(float(Q[0]), SPEEDS, RATES)
-    pushed = float(motion_of_link_1(dry(), RATES[:7])[0][0])
+    a = model.link_1_by_paper(float(theory.Q[0]), theory.SPEEDS, theory.RATES)["a"]
+    literal, gap = model.a_1_as_printed(float(theory.Q[0]), theory.SPEEDS, theory.RATES)
+    pushed = float(theory.motion_of_link_1(dry(), theory.RATES[:7])[0][0])
     rows += pair("9 a of link 1", "x component", "m/s^2", (float(a[0]) + gap, literal), (float(a[0]), pushed))
     return rows
 
 
 def _reaction(chain: Chain, torques: Array) -> float:
     """Moment about y that joint torques put on the whole at rest, N m: the rate of its angular momentum."""
-    changed = kane.right_hand_side(chain, at_rest(chain, Q), np.concatenate([np.zeros(6), torques]))[10:]
-    return float((kane.mass_matrix(chain, Q) @ changed)[4])
+    changed = kane.right_hand_side(chain, at_rest(chain, theory.Q), np.concatenate([np.zeros(6), torques]))[10:]
+    return float((kane.mass_matrix(chain, theory.Q) @ changed)[4])

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -41,53 +41,21 @@ INTERRUPTED = 130  # exit code after Ctrl-C, as of every program
 RESERVED = 12  # lines of a terminal that are not for rows
 
 
+@options.worded
 def command(
-    body: str = typer.Argument(
-        "",
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder or a shipped body; or the folder of a tow.",
-        show_default=False,
-    ),
-    matrix: Path = typer.Option(
-        None,
-        "--matrix",
-        metavar="TANK.toml",
-        help="Conditions, grids, studies, options; default: what six derivatives need.",
-    ),
-    solver: str = typer.Option(
-        "",
-        metavar="NAME",
-        autocompletion=solvers,
-        help="openfoam, external, estimate ... (coeflab formats); default openfoam.",
-        show_default=False,
-    ),
-    out: Path = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder of the tow; default runs/BODY.", show_default=False
-    ),
-    dry_run: bool = typer.Option(False, "--dry-run", help="Write the cases; print cells, memory and hours expected."),
-    go_on: bool = typer.Option(False, "--continue", help="Go on with a tow that ended, was stopped or killed."),
-    finished: str = typer.Option(
-        "",
-        "--finished",
-        metavar="CAMPAIGN",
-        autocompletion=complete.campaigns,
-        help="Take over its finished conditions (same case and mesh).",
-        show_default=False,
-    ),
-    status: bool = typer.Option(False, "--status", help="Print how far a tow is, from any terminal."),
-    collect: bool = typer.Option(False, "--collect", help="Make campaign, fits and report of what is finished."),
-    runner: str = typer.Option(
-        "",
-        metavar="NAME",
-        autocompletion=runners,
-        help="local, slurm ... (coeflab formats); default local.",
-        show_default=False,
-    ),
-    cores: int = typer.Option(
-        0, metavar="COUNT", min=0, help="That all runs together may take; 0: what the runner takes.", show_default=False
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object at the end."),
+    *,
+    body: str = "",
+    matrix: Path | None = None,
+    solver: str = "",
+    out: Path | None = None,
+    dry_run: bool = False,
+    go_on: bool = False,
+    finished: str = "",
+    status: bool = False,
+    collect: bool = False,
+    runner: str = "",
+    cores: int = 0,
+    json: bool = False,
 ) -> None:
     """Tow a body through a virtual tank (CFD).
 
