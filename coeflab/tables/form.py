@@ -170,6 +170,10 @@ def column_lines(raw: RawTable, found: Interpretation) -> Iterator[Line]:
             continue
         if name in doubts:
             yield _doubtful(doubts[name])
+        elif name in still and not offer.whole and (own := name.removeprefix("se_")) != name and own in still:
+            yield Line(
+                name, "", f"the standard error of {own}, whatever that is{span}", Group.COLUMN, f"Column {shown(name)}."
+            )
         elif name in still:
             missing = _covered(offer)
             group = Group.COLUMN if offer.whole or missing else Group.OPEN

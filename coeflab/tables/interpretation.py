@@ -15,7 +15,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import FORCES, WIND, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -172,6 +172,7 @@ def interpreted(
     )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
+    shows += tuple(_too_few(raw, columns, still))
     primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
@@ -218,7 +219,7 @@ def _likely_map(offer: Proposal) -> ColumnMap:
     if offer.whole:
         return read_column_map(offer.text)
     name, _, unit = offer.text.partition(" [")
-    if name.lstrip("-") not in FORCES or offer.unread:
+    if name.lstrip("-") not in (*FORCES, *ANGLES) or offer.unread:
         return ColumnMap("ignore")
     pure = unit.startswith("coefficient")  # a sign shows in any unit
     return read_column_map(f"{name}' [-]" if pure else f"{name} [{SI[read_column_map(name).dimension]}]")
@@ -229,7 +230,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
     roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
-    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why == UNKNOWN]
+    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
         return InputError(
             f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
@@ -314,6 +315,21 @@ def _in_vain(
         given = said_of.get(c.name)
         if given is not None and given.name == "U" and len(raw) and not np.any(np.nan_to_num(c.values)):
             yield InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=c.name)
+
+
+def _too_few(
+    raw: RawTable, columns: Sequence[Assigned], still: Sequence[tuple[RawColumn, Proposal]]
+) -> Iterator[Evidence]:
+    """Warnings of what no table of slopes is, while columns may still be named: a single row, a lift without a drag."""
+    if len(raw) == 1:
+        yield Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")
+    names = {c.said.name for c in columns}
+    strange = [c.name for c, offer in still if not offer.text]
+    if strange and names & {"lift", "side"} and "drag" not in names:
+        yield Evidence(
+            f"warning: {'lift' if 'lift' in names else 'side'} without drag: one of {listed(strange[:MOST_IDLE])} has to be drag, "
+            "else nothing follows"
+        )
 
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:

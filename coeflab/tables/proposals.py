@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
@@ -34,6 +35,7 @@ from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
 UNKNOWN = "no known name"
+BESIDE_WIND = "lift, drag and moments are there as coefficients already"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
 SAME = 0.1
@@ -42,26 +44,9 @@ VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
-IDLE_UNITS = frozenset(
-    {"°c", "c", "degc", "k", "hz", "khz", "pa", "kpa", "mpa", "bar", "mbar", "v", "mv", "a", "ma", "w", "kw"}
-)
 # Of a time a wrong split makes one, r_rads_s, so the name has to say it too.
-TIMES = frozenset({"s", "sec", "ms", "min", "h"})
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
-TURNS = {
-    "": "",
-    "1/s": "rps",
-    "s^-1": "rps",
-    "hz": "rps",
-    "rev/s": "rps",
-    "u/s": "rps",
-    "1/min": "rpm",
-    "u/min": "rpm",
-    "rev/min": "rpm",
-    "min^-1": "rpm",
-}
-SHIP = ("shipspeed", "vship", "vs", "fullscalespeed", "schiffsgeschwindigkeit", "vitessenavire", "vitessedunavire")
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
@@ -128,9 +113,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     """
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
-    if folded(column.name) in SHIP and _fits(
-        unit := vocabulary().units.get(column.unit.casefold(), column.unit), "speed"
-    ):
+    unit = vocabulary().units.get(column.unit.casefold(), column.unit)
+    if folded(column.name) in vocabulary().lists["ship"] and _fits(unit, "speed"):
         scale = (stated or {}).get(SCALE)
         if scale is None:
             return Proposal(
@@ -198,10 +182,13 @@ def _worded(column: RawColumn) -> str:
 def _idle(column: RawColumn) -> str:
     """Why a column of numbers cannot matter to a fit: one number throughout, or a unit of nothing that fits use."""
     known = column.values[np.isfinite(column.values)]
+    if known.size and not np.any(known):
+        return "zeros throughout"
     if known.size and float(np.ptp(known)) <= 1e-9 * float(np.abs(known).max()) and not allowed(column.unit):
         return "one number throughout"
     unit = column.unit.strip().casefold()
-    if unit in IDLE_UNITS or (unit in TIMES and _OF_TIME.search(column.name)):
+    words = vocabulary().lists
+    if folded(unit) in words["idle"] or (unit in words["times"] and _OF_TIME.search(column.name)):
         return f"no fit uses [{column.unit}]"
     return ""
 
@@ -261,7 +248,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             return str(read_column_map(short)), "its name", True
         except InputError:
             pass
-    if own == "n" and column.unit and column.unit.casefold() in (*TURNS, "rps", "rpm"):
+    if own == "n" and column.unit.casefold() in vocabulary().turns:
         return "rps", "its name and unit", False
     if own == "T" and _fits(column.unit, "force"):
         return "thrust", "its name and unit", False
@@ -321,7 +308,7 @@ def _with_symbol(own: str) -> str:
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
     if said.role == "propeller":
-        unit = TURNS.get(unit.casefold(), unit) if said.name == "rps" else unit
+        unit = vocabulary().turns.get(unit.casefold(), unit) if said.name == "rps" else unit
         by_name = next((turns for turns in ("rpm", "rps") if turns in folded(column.name)), "")
         unit = unit or {"rps": by_name, "J": "-"}.get(said.name, "")
     name = str(said).partition(" [")[0]
@@ -384,6 +371,7 @@ def taken_as(one: Assigned) -> str:
         or one.said.per_speed
         or one.said.name in WORDS
         or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
+        or vocabulary().turns.get(unit.casefold()) == one.said.unit
     ):
         return ""
     return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
@@ -412,11 +400,14 @@ def proposals(
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}
+    doubles: set[int] = set()
+    index = next((c for c in raw.columns[:1] if _is_index(c)), None)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
     for column in raw.columns:
         one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
+        one = Proposal("point", "it counts the rows") if column is index and one.why == UNKNOWN else one
         given = read_column_map(one.text.partition(" [")[0]) if one.text else None
         if given is not None and given.name not in ("label", "ignore"):
             if given.name == "point" and (given.plain in taken or _repeats(column)):
@@ -430,24 +421,39 @@ def proposals(
                 else:
                     kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
                     settled = (out[first].whole and not one.whole) or len(kinds) == 2
-                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
+                    why = again.format(taken[given.plain])
+                    doubles.update(() if settled else [len(out)])
+                    one = Proposal("ignore" * settled, why)
             else:
                 taken[given.plain] = column.name
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
         out = [_beside_the_body(one, taken[body], body) for one in out]
+    if len(doubles) > FEW_STRANGE:
+        out = [replace(o, text="ignore", note=o.why) if i in doubles else o for i, o in enumerate(out)]
     out = _without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
-        # V is the speed beside what says where the water comes from; alone it may be a sway velocity in capitals.
-        beside = {"alpha", "beta", "R"} & set(taken) and not {"U", "v"} & set(taken)
+        # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
+        over = {"drag"} - {
+            read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
+        }
+        beside = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
         if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
-        if folded(column.name) in SHIP and taken.get("U", column.name) != column.name:
+        if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
             out[i] = Proposal("ignore", f"U is {taken['U']} already")
         if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and _fits(column.unit, "moment"):
             out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
     return tuple(_without_a_doubled_flow(raw, out))
+
+
+def _is_index(column: RawColumn) -> bool:
+    """Whether a column without a name, or called so, counts the rows from 0 or 1, again from there where tables were joined."""
+    first = column.values[0] if len(column.values) > 1 else np.nan
+    steps = np.diff(column.values)
+    unnamed = column.name == "column 1" or folded(column.name) in vocabulary().lists["index"]
+    return unnamed and first in (0.0, 1.0) and bool(np.all((steps == 1.0) | (column.values[1:] == first)))
 
 
 def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
@@ -486,22 +492,30 @@ def _of_company(
         As for `proposed`.
     """
     known = column.values[np.isfinite(column.values)]
-    if "cd" in pure and one.text in (f"M [{OPEN}]", f"N [{OPEN}]") and known.size:
+    if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
         is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
             what = "a Mach number" if is_mach else "a count"
-            note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
+            note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
     if (
-        folded(column.name) == "fn"
+        folded(column.name) in ("fn", "fr")
         and column.unit in PURE
         and known.size
         and known.min() > 0.0
         and known.max() < FROUDE
     ):
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
-        return Proposal("ignore", note, note=note)
-    if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
+        return Proposal("ignore", note, note=note * (folded(column.name) == "fn"))
+    own = {vocabulary().coefficients.get(name) for name in pure}
+    name = read_column_map(one.text.partition(" [")[0]).name if one.text else ""
+    twice = name in ("X", "Z") or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
+    if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+    axial = next((c for c in ("ca", "ct") if {c, "cn"} <= pure), "")
+    if axial and folded(column.name) in (axial, "cn") and {"cl", "cd"} <= pure:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+    if axial == "ca" and folded(column.name) in ("ca", "cn"):
         axial = folded(column.name) == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
         along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
@@ -530,15 +544,23 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
     ]
     plain = {c.name.strip() for c in raw.columns}
+    series = Counter(_counted(raw.columns[i].name) for i in strange)
     idle = {
         i
         for i in strange
-        if _is_of_a_force(raw.columns[i].name, plain) or not _like_a_setting(raw.columns[i].values, settings)
+        if _is_of_a_force(raw.columns[i].name, plain)
+        or series[_counted(raw.columns[i].name)] > FEW_STRANGE
+        or not _like_a_setting(raw.columns[i].values, settings)
     }
     return [
         replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)
     ]
+
+
+def _counted(name: str) -> str:
+    """A name of a series without its number: Cp_ of Cp_017; of others the name itself."""
+    return re.sub(r"(?<=[A-Za-z_ ])\d+$", "", name.strip())
 
 
 def _is_of_a_force(name: str, names: Set[str]) -> bool:

@@ -200,7 +200,7 @@ def _of_axes(
     )  # fmt: skip
     angles = [c.said.name for c in columns if c.said.role == "angle"]
     follows = {e.key: e for e in shows if e.key}
-    for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
+    for name in dict.fromkeys((*angles, *(name for name in likely if ROLES[name] == "angle"))):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):

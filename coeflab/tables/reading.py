@@ -98,13 +98,22 @@ def importer_of(path: Path, name: str = "") -> str:
         others = ", ".join(n for n in readers if n != GENERAL)
         unread = InputError(
             "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else one of {others}",
-            file=path, advice="Where its names are not found, their line is --option header=NUMBER. Its first lines:",
+            file=path, advice=f"{_as_table(path)}Where its names are not found, their line is --option header=NUMBER. Its first lines:",
         )  # fmt: skip
         unread.example = "\n".join(f"  {number:2d}  {text}" for number, text in begin)
         raise unread
     found = f"something that {' and '.join(known)} read" if known else "nothing that an importer knows by its content"
     each = "; ".join(f"{n}: {IMPORTERS.load(n).reads or IMPORTERS.load(n).summary}" for n in known or readers)
     raise InputError(found, f"--as {' or --as '.join(known or readers)}", file=path, advice=f"{each}.")
+
+
+def _as_table(path: Path) -> str:
+    """What keeps a text from being a table, for one who takes it for one; empty where nothing does."""
+    try:
+        IMPORTERS.load(GENERAL).raw(path, {})  # type: ignore[misc]
+    except InputError as why:
+        return f"As {GENERAL}{f', line {why.line}' * bool(why.line)}: found {why.found}; expected {why.expected}. "
+    return ""
 
 
 def _first_lines(path: Path) -> list[tuple[int, str]]:

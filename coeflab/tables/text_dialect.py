@@ -339,6 +339,15 @@ def _fitted(line: str, delimiter: str, width: int, filled: int) -> list[str] | N
     return None
 
 
+def _over_rule(line: str, rule: str, width: int) -> list[str] | None:
+    """The names over a rule of strokes, one a column: each stands over its own; None where the rule has none of them, or not as many."""
+    ends = [m.end() for m in re.finditer(r"[-=_]+", rule)]
+    if len(ends) != width or width < FEWEST_NAMED:
+        return None
+    names = [line[a:b].strip() for a, b in zip([0, *ends[:-1]], [*ends[:-1], len(line)])]
+    return names if all(names) else None
+
+
 def _head(
     lines: list[str],
     start: int,
@@ -352,13 +361,17 @@ def _head(
     comments = _comments(options)
     above: list[Row] = []
     remarks: list[str] = []
+    ruled = ""
     for n in range(start - 1, 0, -1):
         line = lines[n - 1].strip(" \n") if delimiter == "\t" else lines[n - 1].strip()
         remark = is_comment(line.lstrip(), comments)
         bare = line.lstrip().lstrip("".join(comments)).strip() if remark else line
         if not bare or RULE.fullmatch(bare):
+            ruled = lines[n - 1] if bare else ruled
             continue
         cells = _fitted(bare, delimiter, width, filled)
+        if cells is None and not above:
+            cells = _over_rule(lines[n - 1], ruled, width)
         asked = n in (options.header, options.units)
         if (
             cells is None
