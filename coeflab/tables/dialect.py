@@ -365,6 +365,10 @@ def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:
 
 def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str]) -> Head:
     texts = [" ".join(t.split()) for t in names[1]]
+    over = [name_and_unit(" ".join(t.split())) for t in group[1]] if group else []
+    if group and len({n for n, _ in over} - {""}) == len(texts) > 1 and not any(map(_NUMBER.fullmatch, group[1])):
+        before = [*before, f"lines {group[0]} and {names[0]}: both name the columns"]
+        texts = [f"{n}: {t}".removesuffix(": ") + f" [{u}]" * bool(u) for (n, u), t in zip(over, texts)]
     stand = "none"
     if units:
         split = [(t, _unit_of(u)) if _bare(u) else unit_in_words(t) for t, u in zip(texts, units[1])]

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -258,14 +259,16 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     prefix, prime = "se_" if error else "", ""
     if bare.endswith("prime") or short.endswith("'"):
         bare, prime = bare.removesuffix("prime"), "'"
-    if wind := vocabulary().flow.get(bare):
+    known = _knows(bare) or error or prime
+    wind = vocabulary().flow.get(bare) or ("" if known else _in_other_words(own))
+    if wind in WIND:
         also = "; Cl of aircraft is also the rolling moment, K" if bare == "cl" else ""
         return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
     words = vocabulary()
     pure = "" if prime else words.coefficients.get(bare, "")
-    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure
+    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure or wind
     if not name:
         return "", UNKNOWN, False
     if error and name not in COMPONENTS:
@@ -284,9 +287,26 @@ def _knows(bare: str) -> bool:
     return any(bare in section for section in (words.columns, words.flow, words.coefficients))
 
 
+def _in_other_words(name: str) -> str:
+    """What a name is by its words in another order, or cut short: Angle of drift, drift ang, Lift coeff; empty where it is nothing."""
+    words, parts = vocabulary(), _words(name)
+    full = [w for part in parts if (w := words.short.get(part, part))]
+    every = (
+        ("".join(some) for some in permutations(full)) if len(full) <= 3 and (full != parts or len(full) > 1) else ()
+    )
+    found = next((n for w in every if (n := words.columns.get(w) or words.flow.get(w))), "")
+    return found if found in FORCES or not {*parts} & words.lists["coefficient"] else ""
+
+
+def _words(name: str) -> list[str]:
+    return [folded(w) for w in re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
+
+
 def _is_pure(name: str) -> bool:
     """Whether a name is that of a coefficient."""
     bare = folded(name)
+    if {*_words(name)} & vocabulary().lists["coefficient"]:
+        return True
     return not {bare, _OF_ALL.sub("", bare)}.isdisjoint(vocabulary().coefficients)
 
 

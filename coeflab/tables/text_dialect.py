@@ -38,18 +38,8 @@ DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks"
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}
 COMMENTS = ("#", "%", "//", "!")
 _ENCODINGS = (
-    "utf-8",
-    "utf-16",
-    "utf-16-le",
-    "utf-16-be",
-    "cp1252",
-    "latin-1",
-    "cp437",
-    "mac-roman",
-    "shift_jis",
-    "euc_kr",
-    "gb18030",
-)
+    "utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp437", "mac-roman", "shift_jis", "euc_kr", "gb18030",
+)  # fmt: skip
 SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
