@@ -161,11 +161,6 @@ def _speed_alone(table: ForceTable) -> str:
     return "the speed alone" if len(set(table.speed.tolist())) > 1 else "nothing"
 
 
-def _brief(note: str) -> str:
-    """What U95 covers, without what its parts are."""
-    return note.partition(". random:")[0] + "." * (". random:" in note)
-
-
 def _first_slopes(folder: Path) -> bool:
     """The main table of derivatives that the campaign gives, or in one line why it gives none, and the command for more.
 
@@ -190,7 +185,7 @@ def _first_slopes(folder: Path) -> bool:
         without = Status.NOT_DETERMINED.replace("_", " ")
         lacking = [row[0] for row in found.rows if row[1] == without] if first.by == MODEL else []
         notes = [
-            _brief(note)
+            note.partition(". random:")[0] + "." * (". random:" in note)  # what U95 covers, without what its parts are
             for note in found.notes
             if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
         ]

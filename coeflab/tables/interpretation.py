@@ -156,7 +156,7 @@ def interpreted(
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     if not any(e.instead for e in shows):  # a doubtful axis comes first
         shows += tuple(_across(columns, frame, settings))
-    names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
+    names = [o.said.name for _, o in still if o.said and not o.whole]
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
@@ -229,7 +229,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     """The complaint about what cannot be a table of forces: no number in it, or nothing known of forces and settings."""
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
-    roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
+    roles = {o.role for o in offers}
     strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
         return InputError(
@@ -292,7 +292,7 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
-    given = read_column_map(offer.text.partition(" [")[0]) if offer.text else None
+    given = offer.said
     own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.lost}
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
         return offer
@@ -303,7 +303,7 @@ def _in_vain(
     raw: RawTable, mapping: Mapping[str, ColumnMap], still: Sequence[tuple[RawColumn, Proposal]]
 ) -> Iterator[InputError]:
     """What no answer to a question mends: lift without drag where no column is left that may be it, a speed of zero throughout."""
-    said_of = dict(mapping) | {c.name: read_column_map(o.text.partition(" [")[0]) for c, o in still if o.text}
+    said_of = dict(mapping) | {c.name: o.said for c, o in still if o.said}
     wind = {m.name: name for name, m in said_of.items() if m.name in WIND and not m.error}
     if wind and "drag" not in wind and all(o.text for _, o in still):
         force, one = next(iter(wind.items()))

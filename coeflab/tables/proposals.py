@@ -90,6 +90,16 @@ class Proposal:
     assumed: bool = False
 
     @property
+    def said(self) -> ColumnMap | None:
+        """What it says, without a unit; None where nothing is known."""
+        return read_column_map(self.text.partition(" [")[0]) if self.text else None
+
+    @property
+    def role(self) -> str:
+        """Of what it says; empty where nothing is known."""
+        return self.said.role if self.said else ""
+
+    @property
     def whole(self) -> bool:
         """Whether nothing has to be added."""
         return bool(self.text) and OPEN not in self.text
@@ -428,7 +438,7 @@ def proposals(
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         one = Proposal("point", "it counts the rows") if column is index and one.why == UNKNOWN else one
-        given = read_column_map(one.text.partition(" [")[0]) if one.text else None
+        given = one.said
         if given is not None and given.name not in ("label", "ignore"):
             if given.name == "point" and (given.plain in taken or _repeats(column)):
                 one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
@@ -478,7 +488,7 @@ def _is_index(column: RawColumn) -> bool:
 
 def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
     """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
-    roles = [read_column_map(one.text.partition(" [")[0]) if one.text else None for one in out]
+    roles = [one.said for one in out]
     still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
     both = [
         ("angle" if m.role == "angle" else "speed")
@@ -528,7 +538,7 @@ def _of_company(
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
         return Proposal("ignore", note, note=note * (folded(column.name) == "fn"))
     own = {vocabulary().coefficients.get(name) for name in pure}
-    name = read_column_map(one.text.partition(" [")[0]).name if one.text else ""
+    name = one.said.name if one.said else ""
     twice = name in ("X", "Z") or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
     if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
         return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
@@ -555,14 +565,10 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
     Nothing is left out where no force or no setting is known without them.
     """
     strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
-    roles = {read_column_map(one.text.partition(" [")[0]).role for one in out if one.text}
+    roles = {one.role for one in out}
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED):
         return out
-    settings = [
-        c.values
-        for c, one in zip(raw.columns, out, strict=True)
-        if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
-    ]
+    settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
     plain = {c.name.strip() for c in raw.columns}
     series = Counter(_counted(raw.columns[i].name) for i in strange)
     idle = {
@@ -617,10 +623,10 @@ def _together(one: Array, other: Array) -> float:
 def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     """A prime as a coefficient of the area that a person, or words that were accepted, say it was divided by."""
     area = known.get(AREA)
-    if area is None or area == "prime" or not one.text:
+    if area is None or area == "prime":
         return one
-    given = read_column_map(one.text.partition(" [")[0])
-    if given.name not in FORCES or not given.primed:
+    given = one.said
+    if given is None or given.name not in FORCES or not given.primed:
         return one
     length = known.get(LENGTH_OF, known.get("scaling.length"))
     moment = given.name in MOMENTS

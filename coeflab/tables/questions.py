@@ -14,7 +14,7 @@ from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
-from coeflab.tables.column_map import ROLES, read_column_map
+from coeflab.tables.column_map import ROLES
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import Assigned
@@ -117,7 +117,7 @@ def without_unit(offer: Proposal) -> bool:
     """Whether a column states no unit, so that one for all such columns may give it; angles are asked one by one."""
     if offer.unread or not offer.text.endswith(f"[{OPEN}]"):
         return False
-    return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
+    return offer.said is not None and offer.said.dimension not in ("angle", "none")
 
 
 def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:

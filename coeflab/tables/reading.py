@@ -202,11 +202,7 @@ def read_groups(
 
 
 def with_declarations(
-    table: ForceTable,
-    file: Path,
-    cells: str = "",
-    uncertainty: InputUncertainty | None = None,
-    variant: str = "",
+    table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None, variant: str = ""
 ) -> ForceTable:
     """A table with its cell counts, studies and input uncertainty.
 

@@ -81,10 +81,6 @@ def _sign(name: str) -> Callable[[Any], Any]:
     return read
 
 
-def _frame(said: Any) -> Any:
-    return parse_axes(said).declared
-
-
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _WITH_UNIT = re.compile(rf"({_NUMBER.pattern})\s*([^\d\s.].*)")
 
@@ -162,20 +158,14 @@ def _one_of(*words: str) -> Callable[[Any], Any]:
 def _area(said: Any) -> Any:
     if str(said).casefold().rstrip("s") == "prime":
         return "prime"
-    _measured("area")(said)
-    return quantity(said, "area")
-
-
-def _length(said: Any) -> float:
-    _measured("length")(said)
-    return quantity(said, "length")
+    return quantity(_measured("area")(said), "area")
 
 
 READERS: dict[str, Callable[[Any], Any]] = {
     "coefficients.area": _area,
-    "coefficients.length": _length,
+    "coefficients.length": lambda said: quantity(_measured("length")(said), "length"),
     "columns.units": _one_of("SI"),
-    "axes.frame": _frame,
+    "axes.frame": lambda said: parse_axes(said).declared,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
     **dict.fromkeys(PLACE_KEYS, _place),

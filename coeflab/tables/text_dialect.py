@@ -101,10 +101,6 @@ class TextDialect:
     above: tuple[str, ...] = ()  # lines over the head
 
 
-def _said_delimiter(delimiter: str) -> str:
-    return next(name for name, d in DELIMITERS.items() if d == delimiter)
-
-
 def _comments(options: Options) -> tuple[str, ...]:
     return {"": COMMENTS, "none": ()}.get(options.comment, (options.comment,))
 
@@ -339,12 +335,7 @@ def _over_rule(line: str, rule: str, width: int) -> list[str] | None:
 
 
 def _head(
-    lines: list[str],
-    start: int,
-    dialect: tuple[str, Marks, int, int],
-    numbers: Set[int],
-    options: Options,
-    path: Path,
+    lines: list[str], start: int, dialect: tuple[str, Marks, int, int], numbers: Set[int], options: Options, path: Path
 ) -> tuple[Head, list[str]]:
     """The names over the line ``start`` (counted from 1)."""
     delimiter, marks, width, filled = dialect
@@ -457,7 +448,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         }
     )
     phrases = {
-        "delimiter": _said_delimiter(delimiter),
+        "delimiter": next(name for name, d in DELIMITERS.items() if d == delimiter),
         "decimal mark": SAID[marks.decimal],
         "thousands mark": SAID[marks.thousands],
         "header": f"line {head.line}" if head.line else "none",
