@@ -104,7 +104,7 @@ def numeric(cells: Sequence[str], marks: Marks) -> int:
 
 
 _ATOM = (
-    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|ft|ms|s|sec|min|h|deg\.?|degrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
+    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|[Ff]t|[Ii]nch(?:es)?|(?:[Mm]illi)?[Mm]et(?:er|re)s?|ms|s|sec|min|h|[Dd]eg\.?|[Dd]egrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
     r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|(?:°|[Dd]egr?\.?[ _]?)C|%|‰)"
 )
 _POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"
@@ -189,7 +189,8 @@ def _bare(cell: str) -> str:
 
 def _unit_of(cell: str) -> str:
     """The unit of a cell of a row of units: a slash says that there is none, a number that it is something else."""
-    bare = _bare(cell)
+    bare, _, other = _bare(cell).partition(" / ")
+    bare = bare if other in ("", bare) else f"{bare} / {other}"
     return "-" if bare == "/" else bare if bare == "1" or share(bare) is not None or not _NUMBER.fullmatch(bare) else ""
 
 
@@ -366,7 +367,11 @@ def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:
 def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str]) -> Head:
     texts = [" ".join(t.split()) for t in names[1]]
     over = [name_and_unit(" ".join(t.split())) for t in group[1]] if group else []
-    if group and len({n for n, _ in over} - {""}) == len(texts) > 1 and not any(map(_NUMBER.fullmatch, group[1])):
+    if (
+        group
+        and len({n for n, _ in over} - {""}) == len(texts) > 1
+        and not any(_NUMBER.fullmatch(g) or (is_unit(t) and t[1:]) for g, t in zip(group[1], texts))
+    ):
         before = [*before, f"lines {group[0]} and {names[0]}: both name the columns"]
         texts = [f"{n}: {t}".removesuffix(": ") + f" [{u}]" * bool(u) for (n, u), t in zip(over, texts)]
     stand = "none"

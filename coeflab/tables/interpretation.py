@@ -30,6 +30,7 @@ from coeflab.tables.mapping import (
     entry_of,
     error_of,
     fault,
+    header,
     known_as,
     with_unit,
 )
@@ -40,6 +41,7 @@ from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.to_frd import columns_of
+from coeflab.tables.vocabulary import vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
@@ -172,7 +174,6 @@ def interpreted(
     )
     if all(offer.whole for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    shows += tuple(_too_few(raw, columns, still))
     primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
@@ -189,7 +190,8 @@ def interpreted(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    complaints += tuple(_in_vain(raw, mapping, still))
+    more, vain = _in_vain(raw, mapping, still)
+    shows, complaints = (*shows, *more), (*complaints, *vain)
     return Interpretation(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
@@ -242,12 +244,21 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     over = clock(raw)
-    worded = [c.name for c in raw.columns if "_" in c.name and named_as(c.name.split("_")[0]) in FORCES]
-    if worded and not over:
-        return InputError(
-            f"forces with words behind them: {listed([shown(n) for n in worded[:MOST_IDLE]])}", "forces over settings, of one source", file=raw.path,
-            advice=f'Name those of one source: --map "{worded[0]}={named_as(worded[0].split("_")[0])} [coefficient A=1 m^2]"; others are ignored.',
-        )  # fmt: skip
+    words = vocabulary()
+    unread = {
+        header(c): f"{c.name}={words.of_flow(c.name)} [lbf]" for c in raw.columns if c.unit and words.of_flow(c.name)
+    }
+    worded = {
+        c.name: f"{c.name}={n} [coefficient A=1 m^2]"
+        for c in raw.columns
+        if (n := named_as(c.name.split("_")[0])) in FORCES
+    }
+    for found, one in (("in units that are not known", unread), ("with words behind them", worded)) if not over else ():
+        if one:
+            return InputError(
+                f"forces {found}: {listed([shown(n) for n in [*one][:MOST_IDLE]])}", "forces over settings, in a unit, of one source",
+                file=raw.path, advice=f'Name those of one source: --map "{next(iter(one.values()))}"; others are ignored.',
+            )  # fmt: skip
     return InputError(
         over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
         file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
@@ -301,35 +312,34 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
 
 def _in_vain(
     raw: RawTable, mapping: Mapping[str, ColumnMap], still: Sequence[tuple[RawColumn, Proposal]]
-) -> Iterator[InputError]:
-    """What no answer to a question mends: lift without drag where no column is left that may be it, a speed of zero throughout."""
+) -> tuple[tuple[Evidence, ...], tuple[InputError, ...]]:
+    """What no answer mends: a single row, lift without drag, drag at a drift angle without side, a speed of zero; a warning where a
+    column is left that may be what lacks.
+    """
     said_of = dict(mapping) | {c.name: o.said for c, o in still if o.said}
-    wind = {m.name: name for name, m in said_of.items() if m.name in WIND and not m.error}
-    if wind and "drag" not in wind and all(o.text for _, o in still):
-        force, one = next(iter(wind.items()))
-        yield InputError(
-            f"{force} without drag", "a column drag", file=raw.path, column=one,
-            advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.",
-        )  # fmt: skip
-    for c in raw.columns:
-        given = said_of.get(c.name)
-        if given is not None and given.name == "U" and len(raw) and not np.any(np.nan_to_num(c.values)):
-            yield InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=c.name)
-
-
-def _too_few(
-    raw: RawTable, columns: Sequence[Assigned], still: Sequence[tuple[RawColumn, Proposal]]
-) -> Iterator[Evidence]:
-    """Warnings of what no table of slopes is, while columns may still be named: a single row, a lift without a drag."""
-    if len(raw) == 1:
-        yield Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")
-    names = {c.said.name for c in columns}
-    strange = [c.name for c, offer in still if not offer.text]
-    if strange and names & {"lift", "side"} and "drag" not in names:
-        yield Evidence(
-            f"warning: {'lift' if 'lift' in names else 'side'} without drag: one of {listed(strange[:MOST_IDLE])} has to be drag, "
-            "else nothing follows"
-        )
+    names = {m.name: name for name, m in said_of.items() if not m.error}
+    moving = [c.name for c in raw.columns if np.any(np.nan_to_num(c.values))]
+    wind = next((w for w in WIND if w in names), "")
+    vain = []
+    for lacks, angle in (("drag", ""), ("side", "beta"), ("lift", "alpha")) if wind else ():
+        own = {lacks, *("YZ" if angle else "")}
+        if names.keys().isdisjoint(own) and (not angle or names.get(angle) in moving):
+            vain.append(InputError(
+                f"{wind} without {lacks}{f' at {angle}' * bool(angle)}", f"a column {lacks}", file=raw.path, column=names[wind],
+                advice="X, Y and Z of the body contain parts of drag, side and lift; C_D0 is part of the slope of Z.",
+            ))  # fmt: skip
+    shows = [Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")] * (
+        len(raw) == 1
+    )
+    if vain and (strange := [c.name for c, o in still if not o.text]):
+        shows += [
+            Evidence(f"warning: {v.found}: nothing follows, unless it is one of {listed(strange[:MOST_IDLE])}")
+            for v in vain
+        ]
+        vain = []
+    if len(raw) and names.get("U", moving[:1]) not in (*moving, moving[:1]):
+        vain.append(InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=names["U"]))
+    return tuple(shows), tuple(vain)
 
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:

@@ -35,15 +35,9 @@ Progress = Callable[[str], None]
 Value = TypeVar("Value")
 MOST = 40  # tables of a folder, sheets of a workbook
 JOIN = "joined"  # option: tables of the same columns become one
-SPLIT = (
-    "conditions.speed",
-    "conditions.density",
-    HALF_MODEL,
-    POINT_OF,
-    "table.",
-    "coefficients.",
-    "columns.",
-)  # each table may have its own
+SPLIT = (  # each table may have its own
+    "conditions.speed", "conditions.density", HALF_MODEL, POINT_OF, "table.", "coefficients.", "columns.",
+)  # fmt: skip
 OWN_KEYS = f"table.centre, .arm_point, .contains_inertia, {HALF_MODEL}, {POINT_OF}, conditions.speed, conditions.density, {AREA}, {LENGTH_OF}, {UNITS_OF}"
 ALONE = ("table.", "coefficients.")  # what one table has is no proposal for another
 _SETS = ("angle", "velocity", "radius", "control")  # what a row of a table of means has, and a record over time has not

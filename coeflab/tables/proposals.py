@@ -315,9 +315,10 @@ def _words(name: str) -> list[str]:
 def _is_pure(name: str) -> bool:
     """Whether a name is that of a coefficient."""
     bare = folded(name)
-    if {*_words(name)} & vocabulary().lists["coefficient"]:
-        return True
-    return not {bare, _OF_ALL.sub("", bare)}.isdisjoint(vocabulary().coefficients)
+    return not {*_words(name)}.isdisjoint(vocabulary().lists["coefficient"]) or not {
+        bare,
+        _OF_ALL.sub("", bare),
+    }.isdisjoint(vocabulary().coefficients)
 
 
 def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
@@ -394,15 +395,10 @@ def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
 
 def taken_as(one: Assigned) -> str:
     """What a unit text that nobody knows was taken for; empty where the file's unit is known, or there is none."""
-    unit = " ".join(one.column.unit.split())
-    if (
-        unit in ("", "-", "1")
-        or one.said.pure
-        or one.said.per_speed
-        or one.said.name in WORDS
-        or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
-        or vocabulary().turns.get(unit.casefold()) == one.said.unit
-    ):
+    unit, given = " ".join(one.column.unit.split()), one.said
+    known = _fits(vocabulary().units.get(unit.casefold(), unit), given.dimension)
+    known |= vocabulary().turns.get(unit.casefold()) == given.unit
+    if known or unit in PURE or given.pure or given.per_speed or given.name in WORDS:
         return ""
     return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
 
@@ -430,14 +426,13 @@ def proposals(
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}
-    doubles: set[int] = set()
-    index = next((c for c in raw.columns[:1] if _is_index(c)), None)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
     for column in raw.columns:
         one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
-        one = Proposal("point", "it counts the rows") if column is index and one.why == UNKNOWN else one
+        if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
+            one = Proposal("point", "it counts the rows")
         given = one.said
         if given is not None and given.name not in ("label", "ignore"):
             if given.name == "point" and (given.plain in taken or _repeats(column)):
@@ -445,22 +440,23 @@ def proposals(
             elif given.plain in taken:
                 first = next(i for i, c in enumerate(raw.columns) if c.name == taken[given.plain])
                 again = f"{given.plain} is {{}} already"
-                if one.whole and not out[first].whole:
+                unsized = (
+                    out[first].text.endswith(f"[{OPEN}]") and "coefficient" in one.text
+                )  # a force without unit beside its coefficient
+                if (one.whole and not out[first].whole) or unsized:
                     out[first] = Proposal("ignore", again.format(column.name))
                     taken[given.plain] = column.name
                 else:
                     kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
                     settled = (out[first].whole and not one.whole) or len(kinds) == 2
-                    why = again.format(taken[given.plain])
-                    doubles.update(() if settled else [len(out)])
-                    one = Proposal("ignore" * settled, why)
+                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
             else:
                 taken[given.plain] = column.name
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
         out = [_beside_the_body(one, taken[body], body) for one in out]
-    if len(doubles) > FEW_STRANGE:
-        out = [replace(o, text="ignore", note=o.why) if i in doubles else o for i, o in enumerate(out)]
+    if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
+        out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
     out = _without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
         # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
@@ -528,13 +524,8 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
-    if (
-        folded(column.name) in ("fn", "fr")
-        and column.unit in PURE
-        and known.size
-        and known.min() > 0.0
-        and known.max() < FROUDE
-    ):
+    froude = folded(column.name) in ("fn", "fr") and column.unit in PURE
+    if froude and known.size and 0.0 < known.min() <= known.max() < FROUDE:
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
         return Proposal("ignore", note, note=note * (folded(column.name) == "fn"))
     own = {vocabulary().coefficients.get(name) for name in pure}

@@ -327,10 +327,13 @@ def _fitted(line: str, delimiter: str, width: int, filled: int) -> list[str] | N
 
 def _over_rule(line: str, rule: str, width: int) -> list[str] | None:
     """The names over a rule of strokes, one a column: each stands over its own; None where the rule has none of them, or not as many."""
-    ends = [m.end() for m in re.finditer(r"[-=_]+", rule)]
-    if len(ends) != width or width < FEWEST_NAMED:
+    middles = [sum(m.span()) / 2 for m in re.finditer(r"[-=_]+", rule)]
+    if len(middles) != width or width < FEWEST_NAMED:
         return None
-    names = [line[a:b].strip() for a, b in zip([0, *ends[:-1]], [*ends[:-1], len(line)])]
+    names = [""] * width
+    for word in re.finditer(r"\S+", line):
+        k = min(range(width), key=lambda i: abs(middles[i] - sum(word.span()) / 2))
+        names[k] = f"{names[k]} {word[0]}".strip()
     return names if all(names) else None
 
 
