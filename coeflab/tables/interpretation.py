@@ -172,7 +172,7 @@ def interpreted(
         *slopes_by_idle_columns(raw, columns),
         *above_low_aspect(columns, frame, *known_sizes(raw, settings), settings),
     )
-    if all(offer.whole for _, offer in still):
+    if all(offer.whole or offer.role not in SETTINGS for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
     primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)

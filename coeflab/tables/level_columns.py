@@ -34,7 +34,7 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     for idle in (c for c in raw.columns if c.name not in used and not c.means):
         names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
         if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed):
-            yield from _by_column(numbers, names, settings, columns, speed)
+            yield from _by_column(numbers, [*names], settings, columns, speed)
 
 
 def _has_levels(column: RawColumn, speed: Array | None) -> bool:

@@ -533,10 +533,10 @@ def _of_company(
     twice = name in ("X", "Z") or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
     if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
         return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
-    axial = next((c for c in ("ca", "ct") if {c, "cn"} <= pure), "")
-    if axial and folded(column.name) in (axial, "cn") and {"cl", "cd"} <= pure:
+    of_body = {"ca", "ct", "cn"} & pure if "cn" in pure else set()
+    if len(of_body) > 1 and folded(column.name) in of_body and {"cl", "cd"} <= pure:
         return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
-    if axial == "ca" and folded(column.name) in ("ca", "cn"):
+    if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
         axial = folded(column.name) == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
         along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
