@@ -16,186 +16,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import cache
 from importlib import import_module
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coeflab.core.cards import drawn_by
 from coeflab.core.version import VERSION
 
-if TYPE_CHECKING:
-    from coeflab.api.body import AddedMass, Body, read_body
-    from coeflab.api.comparing import Comparison, compare
-    from coeflab.api.designing import NextTests, next_tests
-    from coeflab.api.estimating import estimate
-    from coeflab.api.exporting import export
-    from coeflab.api.fitted_law import Evaluated, FittedLaw
-    from coeflab.api.fitting import fit
-    from coeflab.api.motion import Motion, manoeuvres, simulate
-    from coeflab.api.names import shipped_names
-    from coeflab.api.reading import read_table, read_tables
-    from coeflab.api.result import Points, Result
-    from coeflab.api.studies import Study, run
-    from coeflab.api.table import Table
-    from coeflab.api.trimming import Trim, trim
-    from coeflab.api.validations import validation
-    from coeflab.api.vehicle import Vehicle, read_vehicle, vehicle
-    from coeflab.core.errors import AxesError, CoeflabError, InputError, PluginError, ScalingMismatchError, UnitsError
-    from coeflab.core.files import shipped
-    from coeflab.core.table import Check
-    from coeflab.fits.results.fit_result import FitResult
-    from coeflab.fits.results.fitted_model import FittedModel
-    from coeflab.formats.export import Export
-    from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
-    from coeflab.law.scaling import Conditions, Scaling
-    from coeflab.motion.trim.linear_model import LinearModel, LinearSchedule
-    from coeflab.report.rendered import rendered
-    from coeflab.study.plan import read_plan
-    from coeflab.study.study import Plan
-    from coeflab.tables.campaign import read_campaign
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.importers import PlannedTable
-    from coeflab.tank.front_door import Tow, tow
-    from coeflab.vehicle.parameter_file import ParameterFile
-
-
 __version__ = VERSION
-_HOMES = {
-    "api.reading": (
-        "read_table",
-        "read_tables",
-    ),
-    "api.table": ("Table",),
-    "api.fitting": ("fit",),
-    "api.fitted_law": ("Evaluated", "FittedLaw"),
-    "api.result": (
-        "Points",
-        "Result",
-    ),
-    "api.body": (
-        "AddedMass",
-        "Body",
-        "read_body",
-    ),
-    "api.vehicle": (
-        "Vehicle",
-        "read_vehicle",
-        "vehicle",
-    ),
-    "api.motion": (
-        "Motion",
-        "manoeuvres",
-        "simulate",
-    ),
-    "api.names": ("shipped_names",),
-    "api.exporting": ("export",),
-    "api.comparing": (
-        "Comparison",
-        "compare",
-    ),
-    "api.estimating": ("estimate",),
-    "api.designing": ("NextTests", "next_tests"),
-    "tank.front_door": ("Tow", "tow"),
-    "api.trimming": ("Trim", "trim"),
-    "api.studies": (
-        "Study",
-        "run",
-    ),
-    "core.errors": (
-        "AxesError",
-        "CoeflabError",
-        "InputError",
-        "PluginError",
-        "ScalingMismatchError",
-        "UnitsError",
-    ),
-    "core.files": ("shipped",),
-    "core.table": ("Check",),
-    "law.coefficient": (
-        "Coefficient",
-        "CoefficientSet",
-        "Status",
-    ),
-    "law.scaling": (
-        "Conditions",
-        "Scaling",
-    ),
-    "formats.export": ("Export",),
-    "fits.results.fit_result": ("FitResult",),
-    "fits.results.fitted_model": ("FittedModel",),
-    "motion.trim.linear_model": ("LinearModel", "LinearSchedule"),
-    "tables.force_table": ("ForceTable",),
-    "tables.campaign": ("read_campaign",),
-    "tables.importers": ("PlannedTable",),
-    "vehicle.parameter_file": ("ParameterFile",),
-    "study.plan": ("read_plan",),
-    "study.study": ("Plan",),
-    "api.validations": ("validation",),
-    "report.rendered": ("rendered",),
-}
-_HOME = {name: home for home, names in _HOMES.items() for name in names}
-
-__all__ = [
-    "AddedMass",
-    "AxesError",
-    "Body",
-    "Check",
-    "Coefficient",
-    "CoefficientSet",
-    "CoeflabError",
-    "Comparison",
-    "Conditions",
-    "Evaluated",
-    "Export",
-    "FitResult",
-    "FittedLaw",
-    "FittedModel",
-    "ForceTable",
-    "InputError",
-    "LinearModel",
-    "LinearSchedule",
-    "Motion",
-    "NextTests",
-    "ParameterFile",
-    "Plan",
-    "PlannedTable",
-    "PluginError",
-    "Points",
-    "Result",
-    "Scaling",
-    "ScalingMismatchError",
-    "Status",
-    "Study",
-    "Table",
-    "Tow",
-    "Trim",
-    "UnitsError",
-    "Vehicle",
-    "__version__",
-    "compare",
-    "estimate",
-    "export",
-    "fit",
-    "manoeuvres",
-    "next_tests",
-    "read_body",
-    "read_campaign",
-    "read_plan",
-    "read_table",
-    "read_tables",
-    "read_vehicle",
-    "rendered",
-    "run",
-    "shipped",
-    "shipped_names",
-    "simulate",
-    "tow",
-    "trim",
-    "validation",
-    "vehicle",
-]
-
-
 _RENAMED = {
     "read_parameter_file": ("vehicle.parameter_file", "read_vehicle", "0.4")
 }  # home, new name, release that lacks it
@@ -208,13 +37,27 @@ def __getattr__(name: str) -> Any:
 
         warnings.warn(f"coeflab.{name} is coeflab.{new}; {name} goes in {gone}", DeprecationWarning, stacklevel=2)
         return getattr(import_module(f"coeflab.{home}"), name)
-    if name in _HOME:
-        return getattr(import_module(f"coeflab.{_HOME[name]}"), name)
+    if name == "__all__":
+        return __dir__()
+    if name in _homes():
+        return getattr(import_module(_homes()[name]), name)
     raise AttributeError(f"module 'coeflab' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return [*sorted(_homes()), "__version__"]
+
+
+@cache
+def _homes() -> dict[str, str]:
+    """The module of every public name, of which ``__init__.pyi`` is the only list."""
+    import ast
+    from importlib.resources import files
+
+    from coeflab.core.text.bounded import own_text
+
+    body = ast.parse(own_text(files("coeflab") / "__init__.pyi")).body
+    return {n.name: str(f.module) for f in body if isinstance(f, ast.ImportFrom) for n in f.names}
 
 
 def _card(renderer: str) -> Callable[[object], str]:

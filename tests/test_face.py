@@ -12,7 +12,7 @@ import coeflab
 def test_every_public_name_resolves() -> None:
     for name in coeflab.__all__:
         assert getattr(coeflab, name) is not None, name
-    assert set(coeflab.__all__) == {*coeflab._HOME, "__version__"}
+    assert set(coeflab.__all__) == {*coeflab._homes(), "__version__"}
 
 
 def test_import_pulls_in_nothing_heavy() -> None:

@@ -14,7 +14,7 @@ GATE = """#!/bin/sh
 echo "$@" >> {ran}
 case "$*" in
   *ruff*) exit {ruff} ;;
-  *mypy*) echo found by mypy; exit {mypy} ;;
+  *mypy*) until grep -q pytest {ran}; do sleep 0.1; done; echo found by mypy; exit {mypy} ;;
   *pytest*) trap 'exit 2' INT; for i in $(seq {waits}); do sleep 0.1; done; exit {tests} ;;
 esac
 """

@@ -11,8 +11,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.law.scaling import Scaling
-from coeflab.study.fitting import FEW_ROWS
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
@@ -107,7 +107,7 @@ class FirstFit(NamedTuple):
 
 
 def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
-    """A campaign by the fit that it is for; where no setting is swept while the others rest, its rows as one model.
+    """A campaign by the fit that it is for; where another model takes combined rows to more of the main derivatives, by that.
 
     Parameters
     ----------
@@ -122,14 +122,25 @@ def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
     """
     suited = suited_fit(folder)
     study, why, by = None, "", suited
-    for by in dict.fromkeys([suited, MODEL] if suited == USUAL else [suited]):
-        try:
-            study = fit_campaigns([folder], by, progress=progress)
-            break
-        except InputError as refused:
-            why = why or str(refused)
-    found = () if study is None else (f for fit in study.fits for f in fit.findings if f.code == FEW_ROWS)
-    further = (
-        "" if study is None else next((f.advice for f in found if f["by"] == "combined"), "" if by == suited else by)
+    try:
+        study = fit_campaigns([folder], suited, progress=progress)
+    except InputError as refused:
+        why = str(refused)
+    combined = study is not None and any(
+        f.code == FEW_ROWS and f["by"] == "combined" for fit in study.fits for f in fit.findings
     )
+    if suited == USUAL and (study is None or combined):
+        try:
+            joint = fit_campaigns([folder], MODEL, progress=progress)
+        except InputError:
+            joint = None
+        if study is None or (joint is not None and len(_valued(joint)) > len(_valued(study))):
+            study, by = joint, MODEL
+    further = "" if study is None else MODEL if combined and by == suited else "" if by == suited else by
     return FirstFit(study, by, by == suited, study is not None and by in DEFAULT_FITS, why, further)
+
+
+def _valued(study: Study) -> set[str]:
+    """The main derivatives that have a value."""
+    valued = {c.symbol for fit in study.fits for c in fit.coefficients.coefficients if c.value is not None}
+    return valued & set(MAIN)

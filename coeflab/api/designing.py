@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,13 +18,17 @@ from coeflab.bodies import body as plain
 from coeflab.bodies.simplify.source import names_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, typed
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import one_thread
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.motion.uncertainty.tests import Kind
 from coeflab.motion.uncertainty.uncertainty import Question
 from coeflab.study import next_tests as plain_tests
+from coeflab.study import study as plain_study
 from coeflab.study.next_tests import MEMBERS, ProposedTest, Ranges, Reached, Wanted
+from coeflab.study.plan import names_plan, plan_at, read_plan
+from coeflab.study.run import run as carried_out
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import INDICES
@@ -111,8 +116,8 @@ def next_tests(
 
     Parameters
     ----------
-    source : str, Path, Vehicle, Result, table or Body
-        A parameter file, fitted tables, or a body without any data, whose estimates have U95.
+    source : str, Path, Vehicle, Result, Study, table or Body
+        A plan of one vehicle, a parameter file, fitted tables, or a body without any data, whose estimates have U95.
     wanted : str
         ``"Yv'"``, ``"G_h"``, or a figure of the manoeuvre, ``"Tactical diameter"``; by default the one of Yv', Nv', Zw', Mw',
         Yr', Nr' whose U95 is the largest share of its value.
@@ -140,39 +145,84 @@ def next_tests(
     Raises
     ------
     InputError
-        A figure without an interval, nothing with U95, a range that is none.
+        A figure without an interval, nothing with U95, a range that is none, a plan of several vehicles.
     """
     ranges = Ranges(
         above_zero(angle, "angle", "angle"), above_zero(control, "angle", "control"), above_zero(rate, "none", "rate")
     )
-    kind = _meant(source)
+    kind, name = _meant(source), ""
     held: list[Coefficient]
     parameters: ParameterFile | None = None
     fitted: list[Result] = []
-    if kind is ParameterFile:
-        parameters = parameters_of(source)
+    if kind is plain_study.Study:
+        study = _of_one_vehicle(source)
+        parameters, name = next(iter(study.parameter_files.values())), study.plan.name
         held = list(parameters.coefficients)
+        fitted = [Result(tuple(study.fits), tuple(study.tables))] if study.tables else []
+    elif kind is ParameterFile:
+        parameters = parameters_of(source)
+        held, name = list(parameters.coefficients), parameters.name
     elif kind is Result:
         fitted = [source if isinstance(source, Result) else fit(source)]
         held = []
     else:
-        held = [c for f in estimate(source).fits for c in f.coefficients.coefficients]
+        estimates = estimate(source).fits
+        held, name = [c for f in estimates for c in f.coefficients.coefficients], estimates[0].body
     if tables is not None:
         fitted += [tables if isinstance(tables, Result) else fit(tables)]
     sweeps = [s for r in fitted for f in r.fits for s in f.sweeps]
     measured = [c for r in fitted for f in r.fits for c in f.coefficients.coefficients]
-    known = {c.symbol.removesuffix("'"): c for c in (*held, *measured)}
+    valued = [c for c in measured if c.value is not None]
+    known = {c.symbol.removesuffix("'"): c for c in (*measured, *held, *reversed(valued))}
     figure = _wanted(wanted, known, parameters, manoeuvre, options)
     goal = None if target is None else share_of(target, "target") * abs(figure.value)
     computed = any(t.source.kind == "cfd" for r in fitted for t in r.tables)
     found = plain_tests.next_tests(
-        figure, list(known.values()), sweeps, ranges, runs, share_of(noise, "noise"), target=goal, computed=computed
+        figure,
+        list(known.values()),
+        sweeps,
+        ranges,
+        runs,
+        share_of(noise, "noise"),
+        target=goal,
+        computed=computed,
+        given=_given(kind, name, [c for r in fitted for f in r.fits for c in f.campaigns]),
     )
     return NextTests(**{f.name: getattr(found, f.name) for f in fields(plain_tests.NextTests)})
 
 
+def _of_one_vehicle(source: Any) -> plain_study.Study:
+    """The study of a plan with one parameter file; which of several a person means, nobody knows."""
+    if isinstance(source, plain_study.Study):
+        study, files = source, dict.fromkeys(source.parameter_files)
+        campaigns = [c for f in source.fits for c in f.campaigns]
+    else:
+        plan = read_plan(plan_at(source))
+        files, campaigns = (
+            dict.fromkeys(f.name for f in plan.parameter_files),
+            [c for f in plan.parameter_files for c in f.campaigns],
+        )
+        if len(files) < 2:
+            return _of_one_vehicle(carried_out(plan))
+    if len(files) == 1:
+        return study
+    raise InputError(
+        f"a plan of {len(files)} vehicles: {', '.join(files)}", "a plan of one vehicle", column="source",
+        advice=f"Ask of one campaign: {', '.join(dict.fromkeys(campaigns))}. Or of a parameter file, with the option table for its rows.",
+    )  # fmt: skip
+
+
+def _given(kind: type, name: str, campaigns: Sequence[str]) -> Finding:
+    """What the question was asked of, as it was understood."""
+    known = {plain_study.Study: "plan", Result: "rows", ParameterFile: "both" if campaigns else "file"}
+    what = "body" if kind is plain_study.Study and not campaigns else known.get(kind, "body")
+    return Finding.of("design.given", name, Severity.NOTE, kind=what, campaigns=list(dict.fromkeys(campaigns)))
+
+
 def _meant(source: Any) -> type:
-    """Result of tables, ParameterFile or Body, by what it is or what a path leads to."""
+    """Study of a plan, Result of tables, ParameterFile or Body, by what it is or what a path leads to."""
+    if isinstance(source, plain_study.Study):
+        return plain_study.Study
     if isinstance(source, Result | ForceTable):
         return Result
     if isinstance(source, plain.Body):
@@ -186,6 +236,8 @@ def _meant(source: Any) -> type:
         return ParameterFile
     if path.suffix.lower() == ".json":
         return ParameterFile
+    if names_plan(path):
+        return plain_study.Study
     return plain.Body if names_body(str(source)) else Result
 
 

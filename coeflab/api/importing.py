@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.units import quantity
 from coeflab.law.scaling import beyond_ends
+from coeflab.tables import several_tables
 from coeflab.tables.campaign import FILE
 from coeflab.tables.collect import runs_shown
 from coeflab.tables.column_map import ColumnMap, read_column_map
@@ -22,14 +23,6 @@ from coeflab.tables.mapping import assigned, without_a_setting
 from coeflab.tables.parts import JOIN, Part, alike, own, read_parts, require_parts, stated_together, with_shared_words
 from coeflab.tables.settings import Setting, assumed, read_in, require_one_datum, saved_mapping
 from coeflab.tables.settings_in_files import doubtful_setting
-from coeflab.tables.several_tables import (
-    columns_by_name,
-    complaints_of,
-    form_together,
-    interpreted_together,
-    is_pending,
-    settled_together,
-)
 from coeflab.tables.vocabulary import words_of
 from coeflab.tables.words.points import POINT_OF
 
@@ -116,11 +109,13 @@ class Draft:
 
     def understand(self) -> None:
         """What follows from what is stated so far; `founds` is of it."""
-        self.founds = interpreted_together(self.parts, self.stated.columns, self.settings)
+        self.founds = several_tables.interpreted_together(self.parts, self.stated.columns, self.settings)
 
     def lines(self) -> tuple[Line, ...]:
         """The form as it stands."""
-        return form_together(self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole)
+        return several_tables.form_together(
+            self.parts, self.founds, self.settings, self.chosen, self.numbers, self.whole
+        )
 
     def settle(self, accept: bool) -> bool:
         """Take what is harmless, or with ``accept`` all that is proposed; whether nothing is open then.
@@ -132,9 +127,11 @@ class Draft:
         InputError
             What cannot be, all of it.
         """
-        founds, settings = settled_together(self.parts, self.stated.columns, self.settings, accept, self.whole)
+        founds, settings = several_tables.settled_together(
+            self.parts, self.stated.columns, self.settings, accept, self.whole
+        )
         refuse_contradictions(founds)
-        waits = is_pending(self.parts, founds) or (bool(self.chosen) and not accept)
+        waits = several_tables.is_pending(self.parts, founds) or (bool(self.chosen) and not accept)
         if done := not waits and not self.stated.left:
             self.founds, self.settings = founds, settings
             return done
@@ -151,7 +148,7 @@ class Draft:
         InputError
             What of it is no answer.
         """
-        return typed(answer, lines, columns_by_name(self.parts), [one.key for one in self.chosen])
+        return typed(answer, lines, several_tables.columns_by_name(self.parts), [one.key for one in self.chosen])
 
     def take(self, given: Typed, read: Callable[[], None] | None = None) -> None:
         """Take answers in; all or none.
@@ -180,7 +177,7 @@ class Draft:
         if POINT_OF not in given.settings:
             require_one_datum(self.settings, {k: one.value for k, one in given.settings.items()})
         columns, settings = self.stated.columns | given.columns, self.stated.settings | given.settings
-        founds = interpreted_together(self.parts, columns, self.settings | given.settings)
+        founds = several_tables.interpreted_together(self.parts, columns, self.settings | given.settings)
         refuse_contradictions(founds)
         self.stated.columns, self.stated.settings, self.founds = columns, settings, founds
         self.settings |= given.settings
@@ -203,7 +200,9 @@ class Draft:
         if not asked:
             return {}
         inside = {**self.settings, **dict.fromkeys(asked, Setting(True, ""))}
-        questions = [q for f in interpreted_together(self.parts, self.stated.columns, inside) for q in f.questions]
+        questions = [
+            q for f in several_tables.interpreted_together(self.parts, self.stated.columns, inside) for q in f.questions
+        ]
         return {q.key: q.default or "..." for q in questions if q.key.startswith("inertia.")}
 
     def warned(self) -> list[str]:
@@ -238,7 +237,7 @@ def refuse_contradictions(founds: Sequence[Interpretation]) -> None:
     InputError
         All of it.
     """
-    if complaints := complaints_of(founds):
+    if complaints := several_tables.complaints_of(founds):
         raise together(complaints)
 
 
@@ -342,7 +341,7 @@ def _number(text: str) -> Any:
 
 def _mapped(texts: Sequence[str], parts: Sequence[Part]) -> dict[str, ColumnMap]:
     """What ``--map NAME=WHAT`` states, by the names of the file, which may hold a sign of equality."""
-    names, stated = columns_by_name(parts), {}
+    names, stated = several_tables.columns_by_name(parts), {}
     for text in texts:
         name = max((n for n in names if text.startswith(f"{n}=")), key=len, default=text.partition("=")[0])
         stated[name.strip() if name not in names else name] = text[len(name) + 1 :]
@@ -374,7 +373,7 @@ def column_maps(
     InputError
         No such column, or a text that says nothing of one.
     """
-    names = {name: key for name, (key, _) in columns_by_name(parts).items()}
+    names = {name: key for name, (key, _) in several_tables.columns_by_name(parts).items()}
     out: dict[str, ColumnMap] = {}
     complaints: list[InputError] = []
     for name, text in stated.items():

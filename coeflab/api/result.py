@@ -15,9 +15,9 @@ from coeflab.core.texts import remark
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import covariance_of
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
-from coeflab.study.fitting import FEW_ROWS
 
 if TYPE_CHECKING:
     import pandas as pd

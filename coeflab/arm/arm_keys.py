@@ -18,6 +18,7 @@ from coeflab.core.units import STANDARD_GRAVITY, with_unit
 from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import inertia_doubt
 from coeflab.law.transforms import about_axis, moved, rotation, turned
+from coeflab.law.water import ROUND_DENSITY
 
 INERTIA = (
     "[[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]] about the centre of mass: the same numbers on both sides of the diagonal, "
@@ -345,7 +346,7 @@ class ArmKeys(takes.Declaration):
     attachment: takes.Point
     mount: Turn = (np.pi, 0.0, 0.0)
     tool: Own = field(default_factory=lambda: np.zeros(3))
-    density: Annotated[takes.Density, takes.ABOVE_ZERO] = 1000.0
+    density: Annotated[takes.Density, takes.ABOVE_ZERO] = ROUND_DENSITY
     gravity: Annotated[takes.Acceleration, takes.ZERO_OR_MORE] = STANDARD_GRAVITY
 
     @property

@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 
 from coeflab.arm.thrusters import Thruster
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, locking
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import inertia_doubt, rigid_body_inertia
+from coeflab.law.water import ROUND_DENSITY
 
 JointKind = Literal["revolute", "prismatic"]
 FLU = np.diag([1.0, -1.0, -1.0])
-FRESH = 1000.0
 NODES = 12  # of a strip; Gauss's rule is exact for |v| v where v does not turn round within it
 Ints = NDArray[np.int64]
 
@@ -85,6 +85,7 @@ class Joint:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("start end")
 class Strip:
     """A straight piece of a link that drags across its own axis, by strip theory (equation 21 of the URV paper).
 
@@ -103,10 +104,6 @@ class Strip:
     end: Array
     diameter: float
     coefficient: float
-
-    def __post_init__(self) -> None:
-        for name in ("start", "end"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def length(self) -> float:
@@ -212,6 +209,7 @@ def _lock(body: Link | Base) -> None:
 
 
 @dataclass(frozen=True, eq=False)
+@locking("attachment mount tool datum")
 class Chain:
     """A vehicle and the links that follow each other from it.
 
@@ -248,15 +246,13 @@ class Chain:
     mount: Array = field(default_factory=FLU.copy)
     tool: Array = field(default_factory=lambda: np.zeros(3))
     thrusters: tuple[Thruster, ...] = ()
-    density: float = FRESH
+    density: float = ROUND_DENSITY
     gravity: float = STANDARD_GRAVITY
     statements: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
     datum: Array = field(default_factory=lambda: np.zeros(3))
 
     def __post_init__(self) -> None:
-        for name in ("attachment", "mount", "tool", "datum"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         if np.max(np.abs(self.mount.T @ self.mount - np.eye(3))) > 1e-9 or np.linalg.det(self.mount) < 0.0:
             raise InputError("axes that are not right-handed and of length one", "a rotation", column="mount")
 
@@ -316,6 +312,7 @@ class Chain:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("velocity acceleration")
 class Flow:
     """Water that moves as a whole.
 
@@ -329,10 +326,6 @@ class Flow:
 
     velocity: Array = field(default_factory=lambda: np.zeros(3))
     acceleration: Array = field(default_factory=lambda: np.zeros(3))
-
-    def __post_init__(self) -> None:
-        for name in ("velocity", "acceleration"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def at(self, time: float) -> Flow:
         """The water so many seconds later."""

@@ -15,20 +15,11 @@ from typing import Literal
 
 import numpy as np
 
-from coeflab.arm import kane
+from coeflab.arm import kane, thrusters
 from coeflab.arm.chain import STILL, Chain, Flow
 from coeflab.arm.motion import Equations, Track, at_rest, equations_of, limited, march
-from coeflab.arm.thrusters import (
-    Thruster,
-    TorqueThruster,
-    VoltageThruster,
-    require_all_directions,
-    thruster_forces,
-    thruster_matrix,
-    thruster_rates,
-)
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import axes_in_earth
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Ended
@@ -41,6 +32,7 @@ LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("position attitude")
 class Station:
     """Where the vehicle is to stay.
 
@@ -54,10 +46,6 @@ class Station:
 
     position: Array = field(default_factory=lambda: np.zeros(3))
     attitude: Array = field(default_factory=lambda: np.array(LEVEL))
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "position", locked(self.position))
-        object.__setattr__(self, "attitude", locked(self.attitude))
 
 
 @brief
@@ -94,6 +82,7 @@ class Controller:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time state wanted propellers ordered thrust torque end end_wanted")
 class ControlledRun:
     """A motion under control, one row a time.
 
@@ -138,10 +127,6 @@ class ControlledRun:
     ended: Ended
     why: str = ""
     saturated: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("time", "state", "wanted", "propellers", "ordered", "thrust", "torque", "end", "end_wanted"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def status(self) -> tuple[str, ...]:
@@ -253,8 +238,8 @@ class _Loop:
     ) -> None:
         self.chain, self.controller, self.track, self.station, self.flow = chain, controller, track, station, flow
         self.equations: Equations = equations_of(chain)
-        self.inverse = require_all_directions(chain.thrusters)
-        self.matrix = thruster_matrix(chain.thrusters)
+        self.inverse = thrusters.require_all_directions(chain.thrusters)
+        self.matrix = thrusters.thruster_matrix(chain.thrusters)
         self.size = 13 + 2 * chain.count
         self.at_start = kane.mass_matrix(chain, start[7 : 7 + chain.count])
         self.gains = tuple(gain_of(t, chain.density) for t in chain.thrusters)
@@ -283,7 +268,7 @@ class _Loop:
 
     def thrusts(self, state: Array, asked: Array) -> Array:
         """(m,) thrusts that act, N."""
-        return thruster_forces(
+        return thrusters.thruster_forces(
             self.chain.thrusters, state[self.size :], self.commands(state, asked), self.chain.density
         )
 
@@ -297,11 +282,13 @@ class _Loop:
         asked = self.asked(time, state)
         commands = self.commands(state, asked)
         density, propellers = self.chain.density, state[self.size :]
-        pushed = self.matrix @ thruster_forces(self.chain.thrusters, propellers, commands, density)
+        pushed = self.matrix @ thrusters.thruster_forces(self.chain.thrusters, propellers, commands, density)
         m, force = self.equations(state[: self.size], self.flow.at(time))
         changed = np.linalg.solve(m, force + np.concatenate([pushed, limited(self.chain, asked[6:])]))
         moved = kane.displacement_rates(self.chain.count, state)
-        return np.concatenate([moved, changed, thruster_rates(self.chain.thrusters, propellers, commands, density)])
+        return np.concatenate(
+            [moved, changed, thrusters.thruster_rates(self.chain.thrusters, propellers, commands, density)]
+        )
 
 
 def wanted_accelerations(
@@ -332,7 +319,7 @@ def _turn_left(attitude: Array, wanted: Array) -> Array:
     return np.asarray(vector if scalar >= 0.0 else -vector)
 
 
-def gain_of(thruster: Thruster, density: float) -> float:
+def gain_of(thruster: thrusters.Thruster, density: float) -> float:
     """Thrust over Omega |Omega|, N s^2/rad^2, where the thruster turns steadily at rest; one without a model has 1."""
     model = thruster.model
     if model is None:
@@ -341,7 +328,9 @@ def gain_of(thruster: Thruster, density: float) -> float:
     return 1.0 / (turning * abs(turning))
 
 
-def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: float, density: float) -> float:
+def demand(
+    thruster: thrusters.Thruster, gain: float, thrust: float, state: Array, pace: float, density: float
+) -> float:
     """Torque, N m, or voltage, V, that brings a propeller to the speed of a thrust at ``pace``, 1/s; without a model the thrust.
 
     The speed is the root of thrust over gain, but for a straight line through zero that is as wide as the thrust of 1 rad/s, so that no
@@ -353,22 +342,22 @@ def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: f
     square = thrust / gain
     aim = square / (square * square + IDLE**4) ** 0.25
     idle = float(model.rates(state, 0.0, density)[0])
-    power = model.beta if isinstance(model, TorqueThruster) else model.drive
+    power = model.beta if isinstance(model, thrusters.TorqueThruster) else model.drive
     wanted = (pace * (aim - float(state[0])) - idle) / power
     return float(np.clip(wanted, -model.strongest, model.strongest))
 
 
-def most_thrust(thruster: Thruster, gain: float, density: float) -> float:
+def most_thrust(thruster: thrusters.Thruster, gain: float, density: float) -> float:
     """Largest steady thrust, N."""
     model = thruster.model
     if model is None or not np.isfinite(model.strongest):
         return np.inf
-    if isinstance(model, TorqueThruster):
+    if isinstance(model, thrusters.TorqueThruster):
         return model.thrust * model.beta * model.strongest / model.alpha
     return _most_by_voltage(model, gain, density)
 
 
-def _most_by_voltage(model: VoltageThruster, gain: float, density: float) -> float:
+def _most_by_voltage(model: thrusters.VoltageThruster, gain: float, density: float) -> float:
     """Of the voltage model: damping Omega + load Q = drive V, Q by the square of Omega."""
     volts, state = model.steady(1.0, density)
     turning = float(state[0])

@@ -25,19 +25,12 @@ from coeflab.bodies.mesh import solids as silhouette
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
 from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
+from coeflab.report.figures import body_scene
 from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
-from coeflab.report.figures.body_scene import (
-    COLOUR_OF,
-    box_facets,
-    cut_cylinder_facets,
-    cylinder_facets,
-    normals,
-    part_facets,
-)
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
@@ -56,6 +49,7 @@ SLICES = 40  # of a cylinder that is seen in part
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("hull time states")
 class ArmMotion:
     """What a picture of a motion takes.
 
@@ -74,10 +68,6 @@ class ArmMotion:
     hull: Array
     time: Array
     states: Array
-
-    def __post_init__(self) -> None:
-        for name in ("hull", "time", "states"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def ends(self) -> Array:
@@ -152,15 +142,15 @@ def _in_place(drawn: Sheet, shape: Parts) -> None:
     """The hull, and of every cylinder what neither lies in it nor behind it; cylinders nearer to the viewer later."""
     hull, *cylinders = shape.parts
     toward = drawn.view.axes[2]
-    drawn.part(part_facets(hull), COLOUR_OF["ellipsoid"], False, True)
+    drawn.part(body_scene.part_facets(hull), body_scene.COLOUR_OF["ellipsoid"], False, True)
     for part in sorted(cylinders, key=lambda p: round(float(p.centre @ toward), 9)):
         form = part.form
         if not isinstance(form, Cylinder):
             continue
-        facets = cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
+        facets = body_scene.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
         seen = facets[in_sight(facets.mean(axis=1), hull, toward)]
         if len(seen):
-            drawn.part(seen, COLOUR_OF["cylinder"], False, False)
+            drawn.part(seen, body_scene.COLOUR_OF["cylinder"], False, False)
 
 
 def in_sight(points: Array, hull: Part, toward: Array) -> NDArray[np.bool_]:
@@ -277,7 +267,9 @@ def _arrow(drawn: Sheet, start: Array, end: Array, colour: str) -> None:
 def _pale(drawn: Sheet, shape: Parts) -> None:
     """Parts as outlines with a pale fill, so that what is written over them can be read."""
     for part in shape.parts:
-        path = outline_path(silhouette.convex_outline(part_facets(part).reshape(-1, 3), drawn.frame), drawn.move)
+        path = outline_path(
+            silhouette.convex_outline(body_scene.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
+        )
         if path is not None:
             drawn.axes.add_patch(PathPatch(path, facecolor=COLOURS["band"], edgecolor="none", alpha=0.25, zorder=2))
             drawn.axes.add_patch(PathPatch(path, facecolor="none", edgecolor=COLOURS["muted"], linewidth=0.8, zorder=2))
@@ -294,7 +286,7 @@ def _corners(shape: Parts) -> Array:
             size = 2.0 * np.asarray(form.axes)
         else:
             size = np.ones(3)
-        out.append(box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
+        out.append(body_scene.box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
     return np.vstack(out)
 
 
@@ -500,7 +492,7 @@ def animation(motion: ArmMotion, title: str, said: str) -> bytes:
             {
                 "colour": COLOURS["c" if k == 0 else "a"],
                 "facets": own.round(4).tolist(),
-                "normals": normals(own).round(3).tolist(),
+                "normals": body_scene.normals(own).round(3).tolist(),
             }
         )
     poses = []
@@ -527,7 +519,11 @@ def animation(motion: ArmMotion, title: str, said: str) -> bytes:
 
 def _tube(part: Part) -> Array:
     form = part.form
-    return cylinder_facets(form.radius, form.length) if isinstance(form, Cylinder) else box_facets(np.ones(3))
+    return (
+        body_scene.cylinder_facets(form.radius, form.length)
+        if isinstance(form, Cylinder)
+        else body_scene.box_facets(np.ones(3))
+    )
 
 
 def _hull_facets(axes: Array) -> Array:

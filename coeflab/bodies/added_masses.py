@@ -16,6 +16,7 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
 from coeflab.law.added_mass import NearWall
+from coeflab.law.water import ROUND_DENSITY
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
@@ -124,7 +125,7 @@ def added_masses(
 
 
 @one_thread()
-def against_mesh(found: Simplification, density: float = 1000.0, panels: int = 6_000) -> Simplification:
+def against_mesh(found: Simplification, density: float = ROUND_DENSITY, panels: int = 6_000) -> Simplification:
     """The added mass of the parts beside the panel method on the mesh, in six motions.
 
     Parameters

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from hashlib import sha256
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.outline import Foil
 from coeflab.core.axes import Axes, parse_axes
+from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import quoted
 from coeflab.core.types import Array
 
@@ -62,50 +64,11 @@ def drafted(
     foils = outline.foils if outline is not None else ()
     nothing = NOTHING * shape.length
     low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
-    text = f"""\
-# Made by `coeflab vehicle` from the mesh alone. Complete it, then give this folder to `coeflab vehicle`, with --mass.
-[body]
-name = {quoted(body.name)}
-reader = "mesh"
-datum = "origin"
-datum_note = {quoted(f"of {mesh.name}")}
-reference_point = {_point(body.reference_point, nothing)}  # m, x forward, y starboard, z down; here the centre of buoyancy
-
-[mesh]
-path = {quoted(path)}
-unit = {quoted(unit)}
-axes = {_stated(parse_axes(axes))}
-{mended}
-[particulars]
-length = {high[0] - low[0]:.6g}
-
-[source]
-citation = "none"
-how_obtained = {quoted(f"{mesh.name}, a mesh")}
-
-{_controls(foils, (low[0] + high[0]) / 2.0, nothing)}
-# A thruster: take the # away and state its curve, as measured at the speed of the vehicle.
-# [[thruster]]
-# name = "main"
-# place = {_point(np.array([low[0], *_axis(foils, low, high)]), nothing)}  # m; here the stern
-# axis = [1, 0, 0]  # of positive thrust
-# curve = [[0, 0], [RPM, NEWTON]]  # rpm, N; straight lines between; numbers in the place of RPM and NEWTON
-# Or by another command, here 40 N at full throttle:
-# command = "throttle"
-# unit = "%"
-# curve = [[0, 0], [100, 40]]
-
-# What it weighs: take the # away, one [[mass]] a part. Without any, and without --mass, it is as heavy as the water that it displaces.
-# [[mass]]
-# name = "dry vehicle"
-# mass = "MASS kg"
-# centre = {_point(body.reference_point, nothing)}  # m; here the centre of buoyancy, which rights nothing: z is larger below it
-# inertia = ["IX kg m^2", "IY kg m^2", "IZ kg m^2"]  # about its own centre; a mass without it is a point, and points on one axis have no roll inertia
-# [[mass]]
-# name = "water in the hull"  # or lead: what is missing to the displaced water
-# ballast = true
-# centre = {_point(body.reference_point, nothing)}
-"""
+    text = own_text(files("coeflab.bodies") / "drafted.toml.txt").format(
+        name=quoted(body.name), origin=quoted(f"of {mesh.name}"), point=_point(body.reference_point, nothing), path=quoted(path),
+        unit=quoted(unit), axes=_stated(parse_axes(axes)), mended=mended, length=high[0] - low[0], source=quoted(f"{mesh.name}, a mesh"),
+        controls=_controls(foils, (low[0] + high[0]) / 2.0, nothing), stern=_point(np.array([low[0], *_axis(foils, low, high)]), nothing),
+    )  # fmt: skip
     return f"{SEAL}{_digest(text)}\n{text}"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from coeflab.bodies.closed_forms import lamb_end_correction
 from coeflab.bodies.outline import Sections
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.transforms import moved
 
 # Shape factors: one-seventh power law; halfway from 1.4, measured on flat plates, to 2.4 at separation.
@@ -33,6 +33,7 @@ def integral(values: Array, x: Array) -> Array:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("sway heave surface momentum")
 class HullFlow:
     """A hull in a stream of speed U.
 
@@ -54,10 +55,6 @@ class HullFlow:
     heave: Array
     surface: Array
     momentum: Array
-
-    def __post_init__(self) -> None:
-        for name in ("sway", "heave", "surface", "momentum"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def volume(self) -> float:

@@ -16,7 +16,7 @@ from coeflab.bodies.shape import Box, Cylinder, Ellipsoid
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import Table, number, with_u95
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt, parallel_axis
 from coeflab.law.transforms import rotation
 from coeflab.law.water import FRESH_DENSITY
@@ -37,6 +37,7 @@ Size = Annotated[takes.Length, takes.ABOVE_ZERO]
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre inertia")
 class MassPart:
     """A part with its mass.
 
@@ -65,10 +66,6 @@ class MassPart:
     volume: float = 0.0
     u95: float | None = None
     flooded: bool = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
-        object.__setattr__(self, "inertia", locked(self.inertia))
 
 
 def _place(value: float) -> str:
@@ -118,6 +115,7 @@ def _angles(angles: tuple[float, float], bg: Array) -> str:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre_of_buoyancy")
 class MassModel:
     """All parts of a vehicle, and the water that its outer shape displaces.
 
@@ -139,9 +137,6 @@ class MassModel:
     volume: float
     centre_of_buoyancy: Array
     assumed: bool = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre_of_buoyancy", locked(self.centre_of_buoyancy))
 
     @property
     def mass(self) -> float:

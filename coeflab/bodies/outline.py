@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import brief, locked
+from coeflab.core.types import brief, locked, locking
 
 
 @brief
@@ -56,6 +56,7 @@ class Sections:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("root tip stand")
 class Foil:
     """A fin, a sail, a wing: what stands out of the hull of one side; m, FRD, from the datum.
 
@@ -90,10 +91,6 @@ class Foil:
     flap: float = 1.0
     sign: float = 1.0
 
-    def __post_init__(self) -> None:
-        for name in ("root", "tip", "stand"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-
     @property
     def span(self) -> float:
         """Exposed, across x, m."""
@@ -107,6 +104,7 @@ class Foil:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre")
 class RingWing:
     """A ring wing, a duct or a shroud about x; m, FRD, from the datum.
 
@@ -127,12 +125,10 @@ class RingWing:
     chord: float
     thickness: float
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre")
 class Propeller:
     """An open propeller that turns about x; m, FRD, from the datum.
 
@@ -155,12 +151,10 @@ class Propeller:
     pitch_ratio: float
     area_ratio: float
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre rotation half_extents areas unshielded")
 class Bluff:
     """A part that the flow separates from in every direction: a box, a tube of a frame, a sphere; m, FRD, from the datum.
 
@@ -189,12 +183,6 @@ class Bluff:
     areas: NDArray[np.float64]
     unshielded: NDArray[np.float64] | None = None
 
-    def __post_init__(self) -> None:
-        for name in ("centre", "rotation", "half_extents", "areas"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-        if self.unshielded is not None:
-            object.__setattr__(self, "unshielded", locked(self.unshielded))
-
     @property
     def in_the_open(self) -> NDArray[np.float64]:
         """(3,) areas with nothing hidden, m^2."""
@@ -203,6 +191,7 @@ class Bluff:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre areas")
 class Unseen:
     """Area of a body that no method sees; m, FRD, from the datum.
 
@@ -217,10 +206,6 @@ class Unseen:
     name: str
     centre: NDArray[np.float64]
     areas: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for name in ("centre", "areas"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 @brief

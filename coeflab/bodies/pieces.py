@@ -19,7 +19,7 @@ from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.shape import Parts, Revolution, as_revolution
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.transforms import skew
 
 HULL, STERN = "hull", "stern"
@@ -113,6 +113,7 @@ def part_pieces(shape: Parts, areas: Iterable[float]) -> tuple[Piece, ...]:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("hinge axis")
 class Control:
     """What turns about one hinge.
 
@@ -136,10 +137,6 @@ class Control:
     axis: Array
     limit: float | None = None
     rate: float | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "hinge", locked(self.hinge))
-        object.__setattr__(self, "axis", locked(self.axis))
 
     def turned(self, vertices: Array, angle: float) -> Array:
         """(n, 3) points after a turn by an angle, rad (Rodrigues)."""

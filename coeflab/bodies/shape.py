@@ -24,7 +24,7 @@ from coeflab.bodies.forms import (
 )
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.symbols import MOTIONS
 
 __all__ = [
@@ -123,6 +123,7 @@ class StandIn:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre rotation")
 class Part:
     """A named form somewhere on the body.
 
@@ -145,8 +146,6 @@ class Part:
     fit: StandIn | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
-        object.__setattr__(self, "rotation", locked(self.rotation))
         turn = self.rotation
         proper = turn.shape == (3, 3) and np.allclose(turn @ turn.T, np.eye(3), atol=1e-9) and np.linalg.det(turn) > 0.0
         if not proper:
@@ -272,6 +271,7 @@ class Parts:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x weight radius radius_slope axis")
 class Revolution:
     """A body of revolution about an axis along x, by quadrature stations.
 
@@ -293,8 +293,6 @@ class Revolution:
     length: float
 
     def __post_init__(self) -> None:
-        for name in ("x", "weight", "radius", "radius_slope", "axis"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         if np.any(self.radius < 0.0) or not np.any(self.radius > 0.0):
             raise InputError("a negative or vanishing radius", "a meridian with radii above zero")
 

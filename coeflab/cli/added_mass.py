@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.body import Body
@@ -15,33 +15,22 @@ EXAMPLE = "coeflab added-mass suboff_bare_hull"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    body: str = options.BODY,
-    method: str = typer.Option(
-        "all",
-        "--method",
-        metavar="METHOD",
-        autocompletion=complete.methods,
-        help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ...",
-    ),
-    unit: str = options.UNIT,
-    axes: str = options.AXES,
-    repair: bool = options.REPAIR,
-    fill: bool = options.FILL,
-    sheets: bool = options.SHEETS,
-    wall: str = typer.Option(
-        "",
-        "--wall",
-        metavar="WALL",
-        help="bottom, surface_zero or surface_infinite (frequency): the panel method against the distance from it.",
-    ),
-    distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
-    error: str = typer.Option(
-        "", "--error", metavar="SHARE", help="Raise the panels until their error estimate is below it: 2%, 0.02."
-    ),
-    density: float = typer.Option(show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
-    json: bool = typer.Option(False, "--json", help="Print {method: matrix, error, point, density ...} in SI."),
+    body: str,
+    method: str = "all",
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+    wall: str = "",
+    distance: str = "",
+    error: str = "",
+    density: float = show.FRESH_WATER,
+    json: bool = False,
 ) -> None:
     """Show a body's added mass by several methods.
 

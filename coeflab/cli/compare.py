@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.comparing import Behaviour, Comparison
@@ -16,24 +16,8 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 
-def command(
-    first: Path = typer.Argument(
-        ...,
-        metavar="PARAMS",
-        autocompletion=complete.parameters,
-        help="A parameter file; its length and reference point are kept.",
-    ),
-    second: Path = typer.Argument(
-        ..., metavar="OTHER", autocompletion=complete.parameters, help="The parameter file that is compared with it."
-    ),
-    speed: str = typer.Option(
-        "",
-        metavar="SPEED",
-        help='Also what both do at that speed, "1.5 m/s": stability, eigenvalues, turn, zigzag, forces.',
-        show_default=False,
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def command(*, first: Path, second: Path, speed: str = "", json: bool = False) -> None:
     """Compare two parameter files by their combined U95.
 
     Lengths and reference points are converted; Yv' and Yuv', single added masses and entries of a matrix are matched. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"

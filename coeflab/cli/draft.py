@@ -7,16 +7,7 @@ from collections.abc import Collection, Sequence
 
 import typer
 
-from coeflab.api.importing import (
-    Draft,
-    Interpretation,
-    Line,
-    Part,
-    open_lines,
-    refuse_contradictions,
-    runs_shown,
-    screen,
-)
+from coeflab.api import importing
 from coeflab.cli import show
 from coeflab.core.errors import InputError
 from coeflab.report.tables import raw_tables
@@ -28,16 +19,16 @@ FOLLOWS = (
 )
 
 
-def read(draft: Draft) -> None:
+def read(draft: importing.Draft) -> None:
     """Read the file and say what is being done."""
     with show.narrated(), show.progress(False) as say:
         draft.read(say)
 
 
-def asked(draft: Draft) -> None:
+def asked(draft: importing.Draft) -> None:
     """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
     draft.understand()
-    refuse_contradictions(draft.founds)
+    importing.refuse_contradictions(draft.founds)
     _described(draft)
     changed: set[str] = set()
     again = True
@@ -45,7 +36,7 @@ def asked(draft: Draft) -> None:
         lines = draft.lines()
         if again:
             _shown(draft, lines, changed)
-        missing = open_lines(lines)
+        missing = importing.open_lines(lines)
         hint = "N=VALUE; KEY=VALUE; N ? explains" + ("" if missing else "; Enter accepts all")
         answer = str(typer.prompt(f"  {hint}\n>", default="", show_default=False, prompt_suffix=" ")).strip()
         again = False
@@ -55,7 +46,7 @@ def asked(draft: Draft) -> None:
         try:
             if not answer:
                 draft.settle(accept=True)
-                if not open_lines(draft.lines()):
+                if not importing.open_lines(draft.lines()):
                     return
             else:
                 given = draft.typed(answer, lines)
@@ -73,7 +64,7 @@ def asked(draft: Draft) -> None:
         again = True
 
 
-def unasked(draft: Draft, words: Sequence[str], accept: bool) -> None:
+def unasked(draft: importing.Draft, words: Sequence[str], accept: bool) -> None:
     """Settle everything by what the command says, or show the form and the command that does, and stop.
 
     Raises
@@ -90,7 +81,7 @@ def unasked(draft: Draft, words: Sequence[str], accept: bool) -> None:
         own = next((one for one in lines if one.key == key), None)
         about = f"{own.why}" if own else "no such key"
         show.error(f'found "{key}=?", left open; expected a value: {about}')
-    missing = open_lines(lines)
+    missing = importing.open_lines(lines)
     many = f"{len(missing)} open: replace each ? by its value. " if missing else ""
     show.sentence(f"{many}--accept takes the proposals shown. Nothing is written yet.")
     if any(not offer.text for found in draft.founds for _, offer in found.open):
@@ -103,28 +94,28 @@ def unasked(draft: Draft, words: Sequence[str], accept: bool) -> None:
     raise typer.Exit(2)
 
 
-def _shown(draft: Draft, lines: Sequence[Line], changed: Collection[str] = ()) -> None:
+def _shown(draft: importing.Draft, lines: Sequence[importing.Line], changed: Collection[str] = ()) -> None:
     """Print the form, and what looks wrong in it."""
-    for line in screen(lines, changed, min(show.width(), 100)):
+    for line in importing.screen(lines, changed, min(show.width(), 100)):
         show.lines(line)
     show.text()
     print_list("Check", draft.warned())
 
 
-def _described(draft: Draft) -> None:
+def _described(draft: importing.Draft) -> None:
     """Print what each table is, what its numbers show, and what is not taken."""
     for part, found in zip(draft.parts, draft.founds, strict=True):
         described(part, found, whole=False)
     print_list("Not taken", draft.left)
 
 
-def described(part: Part, found: Interpretation, *, whole: bool = True, most: int = 0) -> None:
+def described(part: importing.Part, found: importing.Interpretation, *, whole: bool = True, most: int = 0) -> None:
     """Print what a table is and what its numbers show; its columns and what it says of itself where the form does not; ``most`` of each list."""
     raw = part.raw
     words = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     name = f"{part.name}: " * bool(part.name)
     show.sentence(f"{name}{raw.path}: read by {part.importer}" + (f"; {words}" if words else ""))
-    if runs := runs_shown(raw, MOST if whole else FEW):
+    if runs := importing.runs_shown(raw, MOST if whole else FEW):
         show.table(runs)
     if whole:
         show.table(raw_tables.columns(raw, found.proposals, found.mapping))

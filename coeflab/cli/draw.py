@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import typer
-
 from coeflab.cli import options, show
 
 EXAMPLE = "coeflab draw myring_auv"
 
 
+@options.worded
 def command(
-    body: str = options.BODY,
-    unit: str = options.UNIT,
-    axes: str = options.AXES,
-    repair: bool = options.REPAIR,
-    fill: bool = options.FILL,
-    sheets: bool = options.SHEETS,
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder to write; the current one without it."
-    ),
-    force: bool = typer.Option(False, "--force", help="Replace files that differ."),
+    *,
+    body: str,
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+    out: Path | None = None,
+    force: bool = False,
 ) -> None:
     """Draw a body in three views, and list its parts as estimates see them.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.exporting import Export, ParameterFile
@@ -22,26 +22,16 @@ WITH_MASS = (
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
 
 
+@options.worded
 def command(
-    file: Path = options.PARAMS,
-    to: list[str] = typer.Option(
-        [],
-        "--to",
-        metavar="TARGET",
-        autocompletion=complete.exporters,
-        help="Target, such as gazebo, xdyn or mss; coeflab formats exporters lists them. Several with commas, or repeatable. Required.",
-        show_default=False,
-    ),
-    out: Path | None = typer.Option(
-        None,
-        metavar="FOLDER",
-        help="Folder for the files, with a folder for each of several targets whose files have the same names; default NAME.TARGET "
-        "beside the parameter file.",
-    ),
-    accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although a target cannot hold everything."),
-    strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
-    accelerations: str = options.ACCELERATIONS,
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    file: Path,
+    to: list[str],
+    out: Path | None = None,
+    accept_loss: bool = False,
+    strict: bool = False,
+    accelerations: str = "measured",
+    json: bool = False,
 ) -> None:
     """Write what simulators load, and say what is lost.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
@@ -25,49 +25,24 @@ EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    table: list[str] = typer.Argument(
-        [],
-        metavar="TABLE",
-        autocompletion=complete.campaigns,
-        help="Campaign folders, CSVs of them, or names of shipped campaigns; of several a fit takes them together where it joins campaigns, else each.",
-        show_default=False,
-    ),
-    fit: str = typer.Option(
-        "",
-        metavar="NAME",
-        autocompletion=complete.fits,
-        help="Name of the fit (see coeflab formats fits); slope_at_origin unless the tables need another.",
-        show_default=False,
-    ),
-    constraint: list[str] = typer.Option(
-        [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
-    ),
-    symbol: list[str] = typer.Option(
-        [],
-        metavar="SYMBOL",
-        autocompletion=complete.symbols,
-        help="Only this coefficient, by largest setting and by other forms; repeatable.",
-    ),
-    length: str = typer.Option(
-        "", metavar="LENGTH", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'
-    ),
-    length_name: str = typer.Option("", metavar="NAME", help="Name of that length, such as LOA."),
-    speed: str = typer.Option(
-        "", metavar="SPEED", help="Only rows of this speed, such as 1.3 m/s: one fit a speed.", show_default=False
-    ),
-    next_runs: str | None = typer.Option(None, "--next", hidden=True),
-    diagnostics: bool = typer.Option(
-        False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
-    ),
-    figure: Path = typer.Option(None, metavar="FILE", help="Draw the fits into this file: .svg, .pdf or .png."),
-    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
-    include_uncertain: bool = typer.Option(
-        False, "--include-uncertain", help="Use cells that the source marks as doubtful."
-    ),
-    strict: bool = options.STRICT,
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    table: list[str],
+    fit: str = "",
+    constraint: list[str],
+    symbol: list[str],
+    length: str = "",
+    length_name: str = "",
+    speed: str = "",
+    next_runs: str | None = None,
+    diagnostics: bool = False,
+    figure: Path | None = None,
+    help_options: bool = False,
+    include_uncertain: bool = False,
+    strict: bool = False,
+    json: bool = False,
 ) -> None:
     """Fit the coefficients of one table or several.
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.core.registry import Registry
@@ -16,15 +14,8 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab formats surface"
 
 
-def command(
-    name: str = typer.Argument(
-        "",
-        metavar="NAME",
-        autocompletion=complete.formats,
-        help="A kind of plugin such as fits, or one plugin: its options are explained.",
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def command(*, name: str = "", json: bool = False) -> None:
     """List importers, fits, exporters, checks, with their options."""
     from coeflab.core.table import Table
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 from coeflab.core.errors import OutputError
 
 if TYPE_CHECKING:
@@ -25,44 +25,23 @@ EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
 OTHER_OUT = "Name another --out, or replace it with --force."
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    path: str = typer.Argument(
-        ...,
-        metavar="PATH",
-        help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers).",
-    ),
-    out: Path = typer.Option(
-        None,
-        "--out",
-        metavar="FOLDER",
-        help="Folder of the new campaign; default NAME of NAME.csv, NAME_campaign of a folder.",
-    ),
-    map_: list[str] = typer.Option(
-        [], "--map", metavar="COLUMN=WHAT", help="What a column is: 'Fy=Y [N]', 'Run=label', 'Note=ignore'; repeatable."
-    ),
-    set_: list[str] = typer.Option(
-        [], "--set", metavar="KEY=VALUE", help="Any key of campaign.toml: axes.frame=CFD; repeatable."
-    ),
-    mapping: Path = typer.Option(None, metavar="FILE.toml", help="A mapping.toml that an earlier import wrote."),
-    option: list[str] = options.OF_IMPORTER,
-    as_: str = typer.Option(
-        "",
-        "--as",
-        metavar="IMPORTER",
-        autocompletion=complete.importers,
-        help="Read it with this importer (coeflab formats importers).",
-    ),
-    name: list[str] = options.PATTERN,
-    runs: Path = options.RUNS,
-    state: Path = typer.Option(
-        None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
-    ),
-    words: Path = options.WORDS,
-    accept: bool = typer.Option(
-        False, "--accept", "--yes", help="Accept the proposals of the form, axes and signs too."
-    ),
-    force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
+    path: str,
+    out: Path | None = None,
+    map_: list[str],
+    set_: list[str],
+    mapping: Path | None = None,
+    option: list[str],
+    as_: str = "",
+    name: list[str],
+    runs: Path | None = None,
+    state: Path | None = None,
+    words: Path | None = None,
+    accept: bool = False,
+    force: bool = False,
 ) -> None:
     """Make a campaign of a table or a folder of runs.
 
@@ -166,7 +145,6 @@ def _first_slopes(folder: Path) -> bool:
 
     Below it what the checks find, as `coeflab fit` says it; true where one fails.
     """
-    from coeflab import Status
     from coeflab.api.campaigns import first_fit
     from coeflab.api.importing import FILE
     from coeflab.core.finding import Severity
@@ -182,12 +160,12 @@ def _first_slopes(folder: Path) -> bool:
     else:
         found = tables.coefficients_in(study, show.width())
         selected = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
-        without = Status.NOT_DETERMINED.replace("_", " ")
-        lacking = [row[0] for row in found.rows if row[1] == without] if first.by == MODEL else []
+        open_ones = {f"{c.symbol}'" for f in study.fits for c in f.coefficients.coefficients if c.value is None}
+        lacking = [row[0] for row in found.rows if row[0] in open_ones] if first.by == MODEL else []
         notes = [
             note.partition(". random:")[0] + "." * (". random:" in note)  # what U95 covers, without what its parts are
             for note in found.notes
-            if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
+            if not note.startswith(("Not shown", *([f"{tables.NO_VALUE}:"] if lacking else [])))
         ]
         notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
         notes += [

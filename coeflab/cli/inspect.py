@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,32 +19,25 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    table: str = typer.Argument(
-        ...,
-        metavar="PATH",
-        autocompletion=complete.inspected,
-        help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file.",
-    ),
-    unit: str = options.UNIT,
-    axes: str = options.AXES,
-    repair: bool = options.REPAIR,
-    fill: bool = options.FILL,
-    sheets: bool = options.SHEETS,
-    density: float = typer.Option(
-        show.FRESH_WATER, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
-    ),
-    name: list[str] = options.PATTERN,
-    runs: Path = options.RUNS,
-    as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
-    option: list[str] = options.OF_IMPORTER,
-    words: Path = options.WORDS,
-    rows: int = typer.Option(
-        60, "--rows", metavar="COUNT", min=0, help="Most rows of a table that are shown; 0 shows all."
-    ),
-    strict: bool = options.STRICT,
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    table: str,
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+    density: float = show.FRESH_WATER,
+    name: list[str],
+    runs: Path | None = None,
+    as_: str = "",
+    option: list[str],
+    words: Path | None = None,
+    rows: int = 60,
+    strict: bool = False,
+    json: bool = False,
 ) -> None:
     """Show a table in SI and FRD, a mesh, or a body.
 

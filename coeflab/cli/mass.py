@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import typer
-
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab mass myring_auv"
 
 
-def command(
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml with [[mass]], its folder, or a shipped body.",
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object: SI, FRD, from the datum."),
-) -> None:
+@options.worded
+def command(*, body: str, json: bool = False) -> None:
     """Show a body's mass part by part, its centres, its inertia and how it trims at rest.
 
     From [[mass]] in its body.toml: solids, shells, payload, ballast and flooded rooms (docs/bodies.md).

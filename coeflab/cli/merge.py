@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.merging import Merge
@@ -16,24 +16,9 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab merge reports/hull/hull.parameters.json my_study/campaign --out reports/hull_merged"
 
 
+@options.worded
 def command(
-    base: Path = typer.Argument(..., metavar="BASE", help="A parameter file, such as that of coeflab vehicle."),
-    other: str = typer.Argument(
-        "",
-        metavar="OTHER",
-        help="A parameter file, or campaigns with commas between, fitted about the base's reference point; not with --set.",
-        show_default=False,
-    ),
-    numbers: list[str] = typer.Option(
-        [],
-        "--set",
-        metavar="SYMBOL=VALUE",
-        help='One number of your own, "X0\'=-0.00208 +- 0.00005" or "Yv=-35.5 N/(m/s) constant"; again for each.',
-        show_default=False,
-    ),
-    name: str = typer.Option("", metavar="NAME", help="Of the merged file; default BASE_merged.", show_default=False),
-    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default that of BASE."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *, base: Path, other: str = "", numbers: list[str], name: str = "", out: Path | None = None, json: bool = False
 ) -> None:
     """Replace the estimates of a vehicle by fitted numbers, or by numbers of your own.
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
-import typer
-
-from coeflab.cli import show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab new my_study"
 
 
-def command(folder: Path = typer.Argument(..., metavar="FOLDER", help="A folder that does not exist yet.")) -> None:
+@options.worded
+def command(*, folder: Path) -> None:
     """Write a commented study with synthetic numbers to start from."""
     from importlib.resources import files
 

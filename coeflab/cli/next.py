@@ -6,41 +6,28 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = 'coeflab next suboff_roddy_2 --for "Nv\'" --runs 4 --target 10%'
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    source: str = typer.Argument(
-        ..., metavar="SOURCE", help="A table or campaign, a parameter file, or a body of which nothing was run."
-    ),
-    wanted: str = typer.Option(
-        "",
-        "--for",
-        metavar="FIGURE",
-        help="A coefficient, G_h, G_v, or a figure of the manoeuvre; default the widest main derivative.",
-    ),
-    table: list[str] = typer.Option(
-        [], "--table", metavar="TABLE", help="Rows behind the coefficients of a parameter file; repeatable."
-    ),
-    runs: int = typer.Option(7, metavar="COUNT", help="Runs of each test, 3 to 24 where nothing was run."),
-    target: str = typer.Option("", metavar="SHARE", help="U95 that is wanted, as a share of the value: 10%."),
-    noise: str = typer.Option(
-        "1%", metavar="SHARE", help="Scatter of a reading over the largest one, where nothing was run."
-    ),
-    angle: str = typer.Option("12 deg", metavar="ANGLE", help="Largest drift or attack, where nothing was run."),
-    control: str = typer.Option("15 deg", metavar="ANGLE", help="Largest control angle, where nothing was run."),
-    rate: float = typer.Option(0.4, metavar="RATE", help="Largest r' and q', where nothing was run."),
-    manoeuvre: str = typer.Option(
-        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="Whose figure is wanted."
-    ),
-    to: Path | None = typer.Option(
-        None, metavar="FILE", help="Write the runs: .csv, or .toml with the [matrix] of coeflab tow."
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    source: str,
+    wanted: str = "",
+    table: list[str],
+    runs: int = 7,
+    target: str = "",
+    noise: str = "1%",
+    angle: str = "12 deg",
+    control: str = "15 deg",
+    rate: float = 0.4,
+    manoeuvre: str = "turning_circle",
+    to: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Name the test that takes most off an uncertainty, and its best settings.
 

@@ -1,47 +1,58 @@
-"""Options that several commands have alike, each worded once."""
+"""What commands take: their parameters by ``options.toml`` beside them, which has flags and words; defaults stand in the code."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
+from inspect import Parameter, signature
+from typing import Any, TypeVar
+
 import typer
+from typer.models import ParameterInfo
 
 from coeflab.cli import complete
+from coeflab.core.text.bounded import own_text
+from coeflab.core.text.toml import own_toml
 
-ACCELERATIONS = typer.Option(
-    "measured", "--accelerations", metavar="measured|computed", autocompletion=complete.accelerations,
-    help="Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed throughout.",
-)  # fmt: skip
-AXES = typer.Option(
-    "", "--axes", metavar="AXES", autocompletion=complete.axes,
-    help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas.",
-)  # fmt: skip
-BODY = typer.Argument(
-    ..., metavar="BODY", autocompletion=complete.bodies,
-    help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
-)  # fmt: skip
-CURRENT = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down.")
-FILL = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each.")
-FREE = typer.Option("", metavar="u,v,r", help="Motions that may change; default what the file knows enough of.")
-HOLD = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed.")
-MANOEUVRE = typer.Option(
-    "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
-)
-OF_IMPORTER = typer.Option([], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable.")
-PARAMS = typer.Argument(
-    ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
-)
-PATTERN = typer.Option(
-    [], "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'; repeated: a table each."
-)  # fmt: skip
-REPAIR = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended.")
-RUNS = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions.")
-SHEETS = typer.Option(
-    False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
-)
-STRICT = typer.Option(False, "--strict", help="Exit code 1 for a warning, too.")
-TABLES = typer.Option(False, "--tables", help="Fitted tables come before derivatives of the same variables.")
-UNIT = typer.Option(
-    "", "--unit", metavar="UNIT", autocompletion=complete.units, help="Unit of a mesh file: m, mm, in ..."
-)
-WORDS = typer.Option(
-    None, "--words", metavar="FILE.toml", help="Names of columns of your own, beside those of vocabulary.toml."
-)
+Run = TypeVar("Run", bound=Callable[..., None])
+
+
+@cache
+def _words(folder: str) -> dict[str, Any]:
+    """What stands in the file of a folder of commands."""
+    return own_toml(own_text(files(folder) / "options.toml"))
+
+
+def worded(run: Run) -> Run:
+    """Let a command take what ``options.toml`` says of its parameters, under the name of its file, and of its function where that has several.
+
+    Parameters
+    ----------
+    run : callable
+        All parameters by keyword. One without a default is required, a list is empty unless its words say ``required``.
+    """
+    folder, _, name = run.__module__.rpartition(".")
+    mine = _words(folder).get(name.rstrip("_"), {})
+    mine = mine if run.__name__ == "command" else mine.get(run.__name__, {})
+    shared = _words("coeflab.cli")["shared"]
+
+    def taken(p: Parameter) -> Parameter:
+        if isinstance(p.default, ParameterInfo) or "Context" in str(p.annotation):
+            return p
+        own = mine.get(p.name, shared.get(p.name))
+        own = dict(shared[own["like"]] if "like" in own else own)
+        default = ... if p.default is Parameter.empty else p.default
+        if str(p.annotation).startswith("list") and not own.pop("required", False):
+            default = []
+        if "complete" in own:
+            name_of = own.pop("complete")
+            own["autocompletion"] = run.__globals__.get(name_of) or getattr(complete, name_of)
+        if own.pop("argument", False):
+            return p.replace(default=typer.Argument(default, **own))
+        flags = own.pop("flags", [f"--{p.name.strip('_').replace('_', '-')}"])
+        return p.replace(default=typer.Option(default, *flags, **own))
+
+    whole = signature(run)
+    run.__signature__ = whole.replace(parameters=list(map(taken, whole.parameters.values())))  # type: ignore[attr-defined]
+    return run

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import Command, complete, show
+from coeflab.cli import Command, options, show
 
 app = typer.Typer(help="Check a parameter file, write one of your own numbers or of a simulator's model; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
@@ -17,16 +17,8 @@ def _root() -> None:
 
 
 @app.command(cls=Command, epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
-def check(
-    file: Path = typer.Argument(
-        ...,
-        metavar="PARAMS",
-        autocompletion=complete.parameters,
-        help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m, Stonefish .scn.",
-    ),
-    density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def check(*, file: Path, density: float | None = None, json: bool = False) -> None:
     """Check a parameter file or a simulator's model.
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
@@ -58,16 +50,9 @@ def check(
 
 
 @app.command(cls=Command, epilog="Example: coeflab params convert model.sdf --density 1025 --out vehicles")
+@options.worded
 def convert(
-    file: Path = typer.Argument(
-        ..., metavar="MODEL", help="SDF, URDF or xacro, xdyn YAML, MSS .m, Stonefish .scn: read as text, never run."
-    ),
-    name: str = typer.Option(
-        "", metavar="NAME", help="Of the parameter file; default the model's.", show_default=False
-    ),
-    density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
-    out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *, file: Path, name: str = "", density: float | None = None, out: Path = Path(), json: bool = False
 ) -> None:
     """Write somebody's model as a parameter file, and say what of it is left out.
 
@@ -117,57 +102,28 @@ NEW = """Example: coeflab params new my_auv --about cg --length "2.5 m" --speed 
 
 
 @app.command(cls=Command, epilog=NEW)
+@options.worded
 def new(
-    name: str = typer.Argument(..., metavar="NAME", help="Of the set of numbers; the file is NAME.parameters.json."),
-    numbers: list[str] = typer.Option(
-        [],
-        "--set",
-        metavar="SYMBOL=VALUE",
-        help='"Yv\'=-0.03 +- 0.003", a prime and its U95, or "Yv=-35.5 N/(m/s) +- 6 %", which goes with the speed unless constant stands behind it; again for each.',
-        show_default=False,
-    ),
-    length: str = typer.Option("", metavar="LENGTH", help="Of the primes. Required.", show_default=False),
-    length_name: str = typer.Option("LOA", metavar="NAME", help="Which length that is."),
-    speed: str = typer.Option(
-        "", metavar="SPEED", help="Of the SI values, and of reference. Required.", show_default=False
-    ),
-    density: str = typer.Option("", metavar="DENSITY", help="Of the water, kg/m^3. Required.", show_default=False),
-    about: str = typer.Option(
-        "",
-        metavar="POINT",
-        help="What moments and rates are about: cg, nose, midship ... Required.",
-        show_default=False,
-    ),
-    mass: str = typer.Option("", metavar="MASS", help='46, "46 kg"; without it the file has none.', show_default=False),
-    cg: str = typer.Option(
-        "",
-        metavar="X,Y,Z",
-        help="Centre of gravity from that point, m, FRD; needed unless --about cg.",
-        show_default=False,
-    ),
-    inertia: str = typer.Option(
-        "",
-        metavar="IX,IY,IZ",
-        help="About the centre of gravity, kg m^2; or the transverse one alone.",
-        show_default=False,
-    ),
-    volume: str = typer.Option("", metavar="VOLUME", help="Displaced, m^3; with --cb.", show_default=False),
-    cb: str = typer.Option("", metavar="X,Y,Z", help="Centre of buoyancy from that point, m, FRD.", show_default=False),
-    thruster: list[str] = typer.Option(
-        [],
-        "--thruster",
-        metavar="TEXT",
-        help='"main; bollard = 60 N; rate = 720; place = -0.8, 0, 0", thrust with n^2; the keys of [[thruster]] of a body.toml; again for each.',
-        show_default=False,
-    ),
-    rudder: str = typer.Option(
-        "", metavar="ANGLE,RATE", help='Its limit and rate: "30 deg, 30 deg/s".', show_default=False
-    ),
-    stern_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of ds."),
-    bow_planes: str = typer.Option("", metavar="ANGLE,RATE", help="The same of db."),
-    body: str = typer.Option("", metavar="TEXT", help="The vehicle in words; default NAME.", show_default=False),
-    out: Path = typer.Option(Path(), metavar="FOLDER", help="Folder for the file."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    name: str,
+    numbers: list[str],
+    length: str = "",
+    length_name: str = "LOA",
+    speed: str = "",
+    density: str = "",
+    about: str = "",
+    mass: str = "",
+    cg: str = "",
+    inertia: str = "",
+    volume: str = "",
+    cb: str = "",
+    thruster: list[str],
+    rudder: str = "",
+    stern_planes: str = "",
+    bow_planes: str = "",
+    body: str = "",
+    out: Path = Path(),
+    json: bool = False,
 ) -> None:
     """Write a parameter file of your own numbers.
 
@@ -212,7 +168,8 @@ def new(
 
 
 @app.command(cls=Command, epilog="Example: coeflab params schema > parameter_file.md")
-def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
+@options.worded
+def schema(*, json: bool = False) -> None:
     """Print what every field of a parameter file means."""
     from coeflab.api.schemas import schema as of_kind
     from coeflab.report.tables.schema_page import schema_page
@@ -221,13 +178,8 @@ def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schem
 
 
 @app.command(cls=Command, epilog='Example: coeflab params conform "python3 docs/reference/reader.py"')
-def conform(
-    program: str = typer.Argument(..., metavar="COMMAND", help="A program with its arguments, in quotation marks."),
-    write: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Put the files, their states and the answers due there.", show_default=False
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def conform(*, program: str, write: Path | None = None, json: bool = False) -> None:
     """Hold an implementation of the force law against its conformance vectors.
 
     COMMAND FILE.parameters.json gets a JSON list of states on its standard input and prints a list of {"force": X Y Z K M N of the

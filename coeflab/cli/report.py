@@ -7,43 +7,24 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab report suboff --to html,pdf"
 
 
+@options.worded
 def command(
-    study: str = typer.Argument(
-        ...,
-        metavar="STUDY",
-        autocompletion=complete.studies,
-        help="A plan.toml, a folder with one, the folder of a campaign, or a validation such as suboff.",
-    ),
-    to: str = typer.Option(
-        "html,pdf",
-        metavar="FORMATS",
-        autocompletion=complete.reports,
-        help="Formats, separated by commas; `coeflab formats reporting` lists them.",
-    ),
-    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
-    section: list[str] = typer.Option(
-        [], metavar="NAME", help="Only this section, by its anchor or title; repeatable."
-    ),
-    full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),
-    summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
-    for_review: bool = typer.Option(
-        False,
-        "--for-review",
-        help="For a reviewer: from files to points, all checks, every derivative's curve, two a page.",
-    ),
-    style: str = typer.Option(
-        "",
-        metavar="FILE.mplstyle",
-        help="Draw the figures in a style of Matplotlib: a file, or a name.",
-        show_default=False,
-    ),
-    open_: bool = typer.Option(False, "--open", help="Show the first file in the browser."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    study: str,
+    to: str = "html,pdf",
+    out: Path | None = None,
+    section: list[str],
+    full: bool = False,
+    summary: bool = False,
+    for_review: bool = False,
+    style: str = "",
+    open_: bool = False,
+    json: bool = False,
 ) -> None:
     """Compute a study and write its report: the core, the same in every format; --full adds the appendix.
 

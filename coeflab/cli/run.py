@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.motion import Simulation
@@ -23,17 +23,8 @@ FEW = 2  # tables whose answers stand on the screen
 EXAMPLE = "coeflab run my_study/plan.toml"
 
 
-def command(
-    plan: Path = typer.Argument(
-        ...,
-        metavar="PLAN",
-        autocompletion=complete.plans,
-        help="The plan.toml, its folder, the folder of a campaign, or a shipped study.",
-    ),
-    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
-    strict: bool = options.STRICT,
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def command(*, plan: Path, out: Path | None = None, strict: bool = False, json: bool = False) -> None:
     """Carry out a plan: fits, checks, report, parameter files.
 
     Prints the answer first; --wide prints every table.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from coeflab.api.schemas import KINDS
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 EXAMPLE = "coeflab schema plan > plan.schema.json"
 
@@ -15,7 +15,9 @@ def kinds(incomplete: str) -> list[str]:
     return complete.names(KINDS, incomplete)
 
 
+@options.worded
 def command(
+    *,
     kind: str = typer.Argument(
         ...,
         metavar="KIND",

@@ -6,18 +6,13 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab serve reports"
 
 
-def command(
-    folder: Path = typer.Argument(
-        ..., autocompletion=complete.folders, help="Folder of reports and parameter files; those below it count too."
-    ),
-    port: int = typer.Option(8765, min=0, max=65535, help="Port on 127.0.0.1; 0 takes any that is free."),
-    open_: bool = typer.Option(False, "--open", help="Show the gallery in the browser."),
-) -> None:
+@options.worded
+def command(*, folder: Path, port: int = 8765, open_: bool = False) -> None:
     """Show the reports and parameter files below a folder on this machine, with search and comparison side by side.
 
     Nothing can be changed through it, nobody else can reach it, and links out of the folder are not followed. Ctrl-C

@@ -7,48 +7,28 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab simplify huuv_mesh"
 
 
+@options.worded
 def command(
-    mesh: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file.",
-    ),
-    unit: str = options.UNIT,
-    axes: str = options.AXES,
-    repair: bool = options.REPAIR,
-    fill: bool = options.FILL,
-    sheets: bool = typer.Option(
-        False, "--sheets", help="As of other commands; a mesh with open surfaces has no parts, and is refused."
-    ),
-    box: list[str] = typer.Option(
-        [], "--box", metavar="NAME=BOX", help="NAME=x0:x1,y0:y1,z0:z1 in m, FRD: what is inside is that part."
-    ),
-    boxes: Path | None = typer.Option(
-        None, "--boxes", metavar="FILE.toml", help="A TOML file of [[box]] with name, x, y, z as [low, high]."
-    ),
-    split: str = typer.Option(
-        "",
-        "--split",
-        metavar="convex",
-        help='convex: cut what is like no form into nearly convex pieces (needs "coeflab[convex]").',
-    ),
-    parts: int | None = typer.Option(
-        None, "--parts", metavar="COUNT", min=1, help="How many parts there must be; else an error."
-    ),
-    panels: int = typer.Option(
-        6_000, "--panels", metavar="COUNT", min=0, help="Of the panel method on the mesh; 0: parts are not compared."
-    ),
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder to write; without it NAME_simplified."
-    ),
-    force: bool = typer.Option(False, "--force", help="Replace files that differ."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    mesh: str,
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+    box: list[str],
+    boxes: Path | None = None,
+    split: str = "",
+    parts: int | None = None,
+    panels: int = 6000,
+    out: Path | None = None,
+    force: bool = False,
+    json: bool = False,
 ) -> None:
     """Write a mesh as simple forms, what fits none as a mesh, and compare their added mass with the mesh's.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
 from coeflab.core.registry import of_application
@@ -24,38 +24,25 @@ PLUGIN = {"registry": "manoeuvres", "parameter": "manoeuvre"}  # whose options i
 TABLES = ("csv", "parquet")
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    file: Path = typer.Argument(
-        ...,
-        metavar="PARAMS",
-        autocompletion=complete.parameters,
-        help="A parameter file, or a shipped vehicle; the body.toml of a vehicle with an arm, or a shipped one: urv_puma.",
-    ),
-    manoeuvre: str = options.MANOEUVRE,
-    free: str = options.FREE,
-    hold: str = options.HOLD,
-    current: str = options.CURRENT,
-    simulator: str = typer.Option(
-        "rigid_body", metavar="NAME", autocompletion=complete.simulators, help="See coeflab formats simulators."
-    ),
-    integrator: str = typer.Option(
-        "adaptive", metavar="NAME", autocompletion=complete.integrators, help="adaptive (scipy), or rk4 (fixed steps)."
-    ),
-    step: float = typer.Option(0.0, metavar="SECONDS", show_default=False, help="Step of rk4, s; chosen without it."),
-    record: float = typer.Option(
-        0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
-    ),
-    tables: bool = options.TABLES,
-    accelerations: str = options.ACCELERATIONS,
-    to: str = typer.Option(
-        "csv", metavar="FORMAT", autocompletion=complete.tables, help="Format of the motion: csv or parquet."
-    ),
-    out: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Folder for motion and figure; nothing is written without it."
-    ),
-    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    file: Path,
+    manoeuvre: str = "turning_circle",
+    free: str = "",
+    hold: str = "",
+    current: str = "",
+    simulator: str = "rigid_body",
+    integrator: str = "adaptive",
+    step: float = 0.0,
+    record: float = 0.0,
+    tables: bool = False,
+    accelerations: str = "measured",
+    to: str = "csv",
+    out: Path | None = None,
+    help_options: bool = False,
+    json: bool = False,
 ) -> None:
     """Simulate a manoeuvre, such as a zigzag or a turning circle.
 

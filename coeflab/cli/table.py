@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import TABLE_POINTS
 
@@ -27,16 +27,8 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 VALUES = "low:high:step, a number, or numbers with commas"
 
 
-def command(
-    ctx: typer.Context,
-    params: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file with fitted tables."
-    ),
-    response: str = typer.Option("", metavar="NAME", help="Only this response, such as C_D or Y'."),
-    out: Path | None = typer.Option(
-        None, metavar="FILE.csv", help="File to write; without it the table goes to standard output."
-    ),
-) -> None:
+@options.worded
+def command(*, ctx: typer.Context, params: Path, response: str = "", out: Path | None = None) -> None:
     """Evaluate a fitted table of a parameter file as CSV.
 
     Give every variable as --NAME=LOW:HIGH:STEP, a number or a comma list: angles in degrees, primes as such. --beta and

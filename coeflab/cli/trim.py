@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.trimming import Trim
@@ -17,55 +17,29 @@ AXES = {"speed": "u", "sway": "v", "heave": "w"}
 EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 
+@options.worded
 def command(
-    file: Path = options.PARAMS,
-    speed: str = typer.Option(
-        "", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn"; with --linear several: 1,1.5,2.'
-    ),
-    sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
-    heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),
-    yaw_rate: str = typer.Option("", metavar="VALUE", help="Rate of heading, bare in deg/s."),
-    roll: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
-    pitch: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
-    commands: list[str] = typer.Option(
-        [],
-        "--commands",
-        metavar="NAME=VALUE",
-        help="A thruster in its unit, NAME.tilt, dr, ds or db in deg, thrust in N; several with blanks, or repeatable.",
-    ),
-    near: list[str] = typer.Option(
-        [], "--near", metavar="NAME=VALUE", help="Among several solutions the one nearest to this; angles in deg."
-    ),
-    free: str = options.FREE,
-    plane: str = typer.Option(
-        "",
-        metavar="PLANE",
-        autocompletion=complete.planes,
-        help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
-        "for tells.",
-    ),
-    tables: bool = options.TABLES,
-    accelerations: str = options.ACCELERATIONS,
-    starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
-    seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
-    linear: bool = typer.Option(
-        False, "--linear", help="The linear model about it: A, B, and the eigenvalues with their motions."
-    ),
-    also: str = typer.Option(
-        "", metavar="NAME", help="Further states of the linear model: depth, heading or depth,heading."
-    ),
-    lag: list[str] = typer.Option(
-        [],
-        "--lag",
-        metavar="NAME=VALUE",
-        help="Time constant in s with which a thruster or a control follows its command, in place of the file's; repeatable.",
-    ),
-    out: Path | None = typer.Option(
-        None,
-        metavar="FOLDER",
-        help="Folder for the linear model: CSV, linear.m and linear.mat for MATLAB, linear.npz, linear.json.",
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    file: Path,
+    speed: str = "",
+    sway: str = "",
+    heave: str = "",
+    yaw_rate: str = "",
+    roll: str = "",
+    pitch: str = "",
+    commands: list[str],
+    near: list[str],
+    free: str = "",
+    plane: str = "",
+    tables: bool = False,
+    accelerations: str = "measured",
+    starts: int = 8,
+    seed: int = 0,
+    linear: bool = False,
+    also: str = "",
+    lag: list[str],
+    out: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Find the commands of a steady motion, or the reverse.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.uncertainty import Carried
@@ -17,40 +17,27 @@ EXAMPLE = "coeflab uncertainty reports/suboff/suboff_fully_appended.parameters.j
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
+@options.worded
 def command(
+    *,
     ctx: typer.Context,
-    file: Path = options.PARAMS,
-    manoeuvre: str = options.MANOEUVRE,
-    members: int = typer.Option(
-        1000, metavar="COUNT", help="Draws of the coefficients, each of which makes the manoeuvre."
-    ),
-    seed: int = typer.Option(1, metavar="NUMBER", help="Of the draws; the same seed gives the same numbers."),
-    sobol: bool = typer.Option(
-        False, "--sobol", help="Sobol indices of independent groups of coefficients; takes longer."
-    ),
-    cores: int = typer.Option(0, metavar="COUNT", show_default=False, help="Local processes; one a core without it."),
-    scheduler: str = typer.Option("", metavar="ADDRESS", help="Dask scheduler in place of local processes."),
-    state: Path | None = typer.Option(
-        None,
-        metavar="FOLDER",
-        help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches.",
-    ),
-    free: str = options.FREE,
-    hold: str = options.HOLD,
-    current: str = options.CURRENT,
-    kernel: str = typer.Option(
-        "auto",
-        metavar="NAME",
-        autocompletion=complete.kernels,
-        help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
-    ),
-    tables: bool = options.TABLES,
-    accelerations: str = options.ACCELERATIONS,
-    out: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Folder for members and figure; nothing is written without it."
-    ),
-    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    file: Path,
+    manoeuvre: str = "turning_circle",
+    members: int = 1000,
+    seed: int = 1,
+    sobol: bool = False,
+    cores: int = 0,
+    scheduler: str = "",
+    state: Path | None = None,
+    free: str = "",
+    hold: str = "",
+    current: str = "",
+    kernel: str = "auto",
+    tables: bool = False,
+    accelerations: str = "measured",
+    out: Path | None = None,
+    help_options: bool = False,
+    json: bool = False,
 ) -> None:
     """Give intervals for the quantities of a manoeuvre, such as advance.
 

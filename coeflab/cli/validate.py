@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.report.acceptance import Acceptance
@@ -17,17 +17,8 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab validate suboff"
 
 
-def command(
-    name: str = typer.Argument(
-        ...,
-        metavar="NAME",
-        help="suboff, huuv, flyingfish, thauv, urv, tank or estimates.",
-        autocompletion=complete.validations,
-    ),
-    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),
-    strict: bool = options.STRICT,
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+@options.worded
+def command(*, name: str, out: Path | None = None, strict: bool = False, json: bool = False) -> None:
     """Compare shipped data with their publication.
 
     Fits shipped tables and compares the derivatives with published ones, or reproduces a published vehicle; writes report,

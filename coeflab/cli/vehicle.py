@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.api.shaping import Study
@@ -20,57 +20,29 @@ LOSS = ".loss.txt"
 EXAMPLE = 'coeflab vehicle hull.stl --unit mm --axes FLU --mass "46 kg" --to xdyn --accept-loss'
 
 
+@options.worded
 def command(
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A mesh file with --unit and --axes, a body.toml, its folder, or a shipped body.",
-    ),
-    mass: str = typer.Option(
-        "", metavar="MASS", help='46, "46 kg"; default that of its file, else neutrally buoyant.', show_default=False
-    ),
-    cg: str = typer.Option(
-        "", metavar="X,Y,Z", help="Centre of gravity, m, FRD, from the datum or the mesh's origin.", show_default=False
-    ),
-    inertia: str = typer.Option(
-        "", metavar="IX,IY,IZ", help="About the centre of gravity, kg m^2.", show_default=False
-    ),
-    unit: str = options.UNIT,
-    axes: str = options.AXES,
-    repair: bool = options.REPAIR,
-    fill: bool = options.FILL,
-    sheets: bool = options.SHEETS,
-    speed: str = typer.Option("", metavar="SPEED", help='Of reference, "1.5 m/s"; default 2 m/s.', show_default=False),
-    density: str = typer.Option(
-        "", metavar="DENSITY", help="Of the water; default fresh, 998.2 kg/m^3.", show_default=False
-    ),
-    length: str = typer.Option(
-        "", metavar="LENGTH", help="Of the primes; default that of its file, else over all.", show_default=False
-    ),
-    method: str = typer.Option(
-        "all", metavar="METHOD", autocompletion=complete.methods, help="Of added mass, as in coeflab added-mass."
-    ),
-    wall: str = typer.Option(
-        "", "--wall", metavar="WALL", help="bottom, surface_zero, surface_infinite: added mass near it into the file."
-    ),
-    distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
-    to: list[str] = typer.Option(
-        [],
-        "--to",
-        metavar="TARGET",
-        autocompletion=complete.exporters,
-        help="Export to it; several with commas, or repeatable; of a campaign, the merged file.",
-    ),
-    accept_loss: bool = typer.Option(False, "--accept-loss", help="Export although a target cannot hold everything."),
-    campaign: str = typer.Option(
-        "",
-        metavar="CAMPAIGN",
-        autocompletion=complete.campaigns,
-        help="Fit it, or several with commas, and replace estimates by it, as coeflab merge does, into FOLDER/merged.",
-    ),
-    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/BODY."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    body: str,
+    mass: str = "",
+    cg: str = "",
+    inertia: str = "",
+    unit: str = "",
+    axes: str = "",
+    repair: bool = False,
+    fill: bool = False,
+    sheets: bool = False,
+    speed: str = "",
+    density: str = "",
+    length: str = "",
+    method: str = "all",
+    wall: str = "",
+    distance: str = "",
+    to: list[str],
+    accept_loss: bool = False,
+    campaign: str = "",
+    out: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Estimate a vehicle from its shape and mass, and move it.
 

@@ -66,6 +66,33 @@ Noun = TypeVar("Noun")
 LONGEST_LINE, LONGEST_TEXT, LONGEST_SAID, FEW = 380, 60, 160, 8
 
 
+def locking(names: str) -> Callable[[type[Noun]], type[Noun]]:
+    """Make arrays of a frozen dataclass read-only copies before anything else is seen to; right above its ``class``.
+
+    Parameters
+    ----------
+    names : str
+        Fields, blanks between: arrays, mappings of arrays, or None.
+    """
+
+    def decorated(cls: type[Noun]) -> type[Noun]:
+        rest = vars(cls).get("__post_init__")
+
+        def lock(self: Any) -> None:
+            for name in names.split():
+                value = getattr(self, name)
+                if value is not None:
+                    kept = locked_columns(value) if isinstance(value, Mapping) else locked(value)
+                    object.__setattr__(self, name, kept)
+            if rest is not None:
+                rest(self)
+
+        cls.__post_init__ = lock  # type: ignore[attr-defined]
+        return cls
+
+    return decorated
+
+
 def brief(cls: type[Noun]) -> type[Noun]:
     """Give a dataclass or a pydantic model a ``repr`` of one line that never grows with what it holds.
 

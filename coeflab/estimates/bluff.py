@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.outline import Bluff, Outline
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
 from coeflab.law.added_mass import composed
 from coeflab.law.rigid_body import ideal_force
@@ -36,6 +36,7 @@ def face_drag(part: Bluff) -> Array:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("points areas")
 class BluffForce:
     """Drag of a part, spread over its extent.
 
@@ -54,10 +55,6 @@ class BluffForce:
     areas: NDArray[np.float64]
     crossed: bool
     density: float
-
-    def __post_init__(self) -> None:
-        for name in ("points", "areas"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.fin_lift import FinGroup, carrier, fin_groups
 from coeflab.bodies.hull_flow import HullFlow, hull_flow
 from coeflab.bodies.outline import Foil, Outline, Sections
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
 
 summary = "fins and sails of low aspect on a hull, control surfaces, loss behind other foils and in the boundary layer"
@@ -52,6 +52,7 @@ def cross_flow_drag(taper: float, tips: str) -> float:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre axis normal")
 class FoilForce:
     """The force of one foil.
 
@@ -87,10 +88,6 @@ class FoilForce:
     control: str
     density: float
 
-    def __post_init__(self) -> None:
-        for name in ("centre", "axis", "normal"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         ahead = nu[:, 0]
@@ -114,6 +111,7 @@ class FoilForce:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("ahead place source normal")
 class Wash:
     """Lift that a group of foils loses in the wake of a foil ahead, per cross velocity at that foil.
 
@@ -141,10 +139,6 @@ class Wash:
     control: str
     turned: float
     density: float
-
-    def __post_init__(self) -> None:
-        for name in ("ahead", "place", "source", "normal"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""

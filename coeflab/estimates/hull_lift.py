@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.fin_lift import carrier, fin_groups
 from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
 from coeflab.bodies.outline import Outline
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
 from coeflab.law.rigid_body import ideal_force
 
@@ -49,6 +49,7 @@ def hopkins_station(hull_x: Array, area: Array) -> float:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("sway heave")
 class Shed:
     """Cross momentum that a hull leaves in the water.
 
@@ -71,10 +72,6 @@ class Shed:
     heave: NDArray[np.float64]
     grows: bool
     taken: tuple[tuple[float, float, NDArray[np.float64]], ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "sway", locked(self.sway))
-        object.__setattr__(self, "heave", locked(self.heave))
 
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6); none astern, where the other end would be the stern."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.fin_lift import carrier, left_behind_fins
 from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline, Propeller
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
 
 summary = "in-plane force of open propellers in oblique flow, behind hull and fins"
@@ -83,6 +83,7 @@ def _chords(area_ratio: float) -> float:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre")
 class InPlane:
     """The in-plane force of one propeller; ahead only.
 
@@ -99,9 +100,6 @@ class InPlane:
     sway: float
     heave: float
     density: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
 
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""

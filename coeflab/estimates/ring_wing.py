@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.fin_lift import carrier, left_behind_fins
 from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline, RingWing
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
 
 summary = "ring wings and ducts: lift by Weissinger in the wake of hull and fins, cross-flow drag"
@@ -31,6 +31,7 @@ def ring_slope(aspect: float) -> float:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre")
 class RingForce:
     """The force of a ring wing.
 
@@ -50,9 +51,6 @@ class RingForce:
     heave: float
     cross: float
     density: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
 
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""

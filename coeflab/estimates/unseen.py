@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.fin_lift import low_aspect_lift_slope
 from coeflab.bodies.outline import Outline
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Forces, Water
 
 summary = "half-widths for area that no other method sees, and for the lift of bluff parts on a hull"
@@ -28,6 +28,7 @@ ALONG = 0.05  # friction of both sides and interference, of the area from the si
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre")
 class Half:
     """One half-width of a force at a place.
 
@@ -47,9 +48,6 @@ class Half:
     lift: float
     drag: float
     density: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", locked(self.centre))
 
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""

@@ -27,12 +27,12 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import measured, one_of, parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import ForceTable
@@ -193,22 +193,10 @@ def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str,
     symbol, sign = DERIVATIVES[model.response]
     k = area.area / scaling.length**2
     i = model.symbols.index(f"{model.response}1")
-    u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
-    value = finite(float(model.fit.coefficients[i]))
-    return Coefficient(
-        symbol=symbol.replace("ds", surface),
-        value=value,
-        u95=u95,
-        status=status,
-        body=model.body,
-        parts=parts,
-        origin="fit",
-        table=model.table,
-        campaign=model.campaign,
+    found = coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, symbol=symbol.replace("ds", surface), value=finite(float(model.fit.coefficients[i])),
         estimator=f"{model.response}1, {model.form}",
-        n_points=model.n_points,
-        citation=citation,
-    ).scaled(sign * k, "1")
+    )  # fmt: skip
+    return found.scaled(sign * k, "1")
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -252,23 +240,9 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     pairs = [_fitted(collect(used, (chosen.surface, "alpha"), r, area), area, chosen) for r in responses]
     models = [replace(m, statements=(*left_out, *m.statements)) for m, _ in pairs] + [m for _, m in pairs]
     made = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for _, m in pairs]
-    coefficients = tuple(c for c in made if c is not None)
-    deviation = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
-    covariance = np.where(np.eye(len(deviation)) > 0.0, deviation**2, 0.0)
-    unknown = np.isnan(deviation)
-    covariance[unknown, :] = covariance[:, unknown] = np.nan
-    return FitResult(
-        fit="control_surface",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(coefficients, covariance, scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "effective": chosen.effective,
-            "cubic": chosen.cubic,
-            "surface": chosen.surface,
-            **area_settings(area),
-        },
-        models=tuple(models),
-    )
+    coefficients = [c for c in made if c is not None]
+    covariance = np.diag([np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients])
+    settings = {"effective": chosen.effective, "cubic": chosen.cubic, "surface": chosen.surface, **area_settings(area)}
+    return result_of(
+        "control_surface", first, scaling, coefficients, covariance, citations=citations, settings=settings, models=tuple(models)
+    )  # fmt: skip

@@ -27,12 +27,12 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.types import brief
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Domain, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import wind_errors, wind_forces
@@ -288,7 +288,9 @@ def with_munk(table: ForceTable, munk: float) -> ForceTable:
     return replace(table, forces={**table.forces, "M": whole})
 
 
-def _derivatives(models: Sequence[FittedModel], scaling: Scaling, first: ForceTable, munk: float) -> CoefficientSet:
+def _derivatives(
+    models: Sequence[FittedModel], scaling: Scaling, first: ForceTable, munk: float
+) -> tuple[list[Coefficient], Array]:
     """The series of fitted models, primed, with what their scatter and form leave open; errors of two models are independent."""
     place = {f"{name}/V^2": slice(2 * i, 2 * i + 2) for i, name in enumerate("LDM")}
     polar, joint, scatter, worth = np.full(6, np.nan), np.zeros((6, 6)), np.zeros((6, 6)), [Status.NOT_DETERMINED] * 6
@@ -322,9 +324,7 @@ def _derivatives(models: Sequence[FittedModel], scaling: Scaling, first: ForceTa
                 estimator=f"{' and '.join(m.response[0] for m in held)} of the polar along the body axes",
             )
         )  # fmt: skip
-        if not sure:
-            covariance[i, :] = covariance[:, i] = np.nan
-    return CoefficientSet(tuple(out), covariance, scaling, first.reference_point, first.datum, first.body)
+    return out, covariance
 
 
 def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
@@ -438,21 +438,11 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         radians.append(replace(model, statements=said))
         degrees.append(_fitted(rows, name, "deg"))
     models = (*radians, *(degrees if chosen.angle_unit == "deg" else ()))
-    result = FitResult(
-        fit="glide_polar",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=_derivatives(radians, scaling, first, chosen.munk),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "angle_unit": chosen.angle_unit,
-            "noise": chosen.noise,
-            "printed": " ".join(chosen.printed),
-            **({"munk": f"{chosen.munk!r}"} if chosen.munk else {}),
-        },
-        models=models,
-    )
+    settings = {"angle_unit": chosen.angle_unit, "noise": chosen.noise, "printed": " ".join(chosen.printed)}
+    result = result_of(
+        "glide_polar", first, scaling, *_derivatives(radians, scaling, first, chosen.munk), citations=citations,
+        settings=settings | ({"munk": f"{chosen.munk!r}"} if chosen.munk else {}), models=models,
+    )  # fmt: skip
     if not printed:
         return result
     answer = angle_unit_of(printed, result)

@@ -20,10 +20,10 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
 from coeflab.law.terms import Term
@@ -135,30 +135,15 @@ def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
 def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:
     """Dimensional coefficients of one axis with the covariance of their standard uncertainties (U95 / 2)^2."""
     index = [i for i, t in enumerate(model.terms) if t.factors]
-    covariance = model.covariance[np.ix_(index, index)]
     low, high = float(model.domain.low[0]), float(model.domain.high[0])
-    out = []
-    for i in index:
-        u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
-        out.append(
-            Coefficient(
-                symbol=model.symbols[i],
-                value=finite(float(model.fit.coefficients[i])),
-                u95=u95,
-                status=status,
-                body=model.body,
-                parts=parts,
-                origin="fit",
-                unit=derivative(model.symbols[i]).unit,
-                table=model.table,
-                campaign=model.campaign,
-                estimator=f"{model.form}, {axis} from {low:g} to {high:g} {'rad/s' if axis in ANGULAR else 'm/s'}",
-                n_points=model.n_points,
-                citation=citation,
-                law="rest",
-            )
+    over = f"{model.form}, {axis} from {low:g} to {high:g} {'rad/s' if axis in ANGULAR else 'm/s'}"
+    out = [
+        coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, value=finite(float(model.fit.coefficients[i])),
+            unit=derivative(model.symbols[i]).unit, estimator=over, law="rest",
         )
-    return out, covariance
+        for i in index
+    ]  # fmt: skip
+    return out, model.covariance[np.ix_(index, index)]
 
 
 def _too_few(rows: Rows, axis: str, chosen: Options, citation: str) -> list[Coefficient]:
@@ -228,34 +213,9 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         blocks.append(block)
     if not models and shortfall is not None:
         raise shortfall
-    dimensional = CoefficientSet(
-        tuple(coefficients),
-        _block_diagonal(blocks),
-        scaling,
-        first.reference_point,
-        first.datum,
-        first.body,
-        first.conditions,
-    )
-    return FitResult(
-        fit="linear_quadratic_damping",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=dimensional.to_prime(),
-        sweeps=(),
-        citations=citations,
-        settings={"axes": " ".join(chosen.axes), "terms": chosen.terms, "offset": chosen.offset},
-        models=tuple(models),
-    )
-
-
-def _block_diagonal(blocks: Sequence[Array]) -> Array:
-    """Axes share no rows, so their errors are independent; an unknown variance makes its row and column NaN."""
-    size = sum(map(len, blocks))
-    out, at = np.zeros((size, size)), 0
-    for b in blocks:
-        out[at : at + len(b), at : at + len(b)] = b
-        at += len(b)
-    unknown = np.isnan(np.diag(out))
-    out[unknown, :] = out[:, unknown] = np.nan
-    return out
+    result = result_of(
+        "linear_quadratic_damping", first, scaling, coefficients, independent(blocks), citations=citations,
+        settings={"axes": " ".join(chosen.axes), "terms": chosen.terms, "offset": chosen.offset}, models=tuple(models),
+        conditions=first.conditions,
+    )  # fmt: skip
+    return replace(result, coefficients=result.coefficients.to_prime())

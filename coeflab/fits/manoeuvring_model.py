@@ -23,11 +23,12 @@ from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, next_terms_in_words, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.sweeps import secant
+from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.remainder import companions
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import (
@@ -227,34 +228,19 @@ def _window(model: FittedModel, index: int) -> tuple[float, float] | None:
 
 def _coefficients(model: FittedModel, citation: str, *, lines: bool) -> list[Coefficient]:
     bent = {t.factors[0][0]: t.suffix for t in companions(model.terms)} if lines else {}
-    shared: dict[str, Any] = {
-        "body": model.body, "origin": "fit", "table": model.table, "campaign": model.campaign,
-        "n_points": model.n_points, "citation": citation,
-        "estimator": f"joint least squares, {model.response}' = {' + '.join(model.symbols)}",
-    }  # fmt: skip
+    joint = f"joint least squares, {model.response}' = {' + '.join(model.symbols)}"
     out = []
     for i, symbol in enumerate(model.symbols):
-        value = model.recommended(i)
-        u95, status, parts = model.worth(i)
-        if value is None:
-            out.append(
-                Coefficient(
-                    symbol, None, None, status, **(shared | {"estimator": model.one_size(i) or shared["estimator"]})
-                )
-            )
-            continue
-        at_rest = not np.any(model.terms[i].evaluate(model.x))
-        straight = bent.get(model.terms[i].suffix, "")
-        added = (
-            {"estimator": f"{shared['estimator']}; U95 holds {model.response}{straight}, which the set has not"}
-            if straight
-            else {}
-        )
-        own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
-        out.append(
-            Coefficient(symbol, value, u95, status, parts=parts,
-                        window=None if at_rest else _window(model, i), **(shared | added | (own if at_rest else {})))
-        )  # fmt: skip
+        more: dict[str, Any] = {"estimator": joint}
+        if model.recommended(i) is None:
+            more["estimator"] = model.one_size(i) or joint
+        elif not np.any(model.terms[i].evaluate(model.x)):
+            more = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
+        else:
+            more["window"] = _window(model, i)
+            if straight := bent.get(model.terms[i].suffix, ""):
+                more["estimator"] += f"; U95 holds {model.response}{straight}, which the set has not"
+        out.append(coefficient_of(model, i, citation, **more))
     return out
 
 
@@ -300,12 +286,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Returns
     -------
     FitResult
-        One model per component; coefficients that the rows leave open have no value and say so.
+        One model per component; coefficients that the rows leave open have no value and say so, as do those of a component
+        with no more rows than terms.
 
     Raises
     ------
     InputError
-        Unknown, repeated or unexcited terms; more terms than rows; equations that are unreadable or cannot hold.
+        Unknown, repeated or unexcited terms; more terms than rows of every component; equations that are unreadable or cannot hold.
     """
     given = {k: split_equations(o) if k == "constraints" and isinstance(o, str) else o for k, o in options.items()}
     chosen = parse_options(Options, given, "manoeuvring_model")
@@ -315,10 +302,11 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     asked = asked_terms(chosen.terms, _set_of(chosen) or "none", chosen.components, tables,
                         intercepts=chosen.intercepts == "yes", place="manoeuvring_model")  # fmt: skip
     weighted = chosen.weights == "yes"
-    components = {
-        c: replace(_component(c, asked, tables, scaling.length, weighted=weighted), lines=not chosen.terms)
-        for c in dict.fromkeys(t.component for t in asked.fitted)
-    }
+    names = tuple(dict.fromkeys(t.component for t in asked.fitted))
+    parts, few = each_with_rows(
+        names, lambda c: _component(c, asked, tables, scaling.length, weighted=weighted), joint_name(t.campaign for t in tables)
+    )  # fmt: skip
+    components = {p.name: replace(p, lines=not chosen.terms) for p in parts}
     stated = {c: p.data.rows.errors is not None for c, p in components.items()}
     n_runs = sum(map(len, tables))
     joint = joint_models(components, equations, "manoeuvring model", n_runs=n_runs)
@@ -342,30 +330,23 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
                     estimator="no motion in the tables")
         for t in asked.idle
     ]  # fmt: skip
-    every = tuple(coefficients + open_ones)
-    return FitResult(
-        fit="manoeuvring_model",
-        campaign=campaign,
-        body=body,
-        coefficients=CoefficientSet(
-            every,
-            _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every),
-            scaling,
-            first.reference_point,
-            first.datum,
-            body,
-        ),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "terms": " ".join(t.symbol for t in asked.fitted),
-            "constraints": ", ".join(map(str, equations)) or "none",
-            "weights": chosen.weights,
-        },
-        models=finished,
-        poolings=joint.poolings,
-        differences=apart,
-    )
+    few = (*few, *(why.finding(campaign) for why in joint.short.values()))
+    short = {c for f in few for c in str(f["variable"]).split(", ")}
+    open_ones += [
+        Coefficient(t.symbol, None, None, Status.TOO_FEW_POINTS, body, origin="fit", campaign=campaign,
+                    estimator="no more usable rows than terms")
+        for t in asked.fitted if t.component in short
+    ]  # fmt: skip
+    every = coefficients + open_ones
+    settings = {
+        "terms": " ".join(t.symbol for t in asked.fitted), "constraints": ", ".join(map(str, equations)) or "none",
+        "weights": chosen.weights,
+    }  # fmt: skip
+    covariance = _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every)
+    return result_of(
+        "manoeuvring_model", first, scaling, every, covariance, citations=citations, settings=settings, models=finished,
+        campaign=campaign, body=body, poolings=joint.poolings, differences=apart, findings=few,
+    )  # fmt: skip
 
 
 def _component(

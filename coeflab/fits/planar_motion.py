@@ -25,11 +25,11 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.oscillation import Explained, OscillatedForce, Oscillation, describing
 from coeflab.fits.rows.oscillating import oscillated
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, SAME, AtZero, RunScatter, at_zero_amplitude
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.scaling import Scaling
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.planar_motion import VARIABLES, PlanarMotionTable
@@ -175,8 +175,6 @@ def _covariance(oscillations: Sequence[Oscillation], coefficients: Sequence[Coef
         i = at[o.symbol]
         pair = quadratic.correlation * quadratic.weight * np.sqrt(out[i, i] * out[j, j])
         out[i, j] = out[j, i] = pair
-    unknown = np.isnan(np.diag(out))
-    out[unknown, :] = out[:, unknown] = np.nan
     return out
 
 
@@ -227,25 +225,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(
             "no run without a mean drift", "runs of one motion about straight ahead", file=series_of[0].name
         )
-    first = series_of[0]
-    made = CoefficientSet(
-        tuple(coefficients),
-        _covariance(tuple(found.values()), coefficients),
-        scaling,
-        first.point,
-        first.datum,
-        first.body,
-    )
-    return FitResult(
-        fit="planar_motion",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=made.about(first.reference_point),
-        sweeps=(),
-        citations=citations,
+    first, each = series_of[0], tuple(found.values())
+    result = result_of(
+        "planar_motion", replace(first, reference_point=first.point), scaling, coefficients, _covariance(each, coefficients), citations=citations,
         settings={"harmonics": str(chosen.harmonics), "steady_below": f"{chosen.steady_below:g}", **_taken_out(first)},
-        oscillations=tuple(found.values()),
-    )
+        oscillations=each,
+    )  # fmt: skip
+    return replace(result, coefficients=result.coefficients.about(first.reference_point))
 
 
 def _starved(rows: list[tuple[OscillatedForce, tuple[float, float], int]], below: float) -> bool:

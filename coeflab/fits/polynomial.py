@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, coefficient_of, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.linear_model import sharpened
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.law.terms import Term, power_terms
@@ -98,31 +99,13 @@ def _coefficients(
     low, high = float(x.min()), float(x.max())
     if chosen.variable in ("v", "w"):
         low, high = float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
-    out = []
-    for i in keep:
-        u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
-        out.append(
-            Coefficient(
-                symbol=model.symbols[i].removesuffix("'"),
-                value=model.recommended(i),
-                u95=u95,
-                status=status,
-                body=model.body,
-                parts=parts,
-                origin="fit",
-                table=model.table,
-                campaign=model.campaign,
-                estimator=model.one_size(i) or model.form,
-                window=(low, high),
-                window_over=chosen.variable,
-                n_points=model.n_points,
-                citation=citation,
-            )
+    out = [
+        coefficient_of(model, i, citation, Status.TOO_FEW_POINTS, symbol=model.symbols[i].removesuffix("'"),
+            estimator=model.one_size(i) or model.form, window=(low, high), window_over=chosen.variable,
         )
-    covariance = model.covariance[np.ix_(keep, keep)]
-    void = [c.value is None for c in out]
-    covariance[void, :] = covariance[:, void] = np.nan
-    return out, covariance
+        for i in keep
+    ]  # fmt: skip
+    return out, model.covariance[np.ix_(keep, keep)]
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -148,7 +131,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        No such sweep, a response that the tables lack, more terms than rows, or an area without its name.
+        No such sweep, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
     chosen = parse_options(Options, options, "polynomial")
     area = area_of(chosen.area, chosen.area_name, scaling)
@@ -161,30 +144,17 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(
             f"no usable force in a sweep over {chosen.variable}", "one of X Y Z K M N", column="polynomial.responses"
         )
-    models = tuple(_model(allowed(used, n, area) or used, n, terms, area, chosen, said) for n in dict.fromkeys(names))
     first = tables[0]
+    models, few = each_with_rows(
+        tuple(dict.fromkeys(names)), lambda n: _model(allowed(used, n, area) or used, n, terms, area, chosen, said), first.campaign
+    )  # fmt: skip
     parts = [_coefficients(m, chosen, area, first.source.citation) for m in models]
-    coefficients = tuple(c for some, _ in parts for c in some)
-    covariance = np.zeros((len(coefficients), len(coefficients)))
-    at = 0
-    for some, block in parts:
-        covariance[at : at + len(some), at : at + len(some)] = block
-        at += len(some)
-    void = np.array([c.u95 is None for c in coefficients], dtype=bool)
-    covariance[void, :] = covariance[:, void] = np.nan
-    return FitResult(
-        fit="polynomial",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(coefficients, covariance, scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
-        citations=citations,
-        settings={
-            "variable": chosen.variable,
-            "degree": str(chosen.degree),
-            "parity": chosen.parity,
-            "extrapolation": chosen.extrapolation,
-            **area_settings(area),
-        },
-        models=models,
-    )
+    coefficients = [c for some, _ in parts for c in some]
+    settings = {
+        "variable": chosen.variable, "degree": str(chosen.degree), "parity": chosen.parity,
+        "extrapolation": chosen.extrapolation, **area_settings(area),
+    }  # fmt: skip
+    return result_of(
+        "polynomial", first, scaling, coefficients, independent([block for _, block in parts]), citations=citations,
+        settings=settings, models=models, findings=few,
+    )  # fmt: skip

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep
+from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows, images
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
 from coeflab.tables.force_table import AT_REST
@@ -331,10 +331,7 @@ def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
             size = float(np.linalg.norm(a) * np.linalg.norm(b))
             if size > 0.0:
                 out[i, j] = out[j, i] = float(a @ b) / size * ci.parts.random * cj.parts.random / 4.0
-    for i, c in enumerate(coefficients):
-        out[i, i] = np.nan if c.u95 is None else (c.u95 / 2.0) ** 2
-        if c.u95 is None:
-            out[i, :] = out[:, i] = np.nan
+    np.fill_diagonal(out, [np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients])
     return out
 
 
@@ -393,26 +390,11 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     covariance = _covariance(sweeps, coefficients)
     straight, ahead = resistance(tables, length, first.source.citation)
     if ahead is not None and all(c.symbol != ahead.symbol for c in coefficients):
-        own = np.nan if ahead.u95 is None else (ahead.u95 / 2.0) ** 2
         coefficients.append(ahead)
-        covariance = np.pad(covariance, (0, 1))
-        covariance[-1, -1] = own
-        if ahead.u95 is None:
-            covariance[-1, :] = covariance[:, -1] = np.nan
-    return FitResult(
-        fit="slope_at_origin",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(
-            tuple(coefficients),
-            covariance,
-            scaling,
-            first.reference_point,
-            first.datum,
-            first.body,
-        ).about(wanted),
-        sweeps=tuple(sweeps),
-        citations=citations,
-        settings=_moved(shift),
-        straight=straight,
-    )
+        own = np.nan if ahead.u95 is None else (ahead.u95 / 2.0) ** 2
+        covariance = independent([covariance, np.array([[own]])])
+    result = result_of(
+        "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift),
+        sweeps=tuple(sweeps), straight=straight,
+    )  # fmt: skip
+    return replace(result, coefficients=result.coefficients.about(wanted))

@@ -22,11 +22,12 @@ from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, every_third_point, residuals_in_words
+from coeflab.fits.results.fit_result import FitResult, independent, result_of
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
+from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
-from coeflab.law.coefficient import Coefficient, CoefficientSet
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Term, design, symmetric
@@ -104,8 +105,10 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
     """The fitted model, or None where nothing is chosen; and the selection in short."""
     rows, intercept = data.rows, chosen.intercepts == "yes"
     if len(rows.y) < FEWEST_A_FOLD * chosen.folds:
-        raise InputError(f"{len(rows.y)} usable rows of {component}", f"{FEWEST_A_FOLD} or more for each of "
-                         f"{chosen.folds} folds", column="sparse.folds", advice="Ask for fewer folds.")  # fmt: skip
+        raise TooFewRowsError(
+            f"{len(rows.y)} usable rows of {component}", f"{FEWEST_A_FOLD} or more for each of {chosen.folds} folds", component, rows.labels,
+            FEWEST_A_FOLD * chosen.folds, column="sparse.folds", advice="Ask for fewer folds.",
+        )  # fmt: skip
     matrix = design(terms, rows.x)
     selection = select(
         matrix, rows.y, run, seed=chosen.seed, folds=chosen.folds, resamples=chosen.ensembles, intercept=intercept
@@ -149,30 +152,8 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
 
 
 def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
-    out = []
-    for i, symbol in enumerate(model.symbols):
-        u95, status, parts = model.worth(i)
-        out.append(
-            Coefficient(
-                symbol, model.recommended(i), u95, status, model.body, parts=parts,
-                origin="fit", table=model.table, campaign=model.campaign, n_points=model.n_points, citation=citation,
-                estimator=model.one_size(i)
-                or f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
-            )
-        )  # fmt: skip
-    return out
-
-
-def _covariance(models: Sequence[FittedModel], coefficients: Sequence[Coefficient]) -> Array:
-    """That of each model; nothing between models, whose terms were chosen apart."""
-    out, at = np.zeros((len(coefficients), len(coefficients))), 0
-    for m in models:
-        block = slice(at, at + len(m.symbols))
-        out[block, block] = m.covariance
-        at = block.stop
-    void = np.isnan(np.diag(out)) | [c.value is None for c in coefficients]
-    out[void, :] = out[:, void] = np.nan
-    return out
+    refit = f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice"
+    return [coefficient_of(model, i, citation, estimator=model.one_size(i) or refit) for i in range(len(model.symbols))]
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -190,7 +171,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        Unknown component or variable, or too few rows for the folds.
+        Unknown component or variable, or too few rows of every component for the folds.
     """
     chosen = parse_options(Options, options, "sparse")
     run = scaled_optimizer(chosen.optimizer)
@@ -204,28 +185,19 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     if unknown := [c for c in components if c not in COMPONENTS]:
         raise InputError(shown(unknown[0]), f"some of {', '.join(COMPONENTS)}", column="sparse.components")
     terms = library(variables, chosen.degree, absolute=chosen.absolute == "yes")
-    models, settings = [], {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
-    with one_thread():
-        for c in components:
-            allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
-            model, settings[c] = _model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)
-            models += [model] if model is not None else []
+    settings = {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
+
+    def one(c: str) -> tuple[str, FittedModel | None, str]:
+        allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
+        return c, *_model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)
+
     first = tables[0]
+    with one_thread():
+        found, few = each_with_rows(components, one, first.campaign)
+    settings |= {c: short for c, _, short in found}
+    models = [model for _, model, _ in found if model is not None]
     coefficients = [c for m in models for c in _coefficients(m, first.source.citation)]
-    return FitResult(
-        fit="sparse",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(
-            tuple(coefficients),
-            _covariance(models, coefficients),
-            scaling,
-            first.reference_point,
-            first.datum,
-            first.body,
-        ),
-        sweeps=(),
-        citations=citations,
-        settings=settings,
-        models=tuple(models),
-    )
+    return result_of(
+        "sparse", first, scaling, coefficients, independent([m.covariance for m in models]), citations=citations,
+        settings=settings, models=tuple(models), findings=few,
+    )  # fmt: skip

@@ -15,12 +15,12 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
-from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
+from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
-from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
 from coeflab.law.terms import Term, power_terms
@@ -212,9 +212,9 @@ def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area,
     fitted = {form: _fitted(rows, chosen, form, area) for form in FORMS}
     model = fitted[chosen.form]
     if model is None:
-        raise InputError(
-            f"{len(rows.y)} usable rows of {name}", f"more rows than terms, and at least one term, for {chosen.form}",
-            column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
+        raise TooFewRowsError(
+            f"{len(rows.y)} usable rows of {name}", f"more rows than terms, and at least one term, for {chosen.form}", name, rows.labels,
+            len(rows.y) + 1, column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
         )  # fmt: skip
     full = fitted["tensor"] or fitted["total"] if chosen.form == "additive" else model
     freer = f"Try a higher degree, such as degree = {chosen.degree + 1}"
@@ -253,7 +253,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Raises
     ------
     InputError
-        No such rows, a response that the tables lack, more terms than rows, or an area without its name.
+        No such rows, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
     chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
@@ -266,22 +266,22 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
     first = tables[0]
-    return FitResult(
-        fit="surface",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
+    settings = {
+        "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
+        "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
+        **sweeps.area_settings(area),
+    }  # fmt: skip
+    models, few = each_with_rows(
+        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said), first.campaign
+    )  # fmt: skip
+    return result_of(
+        "surface",
+        first,
+        scaling,
+        (),
+        np.zeros((0, 0)),
         citations=citations,
-        settings={
-            "variables": " ".join(chosen.variables),
-            "degree": str(chosen.degree),
-            "form": chosen.form,
-            "parity": " ".join(chosen.parity) or "port-starboard symmetry",
-            "extrapolation": chosen.extrapolation,
-            **sweeps.area_settings(area),
-        },
-        models=tuple(
-            _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names)
-        ),
+        settings=settings,
+        models=models,
+        findings=few,
     )

@@ -6,6 +6,8 @@ and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of i
 Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine; drift and attack together
 come in as groups, such as v|w| with v w^2, of which AICc takes one or none.
 A reading that the slopes left out because it does not fit the others is left out of the law too.
+A curvature in a rate that the slopes have about the arm's point alone (Xrr) is fitted about the study's, together with the product of
+drift and rate (Xvr) into which the move turns it. Runs of one ratio of both give one number: then Xrr is that of no Xvr.
 What no symmetric body has is the set-up's: it is fitted with the law, taken off the points and stated, never in the law.
 
 With y = s x + A b the coefficients are b = A+ (y - s x), so that they move by -A+ x with the slope: that share of the
@@ -22,17 +24,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
 from coeflab.fits import FITS
-from coeflab.fits.results.fit_result import FitResult, Sweep, Tied
+from coeflab.fits.results.fit_result import FitResult, Sweep, Tied, independent, result_of
 from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.law.terms import SETS, NamedTerm, read_term
 from coeflab.tables.campaign import PORT_STARBOARD
 from coeflab.tables.campaign import UP_DOWN as ALIKE
@@ -47,6 +50,8 @@ STEP = 0.995  # by which a range shrinks at the least
 UP_DOWN, SIDEWAYS = ("w", "q"), ("v", "r")
 CROSSFLOW = (("v", "w"), ("w", "v"))
 TOGETHER = 4  # rows in which two motions move, for a cross term
+DRIFTS = {"r": "v", "q": "w"}  # what a rate becomes about another point
+ONE_RATIO = "law.one_ratio"
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +117,31 @@ def _bases(component: str, among: CoefficientSet) -> dict[str, tuple[NamedTerm, 
             continue
         out[c.symbol] = read_term(c.symbol, completes), c.value
     return out
+
+
+def _curvatures_of_rates(component: str, found: FitResult) -> tuple[NamedTerm, ...]:
+    """Curvatures in a rate whose sweep has a value, about the point where its runs do not drift, and that the set has not about its own."""
+    swept = {s.symbol for s in found.sweeps if s.component == component and s.value is not None}
+    known = found.coefficients.available
+    return tuple(
+        read_term(symbol, completes)
+        for rate, drift in DRIFTS.items()
+        if (symbol := f"{component}{rate}{rate}") in swept - known and f"{component}{drift}{drift}" in known
+    )
+
+
+def _of_one_ratio(law: _Law, bent: Sequence[NamedTerm], campaign: str) -> Iterator[Finding]:
+    """Curvatures in a rate whose runs have one ratio of drift to rate: they hold what the product of both makes of it."""
+    for t in bent:
+        rate = t.term.factors[0][0]
+        product = f"{t.component}{DRIFTS[rate]}{rate}"
+        if product not in (own.symbol for own in law.form):
+            drift, turning = law.rows.x[DRIFTS[rate]], law.rows.x[rate]
+            ratio = float(drift @ turning / (turning @ turning))
+            yield Finding.of(
+                ONE_RATIO, f"{campaign} {primed(t.symbol)}", Severity.NOTE, statistic=ratio, by="zero", symbol=t.symbol,
+                product=primed(product), taken=0.0,
+            )  # fmt: skip
 
 
 def _rows(
@@ -251,11 +281,12 @@ def _chosen(
     constant: bool,
     declared: tuple[str, ...],
     partner: str = "",
+    bent: tuple[NamedTerm, ...] = (),
 ) -> _Law | None:
     """The law over the whole range or, where it misses points there, over the widest range in which it meets them."""
     variables = [v for v in rows.x if np.any(rows.moved(v))]
     at_rest = (read_term(f"{component}0", "tied_law"),)
-    own = at_rest if constant else ()
+    own = (*(at_rest if constant else ()), *bent)
     free = not any(not t.term.factors for t, _ in bases.values()) and _plane(component) not in declared
     apart = at_rest if free and not constant else ()
 
@@ -371,10 +402,12 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
     among, length, tables = found.coefficients, scaling.length, counted_once(tables)
     declared = tuple(s for s in tables[0].symmetry if all(s in t.symmetry for t in tables))
     every: list[Coefficient] = []
-    blocks, moves, rest = [], [], []
+    blocks, moves, rest, said = [], [], [], list[Finding]()
     for component in COMPONENTS:
         bases = _bases(component, among)
-        variables = list(dict.fromkeys(v for t, _ in bases.values() for v, _, _ in t.term.factors))
+        bent = _curvatures_of_rates(component, found)
+        terms = [*(t for t, _ in bases.values()), *bent]
+        variables = list(dict.fromkeys(v for t in terms for v, _, _ in t.term.factors))
         if not variables:
             continue
         rows = _rows(component, tables, variables, length, found.sweeps)
@@ -386,7 +419,7 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
             partner = ""
         constant = chosen.at_rest == "law" and component in "ZM" and ALIKE not in declared
         law = (
-            _chosen(component, rows, bases, constant=constant, declared=declared, partner=partner)
+            _chosen(component, rows, bases, constant=constant, declared=declared, partner=partner, bent=bent)
             if len(rows.y)
             else None
         )
@@ -395,33 +428,20 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         rest += [
             (law.rows.names[i], t.symbol, float(value)) for (i, t), value in zip(law.set_up, law.values, strict=False)
         ]
+        said += _of_one_ratio(law, bent, tables[0].campaign)
         if law.form:
             some, block, moved = _coefficients(law, among, bases, tables[0])
             every += some
             blocks.append(block)
             moves.append(moved)
     sensitivity = np.vstack(moves) if moves else np.zeros((0, len(among.coefficients)))
-    covariance = sensitivity @ np.nan_to_num(among.covariance) @ sensitivity.T
-    at = 0
-    for block in blocks:
-        covariance[at : at + len(block), at : at + len(block)] += block
-        at += len(block)
-    for i, c in enumerate(every):
-        if c.u95 is None:
-            covariance[i, :] = covariance[:, i] = np.nan
-        else:
-            covariance[i, i] = (c.u95 / 2.0) ** 2
-    first = tables[0]
-    return FitResult(
-        fit="tied_law",
-        campaign=first.campaign,
-        body=first.body,
-        coefficients=CoefficientSet(tuple(every), covariance, scaling, first.reference_point, first.datum, first.body),
-        sweeps=(),
-        citations=citations,
-        settings={"at_rest": chosen.at_rest},
-        tied=Tied(found.fit, tuple(c.symbol for c in among.coefficients), sensitivity, tuple(rest)),
-    )
+    covariance = sensitivity @ np.nan_to_num(among.covariance) @ sensitivity.T + independent(blocks)
+    np.fill_diagonal(covariance, [np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in every])
+    tied = Tied(found.fit, tuple(c.symbol for c in among.coefficients), sensitivity, tuple(rest))
+    return result_of(
+        "tied_law", tables[0], scaling, every, covariance, citations=citations, settings={"at_rest": chosen.at_rest}, tied=tied,
+        findings=tuple(said),
+    )  # fmt: skip
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

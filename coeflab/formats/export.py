@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.wording import file_stem
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.rigid_body import momentum_force
@@ -177,6 +177,7 @@ ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("worst rms largest size")
 class Apart:
     """How far a target is from the parameter file, six components each: forces, or rates of u v w p q r.
 
@@ -192,10 +193,6 @@ class Apart:
     rms: Array
     largest: Array
     size: Array
-
-    def __post_init__(self) -> None:
-        for name in ("worst", "rms", "largest", "size"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def relative(self) -> Array:

@@ -20,7 +20,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.core.wording import one_line
 from coeflab.law.added_mass import AddedMass, definiteness, potential_part
@@ -347,6 +347,7 @@ def stated_mass(
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("added matrix centre")
 class LinkModel:
     """SI and FRD, about the link's origin.
 
@@ -397,10 +398,6 @@ class LinkModel:
     thrusters: tuple[ParameterThruster, ...] = ()
     surfaces: tuple[ParameterSurface, ...] = ()
     controls: Mapping[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for name in ("added", "matrix", "centre"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def link_file(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, locking
 from coeflab.vehicle.parameter_model import ParameterModel
 
 # Per axis by the number of axes: about a thousand cells at the most.
@@ -17,6 +17,7 @@ FEWEST = 5
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("values half_widths")
 class LookUp:
     """One response over a grid that spans the box of its data.
 
@@ -39,8 +40,6 @@ class LookUp:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axes", tuple(locked(a) for a in self.axes))
-        for name in ("values", "half_widths"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def rows(self) -> list[tuple[float | bool, ...]]:

@@ -16,6 +16,7 @@ from coeflab.core.text.toml import read_text
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
+from coeflab.law.water import ROUND_DENSITY
 from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file, refuse_shape
 from coeflab.vehicle.parameter_refusals import first_complaint
 from coeflab.vehicle.plausibility import plausibility
@@ -23,7 +24,6 @@ from coeflab.vehicle.plausibility import plausibility
 OWN = "coeflab"
 DENSITY = "density"
 LEFT_OUT = "model.left_out"
-STAND_IN = 1000.0  # kg/m^3, fresh water; the finding says so
 
 
 @brief
@@ -119,8 +119,10 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
     try:
         parameters = importer.read(path, density)
     except NoDensityError:
-        parameters = importer.read(path, STAND_IN)
-        words = Finding.of("model.density", parameters.name, Severity.NOTE, statistic=STAND_IN, advice="--density 1025")
+        parameters = importer.read(path, ROUND_DENSITY)
+        words = Finding.of(
+            "model.density", parameters.name, Severity.NOTE, statistic=ROUND_DENSITY, advice="--density 1025"
+        )
         parameters = parameters.model_copy(update={"findings": (*parameters.findings, words)})
     findings += importer.examine(path)
     known = any(c.subject.startswith(DENSITY) for c in findings)

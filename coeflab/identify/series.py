@@ -12,7 +12,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.texts import words
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import Header, factor, parse_header
 from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
 from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
@@ -41,6 +41,7 @@ EXAMPLES = {
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time velocity attitude controls wrench")
 class MotionSeries:
     """One motion, SI, FRD, about the reference point of the vehicle.
 
@@ -71,10 +72,6 @@ class MotionSeries:
     wrench: Array
     given: frozenset[str]
     findings: tuple[Finding, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("time", "velocity", "attitude", "controls", "wrench"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def moving(self) -> frozenset[str]:

@@ -16,7 +16,7 @@ import numpy as np
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import factor
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterThruster
@@ -29,6 +29,7 @@ LAWS = ("n", "n^2")
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("value u95 file_value")
 class LoadLaw:
     """One load over the command.
 
@@ -55,12 +56,6 @@ class LoadLaw:
     rest: float
     rest_u95: float
     scatter: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", locked(self.value))
-        object.__setattr__(self, "u95", locked(self.u95))
-        if self.file_value is not None:
-            object.__setattr__(self, "file_value", locked(self.file_value))
 
     @property
     def biased(self) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import number, plus_minus
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
 from coeflab.identify.output_error import Estimate, Problem
@@ -74,6 +74,7 @@ class TunedParameter:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("measured before after error")
 class TunedQuantity:
     """One measured quantity, a value a case; NaN where it was not measured.
 
@@ -92,10 +93,6 @@ class TunedQuantity:
     after: Array
     error: Array
 
-    def __post_init__(self) -> None:
-        for name in ("measured", "before", "after", "error"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-
     def rms(self, after: bool = True) -> float:
         """Root mean square of model minus measured."""
         return float(np.sqrt(np.nanmean((np.asarray(self.after if after else self.before) - self.measured) ** 2)))
@@ -113,6 +110,7 @@ class TunedQuantity:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("correlation covariance singular")
 class Tuning:
     """What came of a fit.
 
@@ -145,10 +143,6 @@ class Tuning:
     freedom: float
     converged: bool
     statements: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("correlation", "covariance", "singular"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def parameter(self, name: str) -> TunedParameter:
         """The parameter of a name."""

@@ -21,7 +21,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import named
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.text.toml import TomlFile, read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import factor
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -248,6 +248,7 @@ class FreeParameter:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("controls measured errors")
 class SteadyCases:
     """Steady turns as they were measured.
 
@@ -276,10 +277,6 @@ class SteadyCases:
     measured: Array
     errors: Array
     magnitudes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        for name in ("controls", "measured", "errors"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 @brief

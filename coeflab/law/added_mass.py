@@ -21,7 +21,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
-from coeflab.core.types import Array, in_angles, locked
+from coeflab.core.types import Array, in_angles, locked, locking
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
@@ -112,6 +112,7 @@ class NearWall(NamedTuple):
 
 @stored("body method density matrix u95?? others? walls?? statements?")
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("matrix reference_point")
 class AddedMass:
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
 
@@ -160,8 +161,6 @@ class AddedMass:
     u95: Annotated[Square6 | None, Means("95 % half-widths of a rough guide", "kg, kg m, kg m^2", since="1.6")] = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "matrix", locked(self.matrix))
-        object.__setattr__(self, "reference_point", locked(self.reference_point))
         for name in ("error", "u95"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, locked(getattr(self, name)))

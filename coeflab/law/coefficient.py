@@ -15,7 +15,7 @@ from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, RefusedError, stored
 from coeflab.core.table import percent, plus_minus
-from coeflab.core.types import Array, in_angles, locked
+from coeflab.core.types import Array, in_angles, locking
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import derivative_transfer
@@ -243,6 +243,7 @@ class Coefficient:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("covariance reference_point")
 class CoefficientSet:
     """Coefficients of one body, one scaling, one reference point.
 
@@ -268,10 +269,6 @@ class CoefficientSet:
     datum: Datum
     body: str
     conditions: Conditions | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "covariance", locked(self.covariance))
-        object.__setattr__(self, "reference_point", locked(self.reference_point))
 
     def __repr__(self) -> str:
         by = f"primed by {self.scaling.length_name}" if self.conditions is None else "SI"

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 
 SLACK = 1e-9
 FLAT = 1e-10
@@ -201,6 +201,7 @@ def taper_weight(points: Array, nearest: Array, low: Array, high: Array) -> Arra
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high spaces")
 class Hull:
     """The region of a table's data, and what a reader outside of it gets: the one reading of a domain.
 
@@ -220,10 +221,6 @@ class Hull:
     high: Array
     spaces: Array
     rule: Literal["refuse", "clamp", "taper"] = "clamp"
-
-    def __post_init__(self) -> None:
-        for name in ("low", "high", "spaces"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def is_box(self) -> bool:

@@ -19,7 +19,7 @@ from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import motion_law
-from coeflab.vehicle.matching import by_plain_names
+from coeflab.vehicle.matching import by_plain_names, on_one_datum
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.stability import stability
@@ -91,10 +91,11 @@ def behaviour(a: ParameterFile, b: ParameterFile, speed: float) -> tuple[Behavio
     Parameters
     ----------
     a, b : ParameterFile
-        Forces are about the point of the first, where both measure it from one datum.
+        Forces are about the point of the first, where both measure it from one datum or state their centre of gravity.
     speed : float
         m/s.
     """
+    b, _ = on_one_datum(a, b)
     return (*_indices(a, b), *_eigenvalues(a, b, speed), *_figures(a, b, speed), *_curves(a, b, speed))
 
 
@@ -217,6 +218,8 @@ def _both(function: Callable[[ParameterFile], object], a: ParameterFile, b: Para
 
 
 def _figures(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]:
+    apart = float(np.linalg.norm(np.subtract(a.reference_point.point, b.reference_point.point)))
+    own = f"; paths of two points, {apart:.3g} m apart" if apart > EQUAL * a.scaling.length else ""
     out = []
     for name, options, wanted in MANOEUVRES:
 
@@ -231,7 +234,9 @@ def _figures(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour
             pairs = [None if f is None else f.get(figure) for f in found]
             values = [None if x is None else x[0] for x in pairs]
             unit = next((x[1] for x in pairs if x is not None), "")
-            out.append(_pair(figure, unit, (values[0], values[1]), why or "no U95 of motions: coeflab uncertainty"))
+            out.append(
+                _pair(figure, unit, (values[0], values[1]), (why or "no U95 of motions: coeflab uncertainty") + own)
+            )
     return out
 
 

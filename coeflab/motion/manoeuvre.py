@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, in_angles, locked
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.law.force_law import BASE, Ints
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trajectory import Trajectory
@@ -96,6 +96,7 @@ class Phase:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("velocity attitude")
 class Manoeuvre:
     """Where it starts, and what is ordered.
 
@@ -126,8 +127,6 @@ class Manoeuvre:
     surface: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "attitude"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
 
     @property

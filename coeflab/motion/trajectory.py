@@ -16,7 +16,7 @@ from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import number
 from coeflab.core.texts import remark
-from coeflab.core.types import Array, in_angles, locked, locked_columns
+from coeflab.core.types import Array, in_angles, locked, locked_columns, locking
 from coeflab.law.force_law import SLOWEST
 from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.dynamics import euler_angles, rotations
@@ -36,6 +36,7 @@ class Ended(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time position attitude velocity heading controls")
 class Trajectory:
     """A motion, one row a time.
 
@@ -82,10 +83,7 @@ class Trajectory:
     statements: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("time", "position", "attitude", "velocity", "heading"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         object.__setattr__(self, "phase", locked(self.phase, int))
-        object.__setattr__(self, "controls", locked_columns(self.controls))
         object.__setattr__(self, "outside", locked_columns(self.outside, bool))
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding
 from coeflab.core.texts import remark
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
@@ -28,6 +28,7 @@ BALANCED, ONE_POINT = 5e-3, 1e-4  # of the weight and of the length: less is tri
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("centre inertia added")
 class Vehicle:
     """What is moved, SI, FRD, about the reference point of its parameter file.
 
@@ -75,10 +76,6 @@ class Vehicle:
     covered: tuple[CoveredRange, ...]
     statements: tuple[str, ...]
     findings: tuple[Finding, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("centre", "inertia", "added"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def effective_mass(self) -> Array:

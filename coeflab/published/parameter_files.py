@@ -17,6 +17,7 @@ from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.published.flyingfish.model import FlyingFish, Medium, thrusters
+from coeflab.published.publication import publication
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 
@@ -25,19 +26,6 @@ WATER, SEA = Conditions(1000.0, 1.5), Conditions(1025.0, 0.3)
 AIR = Conditions(1.2, 10.0)
 FLYINGFISH_INERTIA = 0.02  # kg m^2, the mass at a tenth of a metre
 FLYINGFISH_AT: dict[Medium, Conditions] = {"water": WATER, "air": AIR}
-FLYINGFISH_NOTES: dict[Medium, tuple[str, ...]] = {
-    "water": (
-        "Damping of equation 50 and rotors of equations 47 and 48, printed. Mass, buoyancy, arm and height of the rotors are "
-        "calibrated on Table 1.",
-    ),
-    "air": (
-        "Damping of equation 49 and rotors of equations 45 and 46, printed. Mass, volume, arm and height of the rotors are "
-        "calibrated on Table 1, which holds motions under water only.",
-        "Rotors point up and do not tilt: equation 31 with its sign corrected. Rotor 1 to starboard and rotor 3 ahead, as equations "
-        "38 and 39 have them: equation 33 as printed, equation 32 with the other sign. Reaction torques as equation 34 has them.",
-        "Equations 7 to 12 leave the buoyancy of air out; the file holds that of its volume, 0.13 % of the weight.",
-    ),
-}
 THAUV_MASS, THAUV_ANGLE, THAUV_RATE = 66.35, float(np.radians(15.0)), 0.1
 
 
@@ -63,12 +51,7 @@ def flyingfish_file(fish: FlyingFish, medium: Medium = "water") -> ParameterFile
     stated = Stated(
         f"flyingfish_{medium}", f"TJ-FlyingFish in {medium}", UNIT, at, damping, datum=Datum("cg"),
         mass=MassProperties(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
-        notes=(
-            *FLYINGFISH_NOTES[medium],
-            "Length, density and speed of the primes are chosen. The largest rotor speed is chosen.",
-            f"The paper prints neither moments of inertia nor added mass. The file holds no added mass, and {FLYINGFISH_INERTIA:g} "
-            "kg m^2 about every axis, assumed: steady motions (coeflab trim) do not depend on it, manoeuvres do.",
-        ),
+        notes=publication("flyingfish").texts(f"notes_{medium}", inertia=FLYINGFISH_INERTIA),
     )  # fmt: skip
     file = imported_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
     rest = ParameterHydrostatics(
@@ -94,7 +77,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
     once, twice, rate = (("alpha", 1, False),), (("alpha", 2, False),), (("q", 1, False),)
     printed = partial(
         stated_table, form="polar of the publication", table="Table 3", campaign=glider.name,
-        statements=("Printed as coefficients: no points and no residuals. The range of angles is chosen, the paper prints none.",),
+        statements=publication("thauv").texts("statements_polar"),
     )  # fmt: skip
     damping = -glider.polar.pitch_damping / UNIT.length
     models = (
@@ -111,14 +94,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
     stated = Stated(
         glider.name, glider.title, UNIT, SEA, {}, datum=Datum("cb"), matrix=added,
         mass=MassProperties(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
-        notes=(
-            "Polar of Table 3, printed. m3 - m1 and the moments of the masses are calibrated on the six published speeds, pitch "
-            "damping on the printed 170 s until a dive is steady; surge added mass and moment of inertia are assumed. Length and "
-            "speed of the primes are chosen.",
-            "Only surge, heave and pitch are described: hold v, p and r.",
-            "The format holds neither sliding masses nor a buoyancy engine: this is the vehicle at neutral buoyancy with its masses "
-            "amidships, which does not glide by itself. `coeflab glide thauv` moves them.",
-        ),
+        notes=publication("thauv").texts("notes"),
     )  # fmt: skip
     file = imported_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
     rest = ParameterHydrostatics(

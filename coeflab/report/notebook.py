@@ -44,30 +44,6 @@ if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
     from coeflab.vehicle.parameter_file import ParameterFile
 
-# Colours of figures that keep 3 to 1 on white and on black; lines and texts take the page's own ink.
-STYLE = """
-.coeflab { --fig-ink: currentColor; --fig-muted: color-mix(in srgb, currentColor 70%, transparent); --fig-rule: color-mix(in srgb, currentColor 22%, transparent);
-  --fig-band: #8a97a5; --fig-a: #2f86c5; --fig-b: #d2691e; --fig-c: #1f9370; --fig-d: #b8609a;
-  max-width: 64rem; margin: 0.4rem 0; font: 13px/1.45 system-ui, sans-serif; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
-.coeflab .said { margin: 0; font-size: 15px; font-weight: 600; }
-.coeflab .about, .coeflab .note, .coeflab figcaption { margin: 0.15rem 0; font-size: 12px; color: var(--fig-muted); }
-.coeflab .parts { display: flex; flex-wrap: wrap; gap: 0.6rem 1.6rem; align-items: flex-start; margin-top: 0.5rem; }
-.coeflab .parts > * { min-width: 0; max-width: 100%; }
-.coeflab figure { margin: 0; flex: 1 1 15rem; }
-.coeflab figure svg { display: block; width: 100%; height: auto; }
-.coeflab .wide { overflow-x: auto; max-width: 100%; }
-.coeflab table { border-collapse: collapse; border: 0; margin: 0; font-size: 12px; }
-.coeflab th, .coeflab td { padding: 0.2rem 0.55rem; border: 0; border-bottom: 1px solid var(--fig-rule); background: none; text-align: right; vertical-align: middle; white-space: nowrap; }
-.coeflab th { font-weight: 500; color: var(--fig-muted); }
-.coeflab .left { text-align: left; }
-.coeflab .absent { color: var(--fig-muted); font-style: italic; }
-.coeflab .long { white-space: normal; min-width: 9rem; }
-.coeflab caption { caption-side: top; padding: 0 0 0.2rem; text-align: left; font-weight: 600; color: inherit; }
-.coeflab td svg { display: block; width: 100px; height: 14px; }
-.coeflab .beside { display: flex; gap: 0.4rem; justify-content: flex-end; align-items: center; }
-.coeflab .chips { display: flex; flex-wrap: wrap; gap: 0.35rem; margin: 0.5rem 0 0; padding: 0; list-style: none; }
-.coeflab .chips li { margin: 0; padding: 0.1rem 0.55rem; border: 1px solid var(--fig-rule); border-left: 3px solid var(--of, currentColor); border-radius: 3px; }
-"""
 OF_SEVERITY = {Severity.PASS: "#1f9370", Severity.NOTE: "#8a97a5", Severity.WARN: "#c98a1b", Severity.FAIL: "#d6453a"}
 OURS, AGAINST = "#2f86c5", "#d2691e"
 DRAWN = "noun"
@@ -96,7 +72,8 @@ def _card(make: Maker) -> Callable[[Any], str]:
 @cache
 def _style() -> str:
     symbols = own_text(files("coeflab.report.formats") / "_html" / "symbols.css")
-    return f"{STYLE}.coeflab {{\n{symbols}}}\n"
+    style = own_text(files("coeflab.report") / "notebook.css")
+    return f"\n{style}.coeflab {{\n{symbols}}}\n"
 
 
 def _heading(said: str, *about: str) -> Part:

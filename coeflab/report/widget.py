@@ -9,23 +9,10 @@ from coeflab.report.bench import bench_of
 from coeflab.report.formats.workbench import data_json, numbers, source
 from coeflab.study.study import Study
 
-# Every cell has names of its own, so that two benches do not share a label.
-RENDER = """
-let benches = 0;
-export default { render({ model, el }) {
-  const root = document.createElement("div"), inside = document.createElement("div");
-  root.className = "bench";
-  inside.className = "columns";
-  root.append(inside);
-  el.append(root);
-  return mountBench(inside, JSON.parse(model.get("content")), model.get("numbers"), `bench${benches++}`);
-} };
-"""
-
 
 def module() -> str:
     """The script of the cell, an ECMAScript module with ``render``."""
-    return "\n".join((numbers(), source("page.js"), RENDER))
+    return "\n".join((numbers(), source("page.js"), source("widget.js")))
 
 
 def widget(study: Study) -> Any:

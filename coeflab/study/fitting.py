@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,13 +12,15 @@ from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import words
 from coeflab.fits import FITS, CompletingFit
-from coeflab.fits.joint.moving import fits_about
+from coeflab.fits.joint.moving import LEFT_OUT, fits_about
 from coeflab.fits.joint.rows import joint_name
+from coeflab.fits.results.fit_result import Shared, covariance_of
 from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, arm_shift
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.uncertainty.budget import as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Status
-from coeflab.law.symbols import MOTIONS, primed
+from coeflab.law.symbols import MOTIONS, derivative, primed
 from coeflab.tables.assumptions import carried
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.planar_motion import PlanarMotionTable
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
 
 FEWEST = 3
-FEW_ROWS = "sweep.few"
 COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once
 
 
@@ -96,9 +97,10 @@ def rejoined(
     unnamed_alike : bool
         Campaigns that name no body, whose body bears their own name, are of one.
     """
-    out = list(fits)
+    out, joined = list(fits), list[int]()
     for i, f in enumerate(fits):
-        if not _lost(f):
+        given = {s for g in fits if _completes(g, f) for s in g.coefficients.available}
+        if not set(_lost(f)) - given:
             continue
         name, tables, scaling, options = asked[i]
         point, first = f.coefficients.reference_point, tables[0]
@@ -111,11 +113,68 @@ def rejoined(
         own, _ = fitted(name, [t.about(at) for t in tables], scaling, options)
         here = fits_about([own, *(fits[k] for k in beside)], point)
         out[i] = here[0]
+        joined.append(i)
         for k, g in zip(beside, here[1:], strict=True):
             if np.allclose(fits[k].coefficients.reference_point, point):
                 kept = tuple(s for s in out[k].shared if (s.fit, s.campaign) != (f.fit, f.campaign))
                 mine = tuple(s for s in g.shared if (s.fit, s.campaign) == (f.fit, f.campaign))
                 out[k] = replace(out[k], shared=(*kept, *mine))
+    for j, i in [(j, i) for j in joined for i, g in enumerate(fits) if _completes(g, fits[j])]:
+        others = [
+            h for h in out
+            if h.campaign != out[j].campaign and (h.sweeps or h.tied) and _of_one_body(h, out[j], unnamed_alike) and _at_one_point(h, out[j])
+        ]  # fmt: skip
+        out[i] = _completed(out[j], others, *asked[i])
+        out[j] = replace(out[j], findings=_without(out[j].findings, out[i].coefficients.available))
+    return tuple(out)
+
+
+def _at_one_point(a: FitResult, b: FitResult) -> bool:
+    one, two = a.coefficients, b.coefficients
+    return (
+        one.datum == two.datum and one.scaling == two.scaling and np.allclose(one.reference_point, two.reference_point)
+    )
+
+
+def _completed(
+    f: FitResult, others: Sequence[FitResult], name: str, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
+) -> FitResult:  # fmt: skip
+    """The law beyond slopes that were moved, beside what the other fits of the body know of the drift of its runs."""
+    among = [f, *others]
+    every = [c for g in among for c in g.coefficients.coefficients]
+    own, speaks, symbols = len(f.coefficients.coefficients), dict[tuple[str, frozenset[str]], str](), dict[str, int]()
+    for k, c in enumerate(every):
+        d = derivative(c.symbol)
+        if c.value is not None and speaks.setdefault((d.component, frozenset(d.factors)), str(c.campaign)) == str(
+            c.campaign
+        ):
+            symbols.setdefault(c.symbol, k)
+    taken = list(symbols.values())
+    covariance = covariance_of(among)
+    known = replace(
+        f.coefficients, coefficients=tuple(every[k] for k in taken), covariance=covariance[np.ix_(taken, taken)]
+    )
+    law, _ = fitted(name, tables, scaling, options, [replace(f, coefficients=known)])
+    if law.tied is None:
+        return law
+    spread = law.tied.moves @ np.nan_to_num(covariance[taken])
+    ends = np.cumsum([0, *(len(g.coefficients.coefficients) for g in among)])
+    shared = [Shared(g.fit, g.campaign, spread[:, a:b]) for g, a, b in zip(among, ends[:-1], ends[1:], strict=True)]
+    mine = [at for at, k in enumerate(taken) if k < own]
+    tied = replace(law.tied, symbols=tuple(law.tied.symbols[at] for at in mine), moves=law.tied.moves[:, mine])
+    return replace(law, tied=tied, shared=tuple(shared))
+
+
+def _without(findings: Sequence[Finding], given: Collection[str]) -> tuple[Finding, ...]:
+    """What was left out, without what another fit gives."""
+    out = []
+    for f in findings:
+        left = tuple(s for s in f["symbols"] if s.removesuffix("'") not in given) if f.code == LEFT_OUT else ()
+        if left:
+            facts = {fact.name: fact.value for fact in f.facts} | {"symbols": left}
+            out.append(Finding.of(f.code, f.subject, f.severity, statistic=f.statistic, advice=f.advice, **facts))
+        elif f.code != LEFT_OUT:
+            out.append(f)
     return tuple(out)
 
 

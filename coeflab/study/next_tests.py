@@ -123,6 +123,8 @@ class NextTests:
         Of one reading, as a share of the reading at the largest setting, assumed where nothing was run; None where all was.
     assumed : tuple of str
         Symbols whose curve comes from a parameter file or an estimate, without rows.
+    given : Finding or None
+        What the question was asked of.
     """
 
     wanted: str
@@ -132,11 +134,13 @@ class NextTests:
     target: float | None
     noise: float | None
     assumed: tuple[str, ...]
+    given: Finding | None = None
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What the prediction rests on, and whether the target is reached."""
-        out = [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
+        out = [] if self.given is None else [self.given]
+        out += [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
         if sum(len(t.symbols) for t in self.tests) > 1:
             out += [Finding.of("design.independent", self.wanted, Severity.NOTE)]
         out += [
@@ -270,7 +274,7 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
 
 def next_tests(
     wanted: Wanted, coefficients: Sequence[Coefficient], sweeps: Sequence[Sweep], ranges: Ranges, runs: int, noise: float,
-    *, target: float | None = None, computed: bool = False,
+    *, target: float | None = None, computed: bool = False, given: Finding | None = None,
 ) -> NextTests:  # fmt: skip
     """Tests by what they take off the variance of a figure, each with the settings of its best runs.
 
@@ -290,6 +294,8 @@ def next_tests(
         U95 that is wanted.
     computed : bool
         Runs repeat the same number, so no setting twice.
+    given : Finding, optional
+        What the question was asked of.
 
     Raises
     ------
@@ -302,7 +308,7 @@ def next_tests(
     for symbol in wanted.shares:
         groups.setdefault(kind_of(symbol), []).append(symbol)
     known = {c.symbol.removesuffix("'"): c for c in coefficients}
-    ran = {s.symbol: s for s in sweeps if s.parity == "odd" and s.value is not None}
+    ran = {s.symbol: s for s in reversed(sweeps) if s.parity == "odd" and s.value is not None}
     assumed: list[str] = []
     out = []
     for (kind, variable), symbols in groups.items():
@@ -341,7 +347,7 @@ def next_tests(
         raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
     return NextTests(
-        wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed)
+        wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed), given
     )  # fmt: skip
 
 

@@ -444,6 +444,23 @@ def plan_at(place: str | Path) -> Path:
     return path / FILE if (path / FILE).is_file() and not (path / "plan.toml").exists() else path / "plan.toml"
 
 
+def names_plan(name: str | Path) -> bool:
+    """Whether a plan, a folder with its plan.toml or a shipped plan is meant, and no campaign alone.
+
+    Examples
+    --------
+    >>> names_plan("suboff"), names_plan("suboff_roddy_2"), names_plan("suboff_bare_hull")
+    (True, False, False)
+    """
+    try:
+        path = plan_at(name)
+    except InputError:
+        return False
+    if path.suffix != ".toml" or path.name == FILE or not path.is_file():
+        return False
+    return "study" in read_toml(path).content
+
+
 def _of_campaign(path: Path) -> Plan:
     """The plan of a campaign alone: the fit that suits it, slopes at the origin with the law."""
     campaign, suited = read_campaign(path), suited_fit(path.parent)

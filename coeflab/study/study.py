@@ -14,7 +14,7 @@ from coeflab.core.cards import html_by
 from coeflab.core.finding import Severity
 from coeflab.core.several import ByName, Several
 from coeflab.core.table import Check
-from coeflab.core.types import brief, in_angles, locked
+from coeflab.core.types import brief, in_angles, locking
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
@@ -106,6 +106,7 @@ class Conversion:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("reference_point")
 class Plan:
     """What to do, with paths resolved.
 
@@ -161,10 +162,6 @@ class Plan:
     tows: tuple[PlannedTow, ...] = ()
     command: str = ""
     conversions: tuple[PlannedConversion, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.reference_point is not None:
-            object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
 @brief

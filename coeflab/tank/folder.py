@@ -139,7 +139,7 @@ def refuse_other(folder: Path, tank: Tank, body: str) -> None:
     if not folder.is_dir():
         raise InputError("a file", "a folder", file=folder, column="--out")
     if not (folder / PLAN).exists():
-        own = {*OWN, *(c.name for c in tank.matrix)} if (folder / TANK).is_file() else OWN
+        own = {*OWN, tank.solver, *(c.name for c in tank.matrix)} if (folder / TANK).is_file() else OWN
         if any(name not in own for name in names_in(folder)):
             raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or that of a tow", file=folder,
                              advice="Name another.")  # fmt: skip

@@ -32,18 +32,7 @@ from typing import TYPE_CHECKING, Any
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
 from coeflab.core.text.bounded import log_text
-from coeflab.tank.jobs import (
-    EARLIER,
-    PATIENCE,
-    Job,
-    JobState,
-    Progressed,
-    Step,
-    only_one,
-    progress,
-    read_job,
-    write_progress,
-)
+from coeflab.tank import jobs
 from coeflab.tank.processes import end_session, ends_with, memory, started
 
 if TYPE_CHECKING:
@@ -67,7 +56,7 @@ MOST_WORDS = 400  # letters of an error that a log says
 _FATAL = re.compile(r"--> FOAM FATAL (IO )?ERROR:?")
 _SOURCE = re.compile(r"file: |From |in file |FOAM \w*\s*(exiting|aborting)")
 ASKING = ("SIGTERM", "SIGINT")
-CODES = {JobState.DIVERGED: FAILED, JobState.CRASHED: FAILED, JobState.STOPPED: STOPPED}
+CODES = {jobs.JobState.DIVERGED: FAILED, jobs.JobState.CRASHED: FAILED, jobs.JobState.STOPPED: STOPPED}
 
 
 @dataclass(slots=True)
@@ -77,7 +66,7 @@ class Asked:
     times: int = 0
 
 
-def carry_out(folder: Path, alone: bool = False) -> Progressed:
+def carry_out(folder: Path, alone: bool = False) -> jobs.Progressed:
     """Carry out the job of a folder, from the start or from what its solver wrote last, and say how it ended.
 
     Parameters
@@ -98,15 +87,15 @@ def carry_out(folder: Path, alone: bool = False) -> Progressed:
     OutputError
         The folder cannot be written.
     """
-    job = read_job(folder)
-    with only_one(job.folder, "job", PATIENCE) as lock:
-        before = progress(job)
+    job = jobs.read_job(folder)
+    with jobs.only_one(job.folder, "job", jobs.PATIENCE) as lock:
+        before = jobs.progress(job)
         if before.state.is_kept:
             return before
-        if before.state is JobState.RUNNING and not alone:
+        if before.state is jobs.JobState.RUNNING and not alone:
             raise InputError(f"a job that process {before.process} on {before.host} carries out", "one job at a time in a folder",
                              file=job.folder, advice="Wait for it, or end that process.")  # fmt: skip
-        (job.folder / EARLIER).unlink(missing_ok=True)  # from now on the run is our own
+        (job.folder / jobs.EARLIER).unlink(missing_ok=True)  # from now on the run is our own
         with asked_to_end() as asked:
             return _Attempt(job, before, lock, asked).made()
 
@@ -138,12 +127,12 @@ def lengths(rows: int) -> Iterator[int]:
 class _Attempt:
     """One attempt at a job."""
 
-    def __init__(self, job: Job, before: Progressed, lock: int, asked: Asked) -> None:
+    def __init__(self, job: jobs.Job, before: jobs.Progressed, lock: int, asked: Asked) -> None:
         self.job, self.before, self.lock, self.asked = job, before, lock, asked
         self.began = time.monotonic()
         me = os.getpid()
-        self.now = Progressed(
-            JobState.RUNNING, job.key, seconds=before.seconds, memory=before.memory, process=me,
+        self.now = jobs.Progressed(
+            jobs.JobState.RUNNING, job.key, seconds=before.seconds, memory=before.memory, process=me,
             host=socket.gethostname(), started=started(me),
         )  # fmt: skip
         self.solver: TowSolver | None = None
@@ -154,7 +143,7 @@ class _Attempt:
         self.killed = ""  # what is to be said of a solver that did not end by itself
         self.stopped = False
 
-    def made(self) -> Progressed:
+    def made(self) -> jobs.Progressed:
         """Carry out the steps; whatever happens, no process of a step is left and the state says how it ended."""
         try:
             self._say()
@@ -171,14 +160,14 @@ class _Attempt:
                     break
             self._end(code)
         except CoeflabError as why:
-            self._say(state=JobState.CRASHED, left=nan, why=str(why))
+            self._say(state=jobs.JobState.CRASHED, left=nan, why=str(why))
         except BaseException as why:
             with suppress(OutputError):
-                self._say(state=JobState.CRASHED, left=nan, why=f"{type(why).__name__}: {shown(why)}")
+                self._say(state=jobs.JobState.CRASHED, left=nan, why=f"{type(why).__name__}: {shown(why)}")
             raise
         return self.now
 
-    def _steps(self) -> tuple[tuple[Step, ...], float]:
+    def _steps(self) -> tuple[tuple[jobs.Step, ...], float]:
         """What is left to do, and the iteration from which it goes on."""
         resumed = self._plugin().resumed if self.before.state.goes_on else None
         return resumed(self.job) if resumed is not None else (self.job.steps, nan)
@@ -193,9 +182,9 @@ class _Attempt:
     def _say(self, **changes: Any) -> None:
         spent = self.before.seconds + time.monotonic() - self.began
         self.now = replace(self.now, seconds=spent, **changes)
-        write_progress(self.job.folder, self.now)
+        jobs.write_progress(self.job.folder, self.now)
 
-    def _run(self, step: Step) -> int:
+    def _run(self, step: jobs.Step) -> int:
         """Run one step to its end; its exit code, negative for a signal."""
         log = self.job.folder / f"log.{step.name}"
         _kept(log)
@@ -225,7 +214,7 @@ class _Attempt:
             time.sleep(NOTICE)
         return self.asked.times > 0
 
-    def _watch(self, step: Step, process: subprocess.Popen[bytes]) -> int:
+    def _watch(self, step: jobs.Step, process: subprocess.Popen[bytes]) -> int:
         """Wait for the end of a step, give signs of life, and look at the history of a solver."""
         begun = time.monotonic()
         if step.watched:
@@ -292,7 +281,7 @@ class _Attempt:
         then, first = self.pace
         return (self.job.iterations - iteration) * (now - then) / (iteration - first) if iteration > first else nan
 
-    def _stop(self, step: Step, process: subprocess.Popen[bytes]) -> int:
+    def _stop(self, step: jobs.Step, process: subprocess.Popen[bytes]) -> int:
         """End a step; a solver is asked to write first, unless it diverged or somebody asks a second time."""
         settled = self.now.plateau > 0
         diverged = self.verdict is not None and self.verdict.diverged
@@ -314,7 +303,7 @@ class _Attempt:
     def _end(self, code: int) -> None:
         """Say how the job ended."""
         if self.stopped:
-            self._say(state=JobState.STOPPED, left=nan, why="asked to end")
+            self._say(state=jobs.JobState.STOPPED, left=nan, why="asked to end")
             return
         plugin = self._plugin()
         watched = plugin.history is not None and any(step.watched for step in self.job.steps)
@@ -323,15 +312,15 @@ class _Attempt:
         remarks, reason = plugin.ended(self.job) if plugin.ended is not None else ((), "")
         if self.killed:
             remarks = (*remarks, self.killed)
-        state, why = JobState.FINISHED, ""
+        state, why = jobs.JobState.FINISHED, ""
         if self.verdict is not None and self.verdict.diverged:
-            state, why = JobState.DIVERGED, self.verdict.why
+            state, why = jobs.JobState.DIVERGED, self.verdict.why
         elif code or (reason and not self.killed):
-            state = JobState.DIVERGED if _signal_of(code) == "SIGFPE" else JobState.CRASHED
+            state = jobs.JobState.DIVERGED if _signal_of(code) == "SIGFPE" else jobs.JobState.CRASHED
             words = self._last_words(code) if code else ""
             why = "; ".join(filter(None, (words, "" if words and reason.startswith("log.") else reason)))
         elif watched and not self.now.plateau:
-            state, why = JobState.UNCONVERGED, self.now.why or "no history of forces"
+            state, why = jobs.JobState.UNCONVERGED, self.now.why or "no history of forces"
         self._say(state=state, left=nan, why=why, remarks=tuple(remarks))
 
     def _judge_whole(self) -> None:

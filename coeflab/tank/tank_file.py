@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, replace
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast
 
@@ -17,6 +18,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.registry import Registry
+from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import TomlFile, own_toml, quoted, read_toml, value
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.water import FRESH_WATER
@@ -102,36 +104,13 @@ def default_text(surface: TowedBody, at: Conditions = FRESH_WATER) -> str:
         f'{{ name = {quoted(name)}, angles = ["-10 deg", "-5 deg", "5 deg", "10 deg"] }}'
         for name in dict.fromkeys(c.name for c in body.controls)
     )
-    return f"""\
-# The virtual tow tank of {body.name}: coeflab tow {body.name} --matrix tank.toml --out runs/{body.name}
-[tank]
-name = {quoted(folder_name(body.name))}
-solver = "openfoam"                  # external needs nothing installed; coeflab formats tow_solvers
-cores = 1                            # that one run takes
-# reference_point = {value([float(v) for v in body.reference_point])}   # of velocities and moments; the body's unless given
-# symmetry = false                   # tow both sides of the whole body, whatever its mirrors
-
-[conditions]
-speed = "{at.speed:g} m/s"
-density = "{at.density:g} kg/m^3"               # fresh water of 20 deg C, ITTC 7.5-02-01-03
-viscosity = "{at.viscosity:g} m^2/s"
-
-# [scaling]                          # of the primes; the body's unless given
-# length = "{scaling.length:.10g} m"
-# length_name = {quoted(scaling.length_name)}
-
-[matrix]                             # what is left out is what the six derivatives need of this body, as it stands here
-# drift = {angles["drift"]}   # v = U sin(drift); [] for none
-# attack = {angles["attack"]}   # w = U sin(attack){"; from drift by fourfold symmetry" * (not sweeps.attack)}
-# yaw = {yaw}   # r' = r L/U on a rotating arm
-# pitch = []   # q' = q L/U
-# combined = [{{ drift = "4 deg", yaw = {sweeps.yaw[-1] / 2.0:g} }}]
-# control = [{controls}]{"   # the body has no [[control]] that turns" * (not controls)}
-
-# [[study]]                          # a grid uncertainty for some conditions: three grids with medium
-# of = ["{drifts[min(1, len(drifts) - 1)]}", "{arms[min(1, len(arms) - 1)]}"]
-# grid = ["coarse", "fine"]          # cells 1.3 and 1/1.3 times the size; [[grid]] with name and size for others
-"""
+    return own_text(files("coeflab.tank") / "default_tank.toml.txt").format(
+        body=body, at=at, scaling=scaling, angles=angles, yaw=yaw, half=sweeps.yaw[-1] / 2.0, controls=controls,
+        name=quoted(folder_name(body.name)), length_name=quoted(scaling.length_name),
+        point=value([float(v) for v in body.reference_point]), fourfold="; from drift by fourfold symmetry" * (not sweeps.attack),
+        without="   # the body has no [[control]] that turns" * (not controls), of_drift=drifts[min(1, len(drifts) - 1)],
+        of_arm=arms[min(1, len(arms) - 1)],
+    )  # fmt: skip
 
 
 _STUDIED = (test_matrix.Kind.DRIFT, test_matrix.Kind.ARM)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ class Half(StrEnum):
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("velocity rates")
 class TowCondition:
     """One steady motion of the body through water at rest.
 
@@ -87,8 +88,6 @@ class TowCondition:
     variant: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "velocity", locked(self.velocity))
-        object.__setattr__(self, "rates", locked(self.rates))
         for name in ("controls", "variant"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 

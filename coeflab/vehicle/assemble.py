@@ -26,6 +26,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
+from coeflab.vehicle.arm_curvatures import less_ideal_products
 from coeflab.vehicle.drag_reynolds import drag_elsewhere
 from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
@@ -145,7 +146,7 @@ def gathered(
             used, other = (
                 (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)
             )
-            if other is not None:
+            if other is not None and (other.value is not None or other.campaign != used.campaign):
                 given = "no value" if other.value is None else f"{other.value:.6g}"
                 notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
             if used is c:
@@ -394,6 +395,8 @@ def assemble(
             notes.append(
                 f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
+    found_by_fits = list(dict.fromkeys(f for fit in chosen for f in fit.findings))
+    coefficients, found_by_fits = less_ideal_products(coefficients, found_by_fits, hull, first.scaling)
     result = ParameterFile(
         name=group.name,
         body=group.body,
@@ -412,7 +415,7 @@ def assemble(
         findings=tuple(
             dict.fromkeys(
                 [
-                    *(f for fit in chosen for f in fit.findings),
+                    *found_by_fits,
                     *(() if found is None else found.findings),
                     *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),

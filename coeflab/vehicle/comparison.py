@@ -15,11 +15,12 @@ from typing import Protocol
 import numpy as np
 
 from coeflab.core.machine import one_thread
+from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.domain import clamped, inside
 from coeflab.law.symbols import ANGULAR, primed
-from coeflab.vehicle.matching import by_plain_names, sums_in_words, with_matrix
+from coeflab.vehicle.matching import by_plain_names, on_one_datum, sums_in_words, with_matrix
 from coeflab.vehicle.parameter_file import ParameterFile, Provenance
 from coeflab.vehicle.parameter_model import ParameterModel
 
@@ -356,7 +357,7 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     """Hold the second file against the first.
 
     The second is primed by the first one's length and moved to its reference point where both are measured from one
-    datum. Differences of other bodies are shown, with a statement that they are of other bodies.
+    datum, or by the centre of gravity that both state. Differences of other bodies are shown, with a statement that they are of other bodies.
 
     Parameters
     ----------
@@ -365,11 +366,13 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         What the comparison calls them; their own names by default.
     """
     name_a, name_b = names or (a.name, b.name)
+    b, placed = on_one_datum(a, b)
     both = (coefficient_set(a), coefficient_set(b))
     (ours, own), (theirs, spelled) = (by_plain_names(s) for s in both)
     stated = list(dict.fromkeys((*ours.symbols, *theirs.symbols)))
     (ours, of_ours), (theirs, of_theirs) = with_matrix(ours, a), with_matrix(theirs, b)
     words = _matched(ours, theirs, (own, spelled), (of_ours, of_theirs), stated, (name_a, name_b))
+    words += [] if placed is None else [remark(placed)]
     words += [w for s, name in zip(both, (name_a, name_b), strict=True) for w in sums_in_words(s, name, stated)]
     if a.body != b.body:
         words.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")

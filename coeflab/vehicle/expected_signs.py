@@ -16,7 +16,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.core.types import brief, locked
+from coeflab.core.types import brief, locking
 from coeflab.law.force_law import CONTROLS
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, primed
@@ -44,6 +44,7 @@ PUSHES = {"Y": ("to port", "to starboard"), "Z": ("up", "down"), "K": ("port sid
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("motion ideal control")
 class Slopes:
     """Derivatives of the force of a file at its speed straight ahead, SI, FRD.
 
@@ -60,10 +61,6 @@ class Slopes:
     motion: Array
     ideal: Array
     control: Array
-
-    def __post_init__(self) -> None:
-        for name in ("motion", "ideal", "control"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def slopes(p: ParameterFile) -> Slopes:

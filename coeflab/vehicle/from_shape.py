@@ -18,14 +18,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.symbols import CONTROLS
-from coeflab.vehicle.parameter_parts import (
-    CurveSegment,
-    ParameterCurve,
-    ParameterHydrostatics,
-    ParameterSurface,
-    ParameterThruster,
-    curve_of,
-)
+from coeflab.vehicle import parameter_parts
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body, Configuration
@@ -307,31 +300,35 @@ def equipped(parameters: ParameterFile, body: Body, configuration: Configuration
     }
     if configuration.volume and configuration.centre_of_buoyancy is not None:
         middle = tuple(float(v) for v in configuration.centre_of_buoyancy - point)
-        update["hydrostatics"] = ParameterHydrostatics(volume=configuration.volume, centre_of_buoyancy=middle)
+        update["hydrostatics"] = parameter_parts.ParameterHydrostatics(
+            volume=configuration.volume, centre_of_buoyancy=middle
+        )
     return parameters.model_copy(update=update)
 
 
-def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> ParameterThruster:
+def parameter_thruster(t: Thruster, point: Array, at: Conditions) -> parameter_parts.ParameterThruster:
     """A thruster of a body about a point of its datum; straight lines between its points, or squares of the command."""
-    curve = curve_of(t.squares, t.command, t.unit) or _lines(t, t.thrusts(at.speed, at.density))
+    curve = parameter_parts.curve_of(t.squares, t.command, t.unit) or _lines(t, t.thrusts(at.speed, at.density))
     torques = t.torques(at.speed, at.density)
-    torque = curve_of(t.torque, t.command, t.unit) if torques is None else _lines(t, torques)
+    torque = parameter_parts.curve_of(t.torque, t.command, t.unit) if torques is None else _lines(t, torques)
     place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
     tilting = None if t.tilt_axis is None else tuple(float(v) for v in t.tilt_axis)
     low, high = t.tilt if tilting is not None else (0.0, 0.0)
-    return ParameterThruster(
+    return parameter_parts.ParameterThruster(
         name=t.name, position=place, direction=axis, curve=curve, torque_curve=torque,
         handedness=t.handedness, tilt_axis=tilting, tilt_low=low, tilt_high=high, lag=t.lag,
     )  # fmt: skip
 
 
-def _lines(t: Thruster, points: Array) -> ParameterCurve:
+def _lines(t: Thruster, points: Array) -> parameter_parts.ParameterCurve:
     """Straight lines between points of commands and values."""
     segments = []
     for (low, start), (high, end) in pairwise(points):
         slope = (end - start) / (high - low)
-        segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
-    return ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
+        segments.append(
+            parameter_parts.CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope)))
+        )
+    return parameter_parts.ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
 
 
 def by_series(body: Body, speed: float) -> tuple[str, ...]:
@@ -355,14 +352,14 @@ def _water_of(t: Thruster) -> str:
     return "its own open water" if own else "estimate, Wageningen B-series"
 
 
-def _surfaces(controls: Sequence[Control]) -> tuple[ParameterSurface, ...]:
+def _surfaces(controls: Sequence[Control]) -> tuple[parameter_parts.ParameterSurface, ...]:
     """Limits of the angles that the law knows: of several hinges of one angle the narrowest."""
     out = []
     for name in CONTROLS:
         limits = [c.limit for c in controls if c.name == name and c.limit is not None]
         rates = [c.rate for c in controls if c.name == name and c.rate is not None]
         if limits:
-            out.append(ParameterSurface(control=name, limit=min(limits), rate=min(rates, default=None)))
+            out.append(parameter_parts.ParameterSurface(control=name, limit=min(limits), rate=min(rates, default=None)))
     return tuple(out)
 
 

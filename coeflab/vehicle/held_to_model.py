@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.symbols import COMPONENTS, CONTROLS
 from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -21,6 +21,7 @@ NOTHING = 1e-5  # of 1/2 rho U^2 L^2, and of that times L: a tenth of the smalle
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("nu controls")
 class Motions:
     """States of a manoeuvre at which forces are compared.
 
@@ -36,10 +37,6 @@ class Motions:
     name: str
     nu: Array
     controls: Array
-
-    def __post_init__(self) -> None:
-        for name in ("nu", "controls"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def held_to_model(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import brief, locked
+from coeflab.core.types import brief, locking
 from coeflab.law.added_mass import ROUNDING, AddedMass, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -32,6 +32,7 @@ Entry = tuple[int, int]
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("matrix")
 class WaterInertia:
     """The added mass that a motion has, and where its entries come from.
 
@@ -53,9 +54,6 @@ class WaterInertia:
     used: str
     source: str
     warnings: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "matrix", locked(self.matrix))
 
     @property
     def statements(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""What is one number in two files under other names: Yv' and Yuv', a single added mass and an entry of a matrix.
+"""What is one number in two files under other names: Yv' and Yuv', a single added mass and an entry of a matrix, a point and its datum.
 
 Yv U v, Yuv u v and Yv|u| |u| v are one slope on a straight course ahead, and one prime: all three go with 1/2 rho L^2 U. So are X0 U^2, Xuu u^2
 and Xu|u| u|u|, and Ydr U^2 and Yuudr u^2. Added masses are M_A = -Xudot ... about the same point.
@@ -11,14 +11,41 @@ from dataclasses import replace
 
 import numpy as np
 
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, primed
 from coeflab.law.terms import parse_suffix
+from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
 ORIGIN = "stated"
 AXIS = "u"
+ONE_MASS = 0.01  # of two vehicles that are taken as one: then so are their centres of gravity
+
+
+def on_one_datum(a: ParameterFile, b: ParameterFile) -> tuple[ParameterFile, Finding | None]:
+    """The second file with its reference point from the datum of the first, by the centre of gravity that both state, and what says so.
+
+    As it is where the datums are one already, or where a mass is not stated or another.
+    """
+    if a.reference_point.origin == b.reference_point.origin or a.mass is None or b.mass is None:
+        return b, None
+    if abs(b.mass.mass / a.mass.mass - 1.0) > ONE_MASS:
+        return b, None
+    x, y, z = (float(v) for v in np.array(a.reference_point.point) + centre_of_gravity(a) - centre_of_gravity(b))
+    found = Finding.of(
+        "move.by_centres",
+        b.name,
+        Severity.NOTE,
+        theirs=b.reference_point.datum,
+        ours=a.reference_point.datum,
+        x=x,
+        y=y,
+        z=z,
+    )
+    point = a.reference_point.model_copy(update={"point": (x, y, z)})
+    return b.model_copy(update={"reference_point": point}), found
 
 
 def plain_name(symbol: str) -> str:

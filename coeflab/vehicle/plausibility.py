@@ -20,22 +20,13 @@ from coeflab.core.types import brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.rigid_body import about_another, ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
+from coeflab.vehicle import imported_numbers
 from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
-from coeflab.vehicle.imported_numbers import (
-    AIR,
-    MOMENTS,
-    Written,
-    body_gyration,
-    displaced,
-    gravity,
-    gyration,
-    munk_twice,
-    water,
-)
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
+from coeflab.vehicle.sizes import size_findings
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -363,7 +354,7 @@ SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, points, what stands twice, what the file was written with; every question that could be asked has at least one.
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping, signs ahead, sizes, points, what stands twice, what the file was written with; every question that could be asked has at least one.
 
     Parameters
     ----------
@@ -378,6 +369,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *_munk(parameters),
         *damping_findings(parameters, signs),
         *sign_findings(parameters),
+        *([] if _in_air(parameters) else size_findings(parameters)),
         *law_findings(parameters),
         *twice_findings(parameters),
         *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),
@@ -437,21 +429,25 @@ def _taken_off(p: ParameterFile, component: str, table: str) -> float:
 
 def _units(p: ParameterFile) -> list[Check]:
     density = p.conditions.density
-    span = f"{AIR[0]:g} to {AIR[1]:g} kg/m^3"
-    out = [Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.") if _in_air(p) else water(NAME, density)]
+    span = f"{imported_numbers.AIR[0]:g} to {imported_numbers.AIR[1]:g} kg/m^3"
+    out = [
+        Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.")
+        if _in_air(p)
+        else imported_numbers.water(NAME, density)
+    ]
     if p.mass is not None:
         diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
-        out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
+        out += imported_numbers.gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
         if p.mass.inertia_matrix is not None and not _in_air(p):
             own = about_another(np.array(p.mass.inertia_matrix), p.mass.mass, centre_of_gravity(p), np.zeros(3))
-            out += body_gyration(NAME, p.mass.mass, np.diag(own).tolist(), density, diagonal.tolist())
+            out += imported_numbers.body_gyration(NAME, p.mass.mass, np.diag(own).tolist(), density, diagonal.tolist())
     return out
 
 
 def _in_air(p: ParameterFile) -> bool:
     """A density of air, and no added mass of water."""
     densities = [p.conditions.density] + ([] if p.added_mass is None else [p.added_mass.density])
-    return all(AIR[0] < density <= AIR[1] for density in densities)
+    return all(imported_numbers.AIR[0] < density <= imported_numbers.AIR[1] for density in densities)
 
 
 def _buoyancy(p: ParameterFile) -> list[Check]:
@@ -459,11 +455,13 @@ def _buoyancy(p: ParameterFile) -> list[Check]:
     h = p.hydrostatics
     if h is None:
         return []
-    out = [*gravity(NAME, h.gravity, "hydrostatics.gravity")]
+    out = [*imported_numbers.gravity(NAME, h.gravity, "hydrostatics.gravity")]
     if p.mass is None:
         return out
     if not _in_air(p):
-        out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
+        out += imported_numbers.displaced(
+            NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume"
+        )
     below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
     if below > 0.0:
         out.append(Check(
@@ -481,12 +479,12 @@ def _munk(p: ParameterFile) -> tuple[Check, ...]:
         return ()
     p = p.model_copy(update={"models": apart})
     written, speed = [], p.conditions.speed
-    for component, (force, _, across) in MOMENTS.items():
+    for component, (force, _, across) in imported_numbers.MOMENTS.items():
         nu = np.zeros((2, 6))
         nu[:, 0], nu[:, across] = speed, (-SMALL * speed, SMALL * speed)
         tables = force_of_tables(p, nu)
         if tables is not None:
             slope = float(tables[1, force] - tables[0, force]) / (2.0 * SMALL * speed**2)
-            written.append(Written(component, f"models of {component}", slope, True))
+            written.append(imported_numbers.Written(component, f"models of {component}", slope, True))
     ideal = ideal_quadratics(np.array(hull.matrix)) * (p.conditions.density / hull.density)
-    return munk_twice(NAME, written, force_law(p).ideal, ideal)
+    return imported_numbers.munk_twice(NAME, written, force_law(p).ideal, ideal)

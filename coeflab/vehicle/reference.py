@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import in_digits_of
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import brief, locked
+from coeflab.core.types import brief, locking
 from coeflab.core.units import quantity
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.scaling import Scaling
@@ -67,6 +67,7 @@ class Literature:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("reference_point")
 class Reference:
     """One column of published derivatives, and the stability indices G_h and G_v that its source prints."""
 
@@ -90,8 +91,6 @@ class Reference:
     def __post_init__(self) -> None:
         object.__setattr__(self, "inferred", MappingProxyType(dict(self.inferred)))
         object.__setattr__(self, "uncertainties", MappingProxyType(dict(self.uncertainties)))
-        if self.reference_point is not None:
-            object.__setattr__(self, "reference_point", locked(self.reference_point))
 
     @property
     def assumed(self) -> tuple[Finding, ...]:

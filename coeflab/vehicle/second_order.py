@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 
@@ -22,6 +22,7 @@ ACROSS = (1, 2)
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("linear signed absolute")
 class SecondOrder:
     """force i = linear[i, j] nu_j + signed[i, j, k] nu_j nu_k + absolute[i, j, k] nu_j abs(nu_k).
 
@@ -39,11 +40,6 @@ class SecondOrder:
     signed: Array
     absolute: Array
     resistance: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "linear", locked(self.linear))
-        object.__setattr__(self, "signed", locked(self.signed))
-        object.__setattr__(self, "absolute", locked(self.absolute))
 
     def force(self, nu: Array) -> Array:
         """(n, 6) for velocities (n, 6)."""

@@ -109,7 +109,7 @@ def test_new_files_name_schemas_that_stand_beside_them(tmp_path: Path, monkeypat
     from coeflab.cli.new import command
 
     monkeypatch.chdir(tmp_path)
-    command(Path("s"))
+    command(folder=Path("s"))
     found = {}
     for path in sorted((tmp_path / "s").rglob("*.toml")):
         text = path.read_text()

@@ -138,8 +138,10 @@ def test_the_rates_are_those_of_the_conformance_vectors(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_a_rudder_doublet_and_a_reversal_are_those_of_simulate(tmp_path: Path, kind: str) -> None:
-    """Thrust by a thruster, rudder by its rate; +1 m/s to -1 m/s and back within 30 s."""
-    file, seconds = driven(), 30.0
+    """Thrust by a thruster with a lag, rudder by its rate; +1 m/s to -1 m/s and back within 30 s."""
+    seconds, lag = 30.0, 0.4
+    file = driven()
+    file = file.model_copy(update={"thrusters": (file.thrusters[0].model_copy(update={"lag": lag}),)})
     made = unit(tmp_path, file)
     t = np.arange(0.0, seconds + 0.05, 0.1)
     rudder = np.where((t >= 5) & (t < 9), 0.2, np.where((t >= 9) & (t < 13), -0.2, 0.0))
@@ -155,18 +157,23 @@ def test_a_rudder_doublet_and_a_reversal_are_those_of_simulate(tmp_path: Path, k
         solver="Euler" if kind == "CoSimulation" else "CVode", input=rows, start_values={"start.u": 1.0},
     )  # fmt: skip
     moved, x, angle, out = vehicle(file), np.array([0, 0, 0, 1.0, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0]), 0.0, []
+    spin, full = float(duty[0]), moved.wrench({"propeller": 1.0})  # thrust is in proportion to the duty
     rate = rates_of_one(alone(moved).dynamics(np.zeros(3)))
     for k in range(len(t)):
         out.append(x[7:13])
-        wrench = moved.wrench({"propeller": float(duty[k])})
         for _ in range(10):
             start = angle
 
             def rates(
-                state: np.ndarray, after: float, start: float = start, k: int = k, wrench: np.ndarray = wrench
+                state: np.ndarray,
+                after: float,
+                start: float = start,
+                k: int = k,
+                spin: float = spin,
             ) -> np.ndarray:
                 turned = np.clip(rudder[k], start - 0.2 * after, start + 0.2 * after)
-                return np.array(rate(state.tolist(), [float(turned), 0.0, 0.0], wrench.tolist()))
+                actual = duty[k] + (spin - duty[k]) * np.exp(-after / lag)
+                return np.array(rate(state.tolist(), [float(turned), 0.0, 0.0], (actual * full).tolist()))
 
             a = rates(x, 0.0)
             b = rates(x + 0.005 * a, 0.005)
@@ -174,6 +181,7 @@ def test_a_rudder_doublet_and_a_reversal_are_those_of_simulate(tmp_path: Path, k
             x = x + 0.01 / 6 * (a + 2 * b + 2 * d + rates(x + 0.01 * d, 0.01))
             x[3:7] /= np.linalg.norm(x[3:7])
             angle = float(np.clip(rudder[k], start - 0.002, start + 0.002))
+            spin = float(duty[k] + (spin - duty[k]) * np.exp(-0.01 / lag))
     ours, theirs = np.array(out), columns(found, "velocity", "uvwpqr")
     theirs = theirs[np.unique(np.round(found["time"], 6), return_index=True)[1]]  # at an event there are two
     assert ours[:, 0].min() < -0.5

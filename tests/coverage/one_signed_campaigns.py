@@ -1,7 +1,9 @@
 """Coverage of U95 on curves of one sign, drawn at random, and the least length that any honest interval can have at a line.
 
-``python tests/coverage/one_signed_campaigns.py CAMPAIGNS SEED`` writes ``one_signed_table.csv``: every family, design and noise. The
-constants of `coeflab.fits.statistics.one_signed` were chosen with seed 1 and fixed families; the table is of another seed.
+``python tests/coverage/one_signed_campaigns.py WORK [ROUNDS] [SEED]`` runs 50 rounds of 20 campaigns a cell (family, design, noise), each
+with curves of its own; a round that is already in WORK is not run again. After each it writes ``one_signed_table.csv`` beside this file,
+with the campaigns so far. Seeds are (seed, family, design, noise, round), of uneven settings (seed, design, round). The constants of
+`coeflab.fits.statistics.one_signed` were chosen with seed 1 and fixed families; the table is of seed 3.
 
 Of a cell ``line`` is by how many standard deviations the noiseless curve rules a line out, the median over its campaigns. Burst families
 (drag crisis) are outside of the class and named for what they are.
@@ -22,6 +24,7 @@ from coeflab.fits.statistics.slope_mixture import estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.003, 0.001, 0.0003)
 DESIGNS = ("even 13", "even 19", "uneven", "one-sided", "replicated", "odd 7")
+ROUNDS, CAMPAIGNS, SEED = 50, 20, 3
 TABLE = Path(__file__).with_name("one_signed_table.csv")
 CRISIS = float(np.sin(np.radians(8.0)))
 Draw = Callable[[np.random.Generator, Array], Array]  # a bent curve over t, one at t = 1
@@ -103,10 +106,10 @@ def frontier(t: Array, odd: bool, powers: Sequence[float] = SLOWEST, saturating:
     return float((0.95 * z + stats.norm.pdf(z)) / least / (stats.norm.ppf(0.975) * line_deviation(t, odd)))
 
 
-def cell(family: str, design: str, noise: float, campaigns: int, seed: int) -> tuple[Array, Array, Array]:
-    """Of each campaign: covered, U95 over that of a line's least squares, standard deviations by which a line is ruled out."""
-    rng = np.random.default_rng((seed, FAMILIES.index(family), DESIGNS.index(design), NOISE.index(noise)))
-    t, odd = settings(design, rng)
+def cell(family: str, design: str, noise: float, campaigns: int, seed: int, number: int = 0) -> Array:
+    """(campaign, 3): covered, U95 over that of a line's least squares, standard deviations by which a line is ruled out."""
+    rng = np.random.default_rng((seed, FAMILIES.index(family), DESIGNS.index(design), NOISE.index(noise), number))
+    t, odd = settings(design, np.random.default_rng((seed, DESIGNS.index(design), number)))
     name, how = (*family.split(", "), "")[:2]
     force = np.tile(t, (campaigns, 1))
     if name != "line":
@@ -120,23 +123,38 @@ def cell(family: str, design: str, noise: float, campaigns: int, seed: int) -> t
     across = np.linalg.qr(straight)[0]
     left = np.linalg.norm(force - force @ across @ across.T, axis=1) / deviation
     plain = stats.t.ppf(0.975, len(t) - (1 if odd else 2)) * line_deviation(t, odd) * deviation
-    return np.abs(found.value - 1.0) <= found.u95, found.u95 / plain, left
+    return np.stack([np.abs(found.value - 1.0) <= found.u95, found.u95 / plain, left], 1)
 
 
-def main(campaigns: int, seed: int) -> None:
-    """Write the table."""
-    lines = ["family,design,noise %,campaigns,line,cover %,mean U95 / line,frontier"]
-    for design, family, noise in product(DESIGNS, FAMILIES, NOISE):
-        inside, length, left = cell(family, design, noise, campaigns, seed)
-        t, odd = settings(
-            design, np.random.default_rng((seed, FAMILIES.index(family), DESIGNS.index(design), NOISE.index(noise)))
-        )
-        lines.append(
-            f"{family.replace(',', ':')},{design},{100 * noise:g},{campaigns},{np.median(left):.1f},{100 * inside.mean():.1f},"
-            f"{length.mean():.2f},{frontier(t, odd):.2f}"
-        )
+def run_round(design: str, number: int, seed: int) -> Array:
+    """(family, noise, campaign, 3) of `cell`, and the frontier of the round's settings behind the last campaign."""
+    every = [[cell(family, design, noise, CAMPAIGNS, seed, number) for noise in NOISE] for family in FAMILIES]
+    least = frontier(*settings(design, np.random.default_rng((seed, DESIGNS.index(design), number))))
+    return np.pad(np.array(every), ((0, 0), (0, 0), (0, 1), (0, 0)), constant_values=least)
+
+
+def main(work: Path, count: int, seed: int) -> None:
+    """Run what is missing, write the table after each round."""
+    work.mkdir(parents=True, exist_ok=True)
+    rounds: dict[str, list[Array]] = {d: [] for d in DESIGNS}
+    for number in range(count):
+        for design in DESIGNS:
+            path = work / f"{seed}_{design.replace(' ', '_')}_{number}.npy"
+            if not path.exists():
+                np.save(work / "part.npy", run_round(design, number, seed))
+                (work / "part.npy").rename(path)
+            rounds[design].append(np.load(path))
+        lines = ["family,design,noise %,campaigns,line,cover %,mean U95 / line,frontier"]
+        for design, (i, family), (j, noise) in product(DESIGNS, enumerate(FAMILIES), enumerate(NOISE)):
+            inside, length, left = np.concatenate([r[i, j, :-1] for r in rounds[design]]).T
+            least = np.mean([r[i, j, -1, 0] for r in rounds[design]])
+            lines.append(
+                f"{family.replace(',', ':')},{design},{100 * noise:g},{len(inside)},{np.median(left):.1f},{100 * inside.mean():.1f},"
+                f"{length.mean():.2f},{least:.2f}"
+            )
         TABLE.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]))
+    asked = [*map(int, sys.argv[2:]), *(ROUNDS, SEED)[len(sys.argv) - 2 :]]
+    main(Path(sys.argv[1]), asked[0], asked[1])

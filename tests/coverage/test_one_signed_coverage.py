@@ -60,7 +60,7 @@ def test_a_line_costs_at_most_a_fifth_more_than_the_frontier(rows: list[dict[str
 
 @pytest.mark.slow
 def test_named_cells_with_few_campaigns() -> None:
-    covered = np.array([cell(*named, 10, 7)[0].mean() for named in NAMED])
+    covered = np.array([cell(*named, 10, 7)[:, 0].mean() for named in NAMED])
     assert len(covered) > 40
     assert covered.mean() >= 0.95
     assert covered.min() >= 0.7

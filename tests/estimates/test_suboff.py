@@ -11,7 +11,7 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.law.coefficient import Status
-from coeflab.published.estimates.acceptance import Row, acceptance, goals, ring_wing, rows, table
+from coeflab.published.estimates.acceptance import Measured, acceptance, goals, ring_wing, rows, table
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.first_page import answer
 from coeflab.tables.reading import read_tables, table_at
@@ -21,7 +21,7 @@ FOOT = 0.3048
 
 
 @pytest.fixture(scope="module")
-def found() -> tuple[Row, ...]:
+def found() -> tuple[Measured, ...]:
     return rows()
 
 
@@ -39,7 +39,7 @@ def test_ring_wing_1_stands_where_roddys_volumes_say() -> None:
     assert 0.4 < section < 0.8  # of thickness times chord
 
 
-def test_every_measured_derivative_once(found: tuple[Row, ...]) -> None:
+def test_every_measured_derivative_once(found: tuple[Measured, ...]) -> None:
     assert [(r.configuration, r.symbol) for r in found] == [
         *(("3", s) for s in ("Yv", "Nv", "Yr", "Nr")), *(("2", s) for s in ("Yv", "Nv", "Kv", "Ydr", "Ndr", "Yr", "Nr")),
         *(("1", s) for s in ("Zw", "Mw", "Zds", "Mds", "Zq", "Mq")),
@@ -50,11 +50,11 @@ def test_every_measured_derivative_once(found: tuple[Row, ...]) -> None:
     assert value["1", "Mds"] == pytest.approx(value["2", "Ndr"], rel=1e-6)
 
 
-def test_signs_are_those_measured(found: tuple[Row, ...]) -> None:
+def test_signs_are_those_measured(found: tuple[Measured, ...]) -> None:
     assert all(r.ratio > 0.0 for r in found)
 
 
-def test_a_row_is_inside_by_the_estimates_own_u95(found: tuple[Row, ...]) -> None:
+def test_a_row_is_inside_by_the_estimates_own_u95(found: tuple[Measured, ...]) -> None:
     one = found[0]
     u95 = one.found.u95
     assert u95 is not None
@@ -62,7 +62,7 @@ def test_a_row_is_inside_by_the_estimates_own_u95(found: tuple[Row, ...]) -> Non
     assert not replace(one, measured=one.value + 1.01 * u95).inside
 
 
-def test_goals_are_printed_and_do_not_count(compared: Acceptance, found: tuple[Row, ...]) -> None:
+def test_goals_are_printed_and_do_not_count(compared: Acceptance, found: tuple[Measured, ...]) -> None:
     derivatives, levers = compared.tables
     counted = [r for r in found if r.counts]
     assert (len(derivatives.rows), len(levers.rows)) == (15, 2)

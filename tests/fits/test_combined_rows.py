@@ -11,7 +11,8 @@ import coeflab as cf
 from coeflab.core.errors import InputError
 from coeflab.fits.results.fit_result import covariance_of
 from coeflab.fits.rows.sweeps import arm_shift
-from coeflab.study.fitting import FEW_ROWS, fitted, rejoined
+from coeflab.fits.rows.too_few import FEW_ROWS
+from coeflab.study.fitting import fitted, rejoined
 from coeflab.tables.force_table import ForceTable
 
 LENGTH, DENSITY, SPEED = 5.0, 1000.0, 3.0

@@ -16,6 +16,7 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel, every_third_point
 from coeflab.fits.rows.sweeps import explain, secant
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.stacked import freed
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.terms import SETS, Equation, Term, canonical, read_equation, read_term, read_terms, symmetric
@@ -538,3 +539,47 @@ def test_one_row_a_run_makes_the_sandwich_over_runs_hc2() -> None:
     assert tied.fit.half_width[:3] == pytest.approx(free.fit.half_width, rel=1e-6)
     assert tied.fit.freedom[:3] == pytest.approx(free.fit.freedom, rel=1e-6)
     assert tied.fit.covariance[:3, :3] == pytest.approx(free.fit.covariance, rel=1e-6)
+
+
+# A component with too few rows
+
+
+def short_of_z(rows: int) -> ForceTable:
+    """Y over 13 drifts; Z in the first of them alone."""
+    v = np.linspace(-0.2, 0.2, 13)
+    t = synthetic("a", {"v": v}, {"Y": -0.02 * v - 0.05 * v * np.abs(v) + 1e-5 * np.cos(40 * v), "Z": 0.01 * v * v})
+    return replace(t, usable=t.usable | {"Z": np.arange(13) < rows})
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "rows"),
+    [
+        ("manoeuvring_model", {"terms": "Yv Yv|v| Zv Zvv Zvvvv"}, 3), ("manoeuvring_model", {"terms": "Yv Yv|v| Zv"}, 0),
+        ("polynomial", {"variable": "v", "degree": 5}, 3), ("sparse", {"variables": "v"}, 3),
+    ],
+)  # fmt: skip
+def test_a_component_with_too_few_rows_is_a_status_of_its_own(name: str, options: dict[str, object], rows: int) -> None:
+    """It ended the whole fit."""
+    used = (short_of_z(rows),)
+    if not rows:  # a second table, in whose rows r moves, alone has Z
+        other = synthetic("a", {"v": np.full(4, 0.1), "r": np.linspace(0.1, 0.4, 4)}, {"Z": np.zeros(4)})
+        used = (replace(used[0], forces={"Y": used[0].forces["Y"]}, usable={"Y": used[0].usable["Y"]}), other)
+    result = FITS.load(name).fit(used, used[0].scaling, options)
+    few = [f for f in result.findings if f.code == FEW_ROWS]
+    assert [(f["variable"], f.statistic, f["by"]) for f in few] == [("Z", rows, "terms")]
+    assert result.coefficients["Yv"].value == pytest.approx(-0.02, abs=0.006)
+    if name == "manoeuvring_model":
+        lost = [c for c in result.coefficients.coefficients if c.symbol[0] == "Z"]
+        assert {c.status for c in lost} == {Status.TOO_FEW_POINTS}
+        assert len(lost) == len([t for t in str(options["terms"]).split() if t[0] == "Z"]) + 1
+
+
+def test_equations_take_the_component_that_they_link_with_them() -> None:
+    used = short_of_z(2)
+    more = replace(
+        used, forces=used.forces | {"M": used.forces["Y"] / 2.0}, usable=used.usable | {"M": used.usable["Y"]}
+    )
+    result = fitted((more,), terms="Yv Yv|v| Zv Zvv Mv", constraints="Mv = Yv")
+    assert {m.response for m in result.models} == {"Y", "M"}
+    with pytest.raises(InputError, match="usable rows for"):
+        fitted((used,), terms="Zv Zvv")

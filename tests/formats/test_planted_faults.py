@@ -1,4 +1,4 @@
-"""Fifteen faults planted in a sound SDF are found, none is in three sound files. All models are made up."""
+"""Faults planted in two sound SDF files are found, none is in four sound files. All models are made up."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.formats.model_files import read_model_file
 
@@ -26,6 +27,27 @@ TORPEDO = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity><mode
 <xDotU>-1.1</xDotU><yDotV>-30.0</yDotV><zDotW>-30.0</zDotW><kDotP>-0.02</kDotP><mDotQ>-5.6</mDotQ><nDotR>-5.6</nDotR>
 <xUabsU>-1.6</xUabsU><yVabsV>-96</yVabsV><zWabsW>-96</zWabsW><kPabsP>-0.1</kPabsP><mQabsQ>-61</mQabsQ><nRabsR>-61</nRabsR>
 <yVabsU>-22</yVabsU><nVabsU>-13</nVabsU><zWabsU>-22</zWabsU><mWabsU>13</mWabsU><yRabsU>4.6</yRabsU><nRabsU>-2.4</nRabsU><zQabsU>-4.6</zQabsU><mQabsU>-2.4</mQabsU></plugin></model></world></sdf>"""
+AUV = """<sdf version="1.10"><world name="w"><gravity>0 0 -9.81</gravity>
+<plugin filename="gz-sim-buoyancy-system" name="gz::sim::systems::Buoyancy"><uniform_fluid_density>1026</uniform_fluid_density></plugin>
+<model name="auv"><link name="hull"><inertial><pose>0.03 0 -0.018 0 0 0</pose><mass>71.2</mass>
+<inertia><ixx>0.42</ixx><iyy>21.5</iyy><izz>21.6</izz></inertia></inertial>
+<collision name="c"><pose>0.03 0 0 0 1.5707963 0</pose><geometry><cylinder><radius>0.1</radius><length>2.21</length></cylinder></geometry></collision></link>
+<link name="screw"><pose>-1.15 0 0 0 0 0</pose><inertial><mass>0.2</mass><inertia><ixx>0.0004</ixx><iyy>0.0003</iyy><izz>0.0003</izz></inertia></inertial></link>
+<joint name="shaft" type="revolute"><parent>hull</parent><child>screw</child><axis><xyz>1 0 0</xyz></axis></joint>
+<link name="rudder"><pose>-0.98 0 0 0 0 0</pose><inertial><mass>0.2</mass><inertia><ixx>0.0004</ixx><iyy>0.0004</iyy><izz>0.0004</izz></inertia></inertial></link>
+<joint name="stock" type="revolute"><parent>hull</parent><child>rudder</child><axis><xyz>0 0 1</xyz><limit><lower>-0.35</lower><upper>0.35</upper></limit></axis></joint>
+<link name="planes"><pose>-0.98 0 0 0 0 0</pose><inertial><mass>0.2</mass><inertia><ixx>0.0004</ixx><iyy>0.0004</iyy><izz>0.0004</izz></inertia></inertial></link>
+<joint name="hinge" type="revolute"><parent>hull</parent><child>planes</child><axis><xyz>0 1 0</xyz><limit><lower>-0.35</lower><upper>0.35</upper></limit></axis></joint>
+<plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster"><joint_name>shaft</joint_name><thrust_coefficient>0.006</thrust_coefficient>
+<fluid_density>1026</fluid_density><propeller_diameter>0.19</propeller_diameter><use_angvel_cmd>true</use_angvel_cmd><max_thrust_cmd>90</max_thrust_cmd><min_thrust_cmd>-90</min_thrust_cmd></plugin>
+<plugin filename="gz-sim-lift-drag-system" name="gz::sim::systems::LiftDrag"><link_name>rudder</link_name><air_density>1026</air_density><cla>3.9</cla><cda>0.1</cda><alpha_stall>0.4</alpha_stall>
+<area>0.021</area><forward>1 0 0</forward><upward>0 1 0</upward><cp>0 0 0</cp></plugin>
+<plugin filename="gz-sim-lift-drag-system" name="gz::sim::systems::LiftDrag"><link_name>planes</link_name><air_density>1026</air_density><cla>3.9</cla><cda>0.1</cda><alpha_stall>0.4</alpha_stall>
+<area>0.021</area><forward>1 0 0</forward><upward>0 0 1</upward><cp>0 0 0</cp></plugin>
+<plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics"><link_name>hull</link_name><disable_coriolis>true</disable_coriolis>
+<xDotU>-2.4</xDotU><yDotV>-69</yDotV><zDotW>-69</zDotW><kDotP>-0.05</kDotP><mDotQ>-24</mDotQ><nDotR>-24</nDotR>
+<xUabsU>-4.1</xUabsU><yVabsV>-210</yVabsV><zWabsW>-210</zWabsW><kPabsP>-0.3</kPabsP><mQabsQ>-190</mQabsQ><nRabsR>-190</nRabsR>
+<yVabsU>-45</yVabsU><nVabsU>-35</nVabsU><zWabsU>-45</zWabsU><mWabsU>35</mWabsU><yRabsU>9.5</yRabsU><nRabsU>-8.4</nRabsU><zQabsU>-9.5</zQabsU><mQabsU>-8.4</mQabsU></plugin></model></world></sdf>"""
 ROV = """<?xml version="1.0"?><robot name="rov"><link name="base_link"><inertial><origin xyz="0 0 -0.02"/><mass value="17.3"/>
 <inertia ixx="0.31" ixy="0" ixz="0" iyy="0.42" iyz="0" izz="0.55"/></inertial>
 <collision><origin xyz="0 0 0.01"/><geometry><box size="0.4 0.3 0.146"/></geometry></collision></link>
@@ -35,6 +57,7 @@ ROV = """<?xml version="1.0"?><robot name="rov"><link name="base_link"><inertial
 SOUND = {
     "torpedo": TORPEDO,
     "rov": ROV,
+    "auv": AUV,
     "rounded": TORPEDO.replace("<yDotV>-30.0", "<yDotR>0.201</yDotR><nDotV>0.2012</nDotV><yDotV>-30.0"),
 }
 # What is changed, and what the finding must name.
@@ -60,6 +83,34 @@ FAULTS = {
     "Coriolis on": (("<disable_coriolis>true", "<disable_coriolis>false"), "disable_coriolis"),
 }  # fmt: skip
 
+SCREW = AUV[AUV.index('<plugin filename="gz-sim-thruster') : AUV.index('<plugin filename="gz-sim-lift')]
+RUDDER = (
+    AUV[AUV.index('<plugin filename="gz-sim-lift') : AUV.index('<plugin filename="gz-sim-hydro')].partition(
+        "</plugin>"
+    )[0]
+    + "</plugin>"
+)
+OTHERS = {
+    "centres from two points": (("<pose>0.03 0 -0.018", "<pose>0.43 0 -0.018"), "^auv$"),
+    "screw in mm": (("<propeller_diameter>0.19", "<propeller_diameter>190"), "^thruster of shaft$"),
+    "screw in inches": (("<propeller_diameter>0.19", "<propeller_diameter>7.5"), "^thruster of shaft$"),
+    "K_T per square of 1/s": (("<thrust_coefficient>0.006", "<thrust_coefficient>0.24"), "^thruster of shaft$"),
+    "screw in g/cm^3": (("<fluid_density>1026", "<fluid_density>1.026"), "^<fluid_density> of"),
+    "thruster twice": ((SCREW, SCREW + SCREW), "^thruster of shaft$"),
+    "fin twice": ((RUDDER, RUDDER + RUDDER), "^lift-drag of rudder$"),
+    "fin in air": (("<air_density>1026</air_density>", ""), "^<air_density> of lift-drag of rudder"),
+    "lift per degree": (("<cla>3.9", "<cla>0.068"), "^lift-drag of rudder$"),
+    "fin in square inches": (("<area>0.021", "<area>32.5"), "^Ydr'$"),
+    "shaft in cm": (('"screw"><pose>-1.15', '"screw"><pose>-115'), "shaft"),
+    "limits of a joint exchanged": (("<lower>-0.35</lower><upper>0.35", "<lower>0.35</lower><upper>-0.35"), "^joint stock$"),
+    "limits of a thruster exchanged": (("cmd>90</max_thrust_cmd><min_thrust_cmd>-90", "cmd>-90</max_thrust_cmd><min_thrust_cmd>90"), "^thruster of shaft$"),
+    "gravity up": (("0 0 -9.81", "0 0 9.81"), "^<gravity>$"),
+    "triangle in one link": (("<ixx>0.42", "<ixx>44"), "^hull$"),
+    "drag in lb and feet": (("<xUabsU>-4.1", "<xUabsU>-0.086"), "^Xu"),
+    "drag in mm": (("<xUabsU>-4.1", "<xUabsU>-4100"), "^Xu"),
+    "link of another name": (("<link_name>hull", "<link_name>base_link"), "^base_link$"),
+}  # fmt: skip
+
 
 def wrong(folder: Path, text: str) -> list[str]:
     path = folder / ("model.urdf" if "<robot" in text else "model.sdf")
@@ -79,6 +130,24 @@ def test_a_planted_fault_is_found(fault: str, tmp_path: Path) -> None:
     assert before in TORPEDO
     found = wrong(tmp_path, TORPEDO.replace(before, after, 1))
     assert any(re.search(named, line) for line in found), found
+
+
+@pytest.mark.parametrize("fault", OTHERS)
+def test_a_fault_of_actuators_and_sizes_is_found(fault: str, tmp_path: Path) -> None:
+    (before, after), subject = OTHERS[fault]
+    path = tmp_path / "model.sdf"
+    path.write_text(AUV.replace(before, after, 1), encoding="utf-8")
+    bad = [c.subject for c in read_model_file(path).findings if c.severity in (Severity.WARN, Severity.FAIL)]
+    assert before in AUV
+    assert any(re.search(subject, s) for s in bad), bad
+
+
+def test_a_plugin_of_all_links_is_refused_where_it_stands_twice(tmp_path: Path) -> None:
+    path = tmp_path / "model.sdf"
+    again = '<plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics"><link_name>hull</link_name></plugin>'
+    path.write_text(AUV.replace("</model>", again + "</model>"), encoding="utf-8")
+    with pytest.raises(InputError):
+        read_model_file(path)
 
 
 def test_what_a_torpedo_is_read_as(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.motion.trim.operating_point import Outcome
+from coeflab.motion.trim.solver import Scaled, restored
 from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish.model import CONSTANTS, read_flyingfish, steady_residuals
@@ -176,3 +177,12 @@ def test_a_file_without_resistance_takes_no_thrust() -> None:
     assert not any(
         "surge has no law" in line for line in trim(drag, {"u": 2.0, "yaw_rate": 0.0}, starts=2).point.words()
     )
+
+
+def test_a_start_far_away_has_the_steps_that_it_takes() -> None:
+    """Newton's steps lessen x^11 by the factor (10/11)^11 each: a hundred from x = 1000 to what counts as zero."""
+    problem = Scaled(
+        lambda x: x**11, lambda x: 11.0 * x[:, None] ** 10, np.array([-1e4]), np.array([1e4]), np.zeros(1), np.ones(1)
+    )
+    assert restored(problem, np.array([1e3]))[1]
+    assert not restored(problem, np.array([1e3]), 75)[1]

@@ -17,7 +17,7 @@ from tests.mutations.harness import Outcome, Suboff, Verdicts, compare, edited, 
 from tests.mutations.mutations import NR, UNDETECTABLE, YR, every_constant, mutations, of_huuv, published, unchanged
 from tests.mutations.table import PAGE, lines_of
 
-STEP = int(os.environ.get("COEFLAB_CONSTANTS", "4"))  # one constant of four; with 1 all, as was tried once
+STEP = int(os.environ.get("COEFLAB_CONSTANTS", "10"))  # one constant of ten; with 1 all, as was tried once
 STUDIES = ("thauv", "flyingfish", "huuv", "suboff", "urv", "remus", "tank", "estimates")
 
 # +5 % or the other sign of what nothing depends on, or less than is allowed: chosen, assumed, or not recomputed by anything.

@@ -67,7 +67,7 @@ def test_errata_are_shown_as_printed_and_as_corrected(tables: dict[str, Compared
     assert found["1 e of the spheroid, as printed", "A55/m"].found == pytest.approx(0.0517, abs=5e-5)
     assert found["1 e of the spheroid, corrected", "A55/m"].found == pytest.approx(0.0847, abs=5e-5)
     assert found["4 equation 16, as printed", "power from nothing"].found == pytest.approx(-0.04523893)
-    assert len(urv.ERRATA) == 9
+    assert len(urv.PAPER.texts("errata")) == 9
 
 
 def test_energy_and_power(moving: dict[str, ComparedTable]) -> None:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.provenance import WORKS
-from coeflab.report.glossary import TERMS, definitions_html, linked_html, markdown, mentions
+from coeflab.core.provenance import works
+from coeflab.report.glossary import definitions_html, linked_html, markdown, mentions, terms
 from coeflab.report.notation import html, keeping
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,10 +23,10 @@ def test_the_page_in_docs_is_made_from_the_terms():
 
 
 def test_every_term_has_an_anchor_a_source_that_exists_and_a_page_that_exists():
-    assert len({t.anchor for t in TERMS}) == len(TERMS)
-    assert not [t.name for t in TERMS if set(t.sources) - set(WORKS)]
-    assert not [t.name for t in TERMS if t.page and not (ROOT / "docs" / t.page).is_file()]
-    spelled = [word for t in TERMS for word in (t.name, *t.spellings)]
+    assert len({t.anchor for t in terms()}) == len(terms())
+    assert not [t.name for t in terms() if set(t.sources) - set(works())]
+    assert not [t.name for t in terms() if t.page and not (ROOT / "docs" / t.page).is_file()]
+    spelled = [word for t in terms() for word in (t.name, *t.spellings)]
     assert len(set(spelled)) == len(spelled)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -96,6 +98,24 @@ def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
         f"[matrix]\ndrift = []\nattack = []\nyaw = [{', '.join(f'{x:.4g}' for x in dict.fromkeys(settings))}]\npitch = []\n"
     )
     np.testing.assert_array_equal(found.frame()["setting"], settings)
+
+
+def test_a_plan_is_taken_for_a_plan(tmp_path: Path) -> None:
+    """It was read as a campaign."""
+    text = '[study]\nname = "two"\n[[table]]\ncampaign = "suboff_roddy_3"\nfits = ["slope_at_origin"]\n'
+    plan = tmp_path / "plan.toml"
+    plan.write_text(text)
+    for source in (plan, tmp_path):
+        found = cf.next_tests(source, "Nv'", runs=1)
+        assert found.given is not None
+        assert (found.given.subject, found.given["kind"], found.given["campaigns"]) == (
+            "two",
+            "plan",
+            ("suboff_roddy_3",),
+        )
+        assert found.tests[0].rows > 0
+    with pytest.raises(InputError, match=r"a plan of \d vehicles"):
+        cf.next_tests("suboff")
 
 
 @pytest.mark.parametrize(

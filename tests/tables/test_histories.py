@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 from scipy.special import stdtrit
 
-from coeflab.core.provenance import WORKS
+from coeflab.core.provenance import works
 from coeflab.core.types import Array
 from coeflab.tables.histories import (
     CALIBRATED_ROWS,
@@ -225,7 +225,7 @@ def test_long_histories_are_averaged_in_blocks() -> None:
 
 
 def test_works_are_known() -> None:
-    assert set(CITATIONS) <= set(WORKS)
+    assert set(CITATIONS) <= set(works())
 
 
 def test_what_a_short_history_lacks_is_what_decides() -> None:

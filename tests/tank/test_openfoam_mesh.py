@@ -105,6 +105,33 @@ def test_layers_lead_from_the_wanted_y_plus_to_the_cell_on_them(body: TowedBody)
     assert not mesh_sizes(body, 1.0, Half.WHOLE, BARE, WATER).layers
 
 
+def test_wall_functions_of_a_hull_begin_at_sixty(body: TowedBody) -> None:
+    fast = Conditions(1000.0, 10.0, 1e-6)
+    first = mesh_sizes(body, 1.0, Half.WHOLE, MeshKeys(), fast).layers["hull"].first
+    assert first / 2.0 / wall_unit(10.0, 1.0, 1e-6) == pytest.approx(60.0)
+
+
+def test_boxes_of_finer_cells_reach_by_the_length_of_the_body(body: TowedBody) -> None:
+    sizes = mesh_sizes(body, 1.0, Half.WHOLE, BARE, WATER)
+    boxes = {r.name: r for r in sizes.regions}
+    hull = body.vertices[np.unique(body.faces[body.patch == body.patches.index("hull")])]
+    low, high, length = hull.min(0), hull.max(0), body.length
+    near, nose, tail = boxes["near"], boxes["nose"], boxes["tail"]
+    reach = [
+        (low - near.low)[:2],
+        (near.high - high)[:2],
+        [high[0] - nose.low[0], nose.high[0] - high[0]],
+        [low[0] - tail.low[0], tail.high[0] - low[0]],
+    ]
+    assert np.array(reach) / length == pytest.approx(
+        np.array([[0.15, 0.038], [0.054, 0.038], [0.06, 0.011], [0.06, 0.17]])
+    )
+    assert [(r.high - high)[1] / length for r in (nose, tail)] == pytest.approx([0.006, 0.017])
+    mid, whole = boxes["mid"], body.vertices
+    assert (whole.min(0) - mid.low)[:2] / length == pytest.approx([0.72, 0.17])
+    assert (mid.high - whole.max(0))[0] / length == pytest.approx(0.23)
+
+
 def test_friction_at_the_wall_is_that_of_the_line_of_1957() -> None:
     """C_F = 0.075 / (lg Re - 2)^2 = 0.003 at Re = 1e7."""
     assert 1e-6 / wall_unit(10.0, 1.0, 1e-6) == pytest.approx(10.0 * np.sqrt(0.003 / 2.0))

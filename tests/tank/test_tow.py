@@ -363,6 +363,9 @@ def test_a_tow_that_stopped_before_its_plan_was_written_is_laid_out_again(tmp_pa
     assert laid_out(tmp_path, tank_file(tmp_path)).jobs == tow.jobs
     assert (tow.folder / "tow.json").read_bytes() == plan
     (tow.folder / "tow.json").unlink()
+    (tow.folder / tow.tank.solver).mkdir()  # of what a solver writes beside the conditions
+    assert laid_out(tmp_path, tank_file(tmp_path)).jobs == tow.jobs
+    (tow.folder / "tow.json").unlink()
     (tow.folder / "thesis.tex").touch()
     with pytest.raises(InputError, match="which is not empty"):
         laid_out(tmp_path, tank_file(tmp_path))

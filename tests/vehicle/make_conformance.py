@@ -307,6 +307,15 @@ def few_rules(whole: ParameterFile) -> dict[str, tuple[ParameterFile, str, list[
         "(15) products without what a table needs, (16) increments",
         steered(some(1.5), ANGLES),
     )
+    flow = (
+        model("C_S", [("beta", "rad"), ("r", "1")], {(("beta", 1),): -1.2, (("r", 1),): 0.3, (("beta", 1), ("|r|", 1)): -0.4}, [-0.4, -0.9], [0.4, 0.9]),
+        model("C_L", [("alpha", "rad"), ("q", "1")], {(("alpha", 1),): 1.1, (("q", 1),): 0.4}, [-0.4, -0.9], [0.4, 0.9]),
+    )  # fmt: skip
+    out["flow_axes"] = (
+        with_coefficients({**steady, "Xvv": -0.01}, flow).model_copy(update={"added_mass": dense}),
+        "(12) (15) tables along the flow over rates: closed in the components that they act in",
+        steered(some(1.5), ANGLES),
+    )
     rest = {
         "Mw": 0.004,
         "Yv": -0.03,

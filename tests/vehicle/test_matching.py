@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.matching import plain_name
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import own_numbers, stated_beside, typed_file
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint
 
 YV, NV, YR, NR, X = -0.031, -0.012, 0.006, -0.0055, 0.07  # X: in lengths, ahead; all made up
 M = {"m": 46.0, "xg": 0.01}
@@ -61,6 +63,21 @@ def test_one_vehicle_in_two_spellings_about_two_points_differs_by_zero() -> None
         assert r.difference == pytest.approx(0.0, abs=1e-12), r.symbol
     assert any("Yuv'" in s for s in found.statements)
     assert any("added mass matrix" in s and "Nrdot'" in s for s in found.statements)
+
+
+def test_points_of_two_datums_are_placed_by_the_centre_of_gravity() -> None:
+    """The same vehicle about its nose and about a point called midship; not where a mass is another, nor where one states none."""
+    a, b = file("plain", -0.5), file("products", 0.3, "matrix")
+    named = ParameterPoint(point=(0.0, 0.0, 0.0), datum="midship")
+    a = a.model_copy(update={"reference_point": named})
+    for r in compare(a, b).rows:
+        assert r.difference == pytest.approx(0.0, abs=1e-12), r.symbol
+    found = {r.name: r for r in behaviour(a, b, 1.5)}
+    assert found["G_h"].difference == pytest.approx(0.0, abs=1e-9)
+    assert b.mass is not None
+    heavier = b.model_copy(update={"mass": replace(b.mass, mass=47.0)})
+    for other in (heavier, b.model_copy(update={"mass": None})):
+        assert [r.symbol for r in compare(a, other).rows if r.symbol == "Nv'" and r.difference is None] == ["Nv'"]
 
 
 def test_a_slope_five_per_cent_apart_is_seen() -> None:

@@ -10,7 +10,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import k0
 
-from coeflab.vehicle.stability import SIGN_OPEN, index_gradient, sense, stability, stability_index
+from coeflab.fits.uncertainty.propagation import Propagated
+from coeflab.vehicle.stability import SIGN_OPEN, Derived, index_gradient, sense, stability, stability_index
 from tests.motion.vehicles import STABLE, made
 
 MASS, MASS_MOMENT = 0.018296, -0.127467e-4
@@ -110,3 +111,16 @@ def test_a_linear_interval_that_stands_for_the_draws_is_kept():
     assert not found.by_draws
     assert found.interval == (found.value - found.result.linear, found.value + found.result.linear)
     assert found.limits == ""
+
+
+@pytest.mark.parametrize(
+    ("spread", "linear", "by_draws", "represented"),
+    [
+        (0.24, 1.0, False, True), (0.26, 1.0, True, True),  # a denominator known to a quarter
+        (0.0, 1.09, False, True), (0.0, 1.11, True, True), (0.0, 0.91, False, True), (0.0, 0.89, True, True),  # a tenth of the drawn one
+        (0.0, 0.26, True, True), (0.0, 0.24, True, False),  # a quarter of it
+    ],
+)  # fmt: skip
+def test_which_interval_is_shown_at_the_bounds(spread: float, linear: float, by_draws: bool, represented: bool) -> None:
+    found = Derived("G_h", "a", 0.5, Propagated(0.5, linear, 1.0, -0.5, 1.5, 20_000, 1), "", spread=spread)
+    assert (found.by_draws, found.represented) == (by_draws, represented)

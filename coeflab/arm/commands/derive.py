@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.arm.tape import ClosedForm
@@ -31,29 +29,14 @@ def arms(incomplete: str) -> list[str]:
     return complete.or_paths([name for name in names if is_arm(shipped("geometry") / name)], incomplete)
 
 
+@options.worded
 def command(
-    body: str = typer.Argument(
-        ...,
-        metavar="BODY",
-        autocompletion=arms,
-        help="A body.toml of a vehicle with an arm, its folder, or a shipped one: urv_puma.",
-    ),
-    to: str = typer.Option(
-        ...,
-        "--to",
-        metavar="c|python|latex|octave",
-        autocompletion=languages,
-        help="Language; octave is MATLAB too.",
-    ),
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder for the files; default NAME.LANGUAGE in the current folder."
-    ),
-    symbols: bool | None = typer.Option(
-        None,
-        "--symbols/--numbers",
-        help="Whether masses, lengths and coefficients stay symbols, with the file's values beside; by default in LaTeX alone.",
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    body: str,
+    to: str,
+    out: Path | None = None,
+    symbols: bool | None = None,
+    json: bool = False,
 ) -> None:
     """Write the equations of motion of a vehicle with an arm as code.
 

@@ -19,7 +19,7 @@ from coeflab.bodies.shape import Ellipsoid, Parts, Revolution, Shape, shadow
 from coeflab.bodies.volume_moments import second_moments
 from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.added_mass import AddedMass, composed
 
 BOUND = 0.1  # the misfit up to which a simplified body is called an ellipsoid, too
@@ -27,6 +27,7 @@ BOUND = 0.1  # the misfit up to which a simplified body is called an ellipsoid, 
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("areas spread")
 class EllipsoidMisfit:
     """The ellipsoid over the body, less one.
 
@@ -41,10 +42,6 @@ class EllipsoidMisfit:
 
     areas: Array
     spread: Array
-
-    def __post_init__(self) -> None:
-        for name in ("areas", "spread"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def rough(self) -> bool:

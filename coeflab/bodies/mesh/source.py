@@ -18,11 +18,12 @@ from coeflab.core.axes import Frame
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.bounded import leading_bytes
-from coeflab.core.types import Array, locked
+from coeflab.core.types import Array, locking
 from coeflab.core.units import factor
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("rotation origin")
 class MeshSource:
     """A mesh file and how it is to be read.
 
@@ -50,10 +51,6 @@ class MeshSource:
     repair: bool = False
     fill: bool = False
     sheets: bool = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rotation", locked(self.rotation))
-        object.__setattr__(self, "origin", locked(self.origin))
 
     def input_file(self, body: str) -> InputFile:
         """The file with its digest, under the name of its body."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from importlib.resources import files
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from coeflab.bodies.body import Body
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
+from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import quoted, read_toml
 
 MESHES = (".stl", ".obj", ".ply", ".glb")
@@ -17,27 +19,9 @@ MESHES = (".stl", ".obj", ".ply", ".glb")
 def _mesh_body(path: Path) -> str:
     """A body.toml for a mesh."""
     name = re.sub(r"[^A-Za-z0-9_.+-]+", "_", path.stem)
-    return f"""\
-[body]
-name = {quoted(name)}
-reader = "mesh"
-datum = "midship"                    # the origin of the mesh's axes
-datum_note = "where that is on the body"
-reference_point = [0.0, 0.0, 0.0]    # m, x forward, y starboard, z down
-
-[mesh]
-path = {quoted(path.name)}
-unit = "m"                           # of the mesh's numbers: m, mm, in ...
-axes = "FRD"                         # x forward, y right, z down; FLU has z up
-
-[particulars]
-length = 1.0                         # m; the mesh is checked against it
-
-[source]
-citation = "none"
-kind = "synthetic"                   # experiment, cfd, literature, synthetic, computed
-how_obtained = "Where the mesh comes from."
-"""
+    return own_text(files("coeflab.bodies.readers") / "mesh_body.toml.txt").format(
+        name=quoted(name), path=quoted(path.name)
+    )
 
 
 def read_body(path: Path) -> Body:

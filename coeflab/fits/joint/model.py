@@ -29,6 +29,7 @@ from coeflab.fits.results.fitted_model import (
     in_words,
 )
 from coeflab.fits.rows.regression import model_of
+from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.groups import UNTOLD, poolability, predict_left_out, thirds
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
@@ -222,11 +223,14 @@ class JointFit:
         S with S S' the covariance of all coefficients, errors of one run correlated as the residuals are.
     poolings : tuple of Pooling
         One a component where the tables are of several campaigns.
+    short : dict of components to TooFewRowsError
+        Those that are not fitted, alone or with those that equations link to them.
     """
 
     models: tuple[FittedModel, ...]
     spread: Array
     poolings: tuple[Pooling, ...]
+    short: dict[tuple[str, ...], TooFewRowsError]
 
 
 def _one(part: Component, form: str, n_runs: int) -> tuple[FittedModel, Array]:
@@ -237,13 +241,12 @@ def _one(part: Component, form: str, n_runs: int) -> tuple[FittedModel, Array]:
 
 
 def _excited(parts: Sequence[Component], constraint: Constraint) -> None:
-    """Refuse more columns than rows, and terms that neither a row nor an equation holds.
+    """Refuse terms that neither a row nor an equation holds.
 
     Raises
     ------
     InputError
     """
-    n, free = sum(len(p.data.run) for p in parts), sum(p.width for p in parts) - len(constraint[1])
     named = np.any(constraint[0] != 0.0, axis=0)
     at = 0
     for p in parts:
@@ -254,12 +257,6 @@ def _excited(parts: Sequence[Component], constraint: Constraint) -> None:
                 f"{', '.join(empty)} zero on every row of {p.data.rows.campaign}", "terms that the data excite",
                 column="terms", advice="Leave these terms out, or add runs in which their motion occurs.",
             )  # fmt: skip
-    if n <= free:
-        what = "free terms and intercepts" if any(p.own for p in parts) else "free terms"
-        raise InputError(
-            f"{n} usable rows for {free} {what} of {', '.join(p.name for p in parts)}", "more rows than terms",
-            column="terms", advice="Run more points or ask for fewer terms.",
-        )  # fmt: skip
 
 
 def _several(
@@ -342,13 +339,15 @@ def joint_models(
     Raises
     ------
     InputError
-        Too few rows, a term that no row excites, an unknown coefficient, or equations that cannot hold.
+        Too few rows of every component, a term that no row excites, an unknown coefficient, or equations that cannot hold.
     """
     constraint_of(equations, tuple(components.values()), "constraints")
     models: dict[str, FittedModel] = {}
     spreads: dict[str, Array] = {}
     found: dict[str, Pooling] = {}
-    for names in linked(tuple(components), equations):
+    groups = linked(tuple(components), equations)
+    short = _short(components, groups, equations)
+    for names in (g for g in groups if g not in short):
         parts = [components[c] for c in names]
         own = [e for e in equations if e.weights[0][0][0] in names]
         constraint = constraint_of(own, parts, "constraints")
@@ -368,4 +367,29 @@ def joint_models(
             spreads[c] = moved[k]
         found |= dict(zip(names, pooled, strict=bool(pooled)))
     ordered = tuple(found[c] for c in components if c in found)
-    return JointFit(tuple(models[c] for c in components), np.vstack([spreads[c] for c in components]), ordered)
+    fitted_ones = [c for c in components if c in models]
+    return JointFit(tuple(models[c] for c in fitted_ones), np.vstack([spreads[c] for c in fitted_ones]), ordered, short)
+
+
+def _short(
+    components: Mapping[str, Component], groups: Sequence[tuple[str, ...]], equations: Sequence[Equation]
+) -> dict[tuple[str, ...], TooFewRowsError]:
+    """The groups that equations link, with no more rows than free columns.
+
+    Raises
+    ------
+    TooFewRowsError
+        All of them.
+    """
+    out = {}
+    for names in groups:
+        parts = [components[c] for c in names]
+        labels = [label for p in parts for label in p.data.rows.labels]
+        free = sum(p.width for p in parts) - sum(e.weights[0][0][0] in names for e in equations)
+        if len(labels) <= free:
+            what = "free terms" if len(names) > 1 else "terms"
+            what = "free terms and intercepts" if any(p.own for p in parts) else what
+            out[names] = TooFewRowsError.for_terms(", ".join(names), labels, free, "terms", what)
+    if len(out) == len(groups):
+        raise next(iter(out.values()))
+    return out

@@ -18,6 +18,7 @@ from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fitted_model import SetAside, joined
 from coeflab.fits.rows.regression import Area, Rows, collect, response, variable
+from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.groups import noise_of_groups
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.law.scaling import Scaling
@@ -107,7 +108,9 @@ def joint_rows(tables: Sequence[ForceTable], variables: Sequence[str], component
     Raises
     ------
     InputError
-        No table has the component, or no row is left.
+        No table has the component.
+    TooFewRowsError
+        No row is left.
     """
     if not any(component in t.forces for t in tables):
         raise InputError(f"no {component} in the tables of {tables[0].campaign}", f"a column {component}",
@@ -130,7 +133,10 @@ def joint_rows(tables: Sequence[ForceTable], variables: Sequence[str], component
             run += list(start + index[keep])
         start += len(t)
     campaigns = tuple(dict.fromkeys(t.campaign for t in tables))
-    rows = _joined([p for p in parts if len(p.y)], component, tables)
+    full = [p for p in parts if len(p.y)]
+    if not full:
+        raise TooFewRowsError.for_terms(component, (), 0, "terms")
+    rows = _joined(full, tables)
     said = [f"{n} rows in which {v} moves are left out of {component}: no term of it contains {v}."
             for v, n in left.items() if n]  # fmt: skip
     of_table = np.array([campaigns.index(t.campaign) for t in tables], dtype=np.int64)
@@ -162,10 +168,7 @@ def _only(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
     )
 
 
-def _joined(parts: Sequence[Rows], component: str, tables: Sequence[ForceTable]) -> Rows:
-    if not parts:
-        raise InputError(f"no usable rows for {component}", "rows in which only motions of its terms occur",
-                         column="terms", advice="Add terms in the motions that the tables vary.")  # fmt: skip
+def _joined(parts: Sequence[Rows], tables: Sequence[ForceTable]) -> Rows:
     errors = [p.errors for p in parts if p.errors is not None]
     alone = len({t.campaign for t in tables}) == 1
     return replace(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isinf, isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +16,17 @@ from numpy.typing import NDArray
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, brief, in_angles, locked
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.slopes import Estimate
-from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.coefficient import Coefficient, CoefficientSet
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import primed
+from coeflab.tables.force_table import ForceTable
 
 DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
@@ -163,6 +166,7 @@ class LeftOut:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x y curve fitted by_row se")
 class Sweep:
     """One force component over one motion variable, and the coefficient that it gives.
 
@@ -255,14 +259,6 @@ class Sweep:
     by_symmetry: str = ""
     bias: float = 0.0
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked(self.x))
-        object.__setattr__(self, "y", locked(self.y))
-        for name in ("curve", "fitted", "by_row"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-        if self.se is not None:
-            object.__setattr__(self, "se", locked(self.se))
-
     @property
     def is_angle(self) -> bool:
         """Whether the motion variable is the sine of an angle."""
@@ -294,6 +290,7 @@ class Sweep:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("moves")
 class Tied:
     """What coefficients of one fit owe to those of another that they were tied to.
 
@@ -314,12 +311,10 @@ class Tied:
     moves: Array
     set_up: tuple[tuple[str, str, float], ...]
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "moves", locked(self.moves))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("covariance")
 class Shared:
     """What the coefficients of one fit have in common with those of another, whose numbers moved them to another point.
 
@@ -334,9 +329,6 @@ class Shared:
     fit: str
     campaign: str
     covariance: Array
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "covariance", locked(self.covariance))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -413,6 +405,49 @@ class FitResult:
             if s.symbol == symbol.removesuffix("'"):
                 return s
         raise KeyError(symbol)
+
+
+def result_of(
+    fit: str,
+    first: ForceTable,
+    scaling: Scaling,
+    coefficients: Sequence[Coefficient],
+    covariance: Array,
+    *,
+    conditions: Conditions | None = None,
+    **more: Any,
+) -> FitResult:
+    """Coefficients about the point of a table as the result of a fit.
+
+    Parameters
+    ----------
+    fit : str
+        Plugin name.
+    first : ForceTable
+        Campaign, body, point and datum, unless ``more`` says others.
+    scaling : Scaling
+    coefficients : sequence of Coefficient
+    covariance : (n, n) array
+        Of standard uncertainties; what has no U95 is NaN in the result.
+    conditions : Conditions, optional
+        Of coefficients in SI.
+    **more
+        Further fields of `FitResult`.
+    """
+    unknown = np.isnan(np.diag(covariance)) | np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance = np.where(unknown | unknown[:, None], np.nan, covariance)
+    own: dict[str, Any] = {"campaign": first.campaign, "body": first.body, "sweeps": (), **more}
+    held = CoefficientSet(
+        tuple(coefficients), covariance, scaling, first.reference_point, first.datum, own["body"], conditions
+    )
+    return FitResult(fit, coefficients=held, **own)
+
+
+def independent(blocks: Sequence[Array]) -> Array:
+    """The covariance of coefficients by groups that share no errors."""
+    from scipy.linalg import block_diag
+
+    return np.asarray(block_diag(*blocks)) if blocks else np.zeros((0, 0))
 
 
 def covariance_of(fits: Sequence[FitResult]) -> Array:

@@ -14,16 +14,17 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import combinations
 from math import isnan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
-from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
-from coeflab.law.coefficient import Parts, Status
+from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import half_spaces, inside
 from coeflab.law.symbols import ANGULAR, MOTIONS, PORT_STARBOARD
 from coeflab.law.terms import Term, canonical, design
@@ -32,6 +33,7 @@ from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x y")
 class SetAside:
     """Points beside a fit.
 
@@ -46,10 +48,6 @@ class SetAside:
     x: Mapping[str, Array]
     y: Array
     labels: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked_columns(self.x))
-        object.__setattr__(self, "y", locked(self.y))
 
     def only(self, keep: NDArray[np.bool_]) -> SetAside:
         """Some of the points."""
@@ -92,6 +90,7 @@ class Extrapolation(StrEnum):
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high spaces")
 class Domain:
     """Where a model may be read.
 
@@ -110,10 +109,6 @@ class Domain:
     high: Array
     spaces: Array
     rule: Extrapolation = Extrapolation.REFUSE
-
-    def __post_init__(self) -> None:
-        for name in ("low", "high", "spaces"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @classmethod
     def of(
@@ -143,6 +138,7 @@ class Domain:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x shared y")
 class FittedModel:
     """One response as a linear combination of terms.
 
@@ -198,11 +194,6 @@ class FittedModel:
     not_assessed: tuple[str, ...] = ()
     set_aside: SetAside | None = None
     remainder: Remainder | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked_columns(self.x))
-        object.__setattr__(self, "shared", locked_columns(self.shared))
-        object.__setattr__(self, "y", locked(self.y))
 
     @property
     def n_points(self) -> int:
@@ -321,6 +312,29 @@ class FittedModel:
         """Value and 95 % half-width of one coefficient."""
         i = self.symbols.index(symbol)
         return float(self.fit.coefficients[i]), float(self.half_width[i])
+
+
+def coefficient_of(
+    model: FittedModel, i: int, citation: str, unknown: Status = Status.NOT_DETERMINED, **more: Any
+) -> Coefficient:
+    """One coefficient of a model as `FittedModel.worth` has it, with where it comes from.
+
+    Parameters
+    ----------
+    model : FittedModel
+    i : int
+    citation : str
+    unknown : Status
+        Without a value.
+    **more
+        Of `Coefficient`, beside these or in their place.
+    """
+    u95, status, parts = model.worth(i, unknown)
+    own = {
+        "symbol": model.symbols[i], "value": model.recommended(i), "u95": u95, "status": status, "body": model.body, "parts": parts,
+        "origin": "fit", "table": model.table, "campaign": model.campaign, "n_points": model.n_points, "citation": citation,
+    }  # fmt: skip
+    return Coefficient(**{**own, **more})
 
 
 COLLINEAR = 0.98  # the half-width is five times that of either term alone: 1 / sqrt(1 - 0.98^2)

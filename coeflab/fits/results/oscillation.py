@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, AtZero
 
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("sizes theta measured fitted")
 class OscillatedForce:
     """One force component of one run, primed, filter and model inertia subtracted.
 
@@ -49,10 +50,6 @@ class OscillatedForce:
     measured: Array
     fitted: Array
     used: bool
-
-    def __post_init__(self) -> None:
-        for name in ("sizes", "theta", "measured", "fitted"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 @brief

@@ -19,14 +19,7 @@ from coeflab.fits.statistics.linear_model import t_factor
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.tables.planar_motion import (
-    DISPLACEMENTS,
-    VARIABLES,
-    Filter,
-    PlanarMotionRun,
-    PlanarMotionTable,
-    TimeSeries,
-)
+from coeflab.tables import planar_motion
 
 GIVES = {"sway": "YNK", "yaw": "YNK", "heave": "ZM", "pitch": "ZM", "roll": "KYN"}
 LEAST_SAMPLES = 8  # a cycle
@@ -50,7 +43,7 @@ class _Motion:
         return np.asarray(self.omega * (time - self.start) + self.phase)
 
 
-def _checked_record(run: PlanarMotionRun, record: TimeSeries, orders: int) -> None:
+def _checked_record(run: planar_motion.PlanarMotionRun, record: planar_motion.TimeSeries, orders: int) -> None:
     if len(record.time) < 3:
         raise run.fail(f"{len(record.time)} samples", "a record of one cycle and more", file=record.file)
     cycles = harmonics.cycles_of(run.omega * record.time)
@@ -69,10 +62,12 @@ def _checked_record(run: PlanarMotionRun, record: TimeSeries, orders: int) -> No
         )  # fmt: skip
 
 
-def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int) -> _Motion:
+def _motion(
+    run: planar_motion.PlanarMotionRun, record: planar_motion.TimeSeries, gain: planar_motion.Filter, orders: int
+) -> _Motion:
     """The motion of a record, from its columns or as the list of runs declares it."""
     _checked_record(run, record, orders)
-    axis = MOTIONS.index(VARIABLES[run.motion])
+    axis = MOTIONS.index(planar_motion.VARIABLES[run.motion])
     start, omega = float(record.time[0]), run.omega
     velocity = np.zeros((6, orders + 1), dtype=complex)
     flow = (np.cos(run.attack) * np.cos(run.drift), np.sin(run.drift), np.sin(run.attack) * np.cos(run.drift))
@@ -90,15 +85,21 @@ def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int)
         _from_columns(run, record, gain, omega, velocity)
     if not abs(velocity[axis, 1]) > 0.0:
         raise run.fail(
-            f"no {VARIABLES[run.motion]} in {record.file.name}", f"columns of {run.motion}", file=record.file
+            f"no {planar_motion.VARIABLES[run.motion]} in {record.file.name}",
+            f"columns of {run.motion}",
+            file=record.file,
         )
     return _Motion(omega, start, velocity, float(np.angle(velocity[axis, 1])))
 
 
-def _frequency(run: PlanarMotionRun, record: TimeSeries, orders: int) -> float:
+def _frequency(run: planar_motion.PlanarMotionRun, record: planar_motion.TimeSeries, orders: int) -> float:
     """The frequency of the motion's own column, refined from the declared one."""
     kinds = (record.displacements, record.velocities, record.accelerations)
-    names = (DISPLACEMENTS[run.motion], VARIABLES[run.motion], VARIABLES[run.motion])
+    names = (
+        planar_motion.DISPLACEMENTS[run.motion],
+        planar_motion.VARIABLES[run.motion],
+        planar_motion.VARIABLES[run.motion],
+    )
     own = next(((n, k[n]) for n, k in zip(names, kinds, strict=True) if n in k), None)
     if own is None:
         raise run.fail(
@@ -124,7 +125,11 @@ def _frequency(run: PlanarMotionRun, record: TimeSeries, orders: int) -> float:
 
 
 def _from_columns(
-    run: PlanarMotionRun, record: TimeSeries, gain: Filter, omega: float, velocity: harmonics.Phasors
+    run: planar_motion.PlanarMotionRun,
+    record: planar_motion.TimeSeries,
+    gain: planar_motion.Filter,
+    omega: float,
+    velocity: harmonics.Phasors,
 ) -> None:
     """Fill in phasors (6, K + 1) of velocities; columns that contradict each other or the list of runs are refused."""
     orders = velocity.shape[1] - 1
@@ -144,7 +149,7 @@ def _from_columns(
         rate = phasors(v) / (1j * omega * np.maximum(np.arange(orders + 1), 1))
         rate[0] = velocity[MOTIONS.index(n), 0]
         found.append((f"{n}dot", MOTIONS.index(n), rate))
-    own = MOTIONS.index(VARIABLES[run.motion])
+    own = MOTIONS.index(planar_motion.VARIABLES[run.motion])
     size = max(abs(p[1]) for _, i, p in found if i == own)
     first: dict[int, tuple[str, harmonics.Phasors]] = {}
     for name, i, p in found:
@@ -163,19 +168,19 @@ def _from_columns(
     if declared is not None and abs(abs(velocity[own, 1]) / declared - 1.0) > AGREE:
         raise run.fail(
             f"an amplitude of {abs(velocity[own, 1]) / omega:.4g} in {record.file.name}",
-            f"that of the list of runs, {run.amplitude:.4g}", column=DISPLACEMENTS[run.motion],
+            f"that of the list of runs, {run.amplitude:.4g}", column=planar_motion.DISPLACEMENTS[run.motion],
         )  # fmt: skip
     if run.phase is not None:
         turned = velocity[own, 1] * np.exp(-1j * (run.phase + omega * float(record.time[0])))
         if abs(np.angle(turned)) > 2.0 * AGREE:
             raise run.fail(
                 f"a phase {np.degrees(np.angle(turned)):+.4g} deg from the declared one in {record.file.name}",
-                f"{DISPLACEMENTS[run.motion]} = amplitude sin(2 pi f t + phase), or no phase", column="phase",
+                f"{planar_motion.DISPLACEMENTS[run.motion]} = amplitude sin(2 pi f t + phase), or no phase", column="phase",
             )  # fmt: skip
 
 
 def _of_displacements(
-    moved: Mapping[str, harmonics.Phasors], run: PlanarMotionRun, omega: float, orders: int
+    moved: Mapping[str, harmonics.Phasors], run: planar_motion.PlanarMotionRun, omega: float, orders: int
 ) -> dict[int, harmonics.Phasors]:
     """Velocities of the body by index, from where it is and how it is turned on a carriage of constant speed.
 
@@ -195,9 +200,9 @@ def _of_displacements(
     return {i: harmonics.regress(GRID, values[:, None], orders).phasors[0] for i, values in out.items()}
 
 
-def _pure(run: PlanarMotionRun, motion: _Motion, length: float) -> None:
+def _pure(run: planar_motion.PlanarMotionRun, motion: _Motion, length: float) -> None:
     """Refuse a second velocity that oscillates: its coefficients would be counted in."""
-    own = VARIABLES[run.motion]
+    own = planar_motion.VARIABLES[run.motion]
     scale = {m: (length if m in "pqr" else 1.0) / run.speed for m in MOTIONS}
     size = scale[own] * abs(motion.velocity[MOTIONS.index(own), 1])
     for m in MOTIONS[1:]:
@@ -209,7 +214,7 @@ def _pure(run: PlanarMotionRun, motion: _Motion, length: float) -> None:
             )  # fmt: skip
 
 
-def _inertia(table: PlanarMotionTable, motion: _Motion) -> harmonics.Phasors:
+def _inertia(table: planar_motion.PlanarMotionTable, motion: _Motion) -> harmonics.Phasors:
     """(6, K + 1) phasors of M_RB nudot + C_RB(nu) nu, what holds the model on its path."""
     orders = motion.velocity.shape[1] - 1
     if table.inertia is None:
@@ -226,8 +231,8 @@ def _inertia(table: PlanarMotionTable, motion: _Motion) -> harmonics.Phasors:
 
 
 def _forces(
-    table: PlanarMotionTable,
-    record: TimeSeries,
+    table: planar_motion.PlanarMotionTable,
+    record: planar_motion.TimeSeries,
     motion: _Motion,
     names: Sequence[str],
     orders: int,
@@ -239,10 +244,10 @@ def _forces(
 
 
 def oscillated(
-    table: PlanarMotionTable, run: PlanarMotionRun, scaling: Scaling, orders: int
+    table: planar_motion.PlanarMotionTable, run: planar_motion.PlanarMotionRun, scaling: Scaling, orders: int
 ) -> tuple[dict[str, OscillatedForce], dict[str, tuple[float, float]], int]:
     """Every wanted component of one run; variances of damping and inertia by the cycles, and the degrees of freedom."""
-    gain = table.filters.get("motion", Filter())
+    gain = table.filters.get("motion", planar_motion.Filter())
     motion = _motion(run, run.record, gain, orders)
     _pure(run, motion, scaling.length)
     names = [c for c in GIVES[run.motion] if c in run.record.forces]
@@ -264,7 +269,7 @@ def oscillated(
     else:
         held = _inertia(table, motion) * turn
         phasors = phasors + held[[COMPONENTS.index(c) for c in names]]
-    own = VARIABLES[run.motion]
+    own = planar_motion.VARIABLES[run.motion]
     size = abs(motion.velocity[MOTIONS.index(own), 1])
     if table.restoring is not None and run.motion in ("roll", "pitch"):
         about = "K" if run.motion == "roll" else "M"

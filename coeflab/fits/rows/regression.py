@@ -20,6 +20,7 @@ from coeflab.fits.results.fitted_model import (
     joined,
     readmitted,
 )
+from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS
@@ -225,10 +226,7 @@ def model_of(
             advice="Leave these terms out, or add runs in which their motion occurs.",
         )  # fmt: skip
     if len(rows.y) <= free:
-        raise InputError(
-            f"{len(rows.y)} usable rows for {free} terms of {rows.response}", "more rows than terms",
-            column=form, advice="Run more points or ask for fewer terms.",
-        )  # fmt: skip
+        raise TooFewRowsError.for_terms(rows.response, rows.labels, free, form)
     try:
         errors = rows.errors if weighted else None
         fit = fit_linear(matrix, rows.y, errors, constraint)

@@ -171,12 +171,16 @@ def arm_shift(tables: Sequence[ForceTable]) -> float:
     if not np.any(away):
         return 0.0
     order = np.flatnonzero(away)[np.argsort(shifts[away], kind="stable")]
-    gaps = np.diff(shifts[order]) > SAME_POINT * float(tables[0].scaling.length)
-    about = np.split(order, np.flatnonzero(gaps) + 1)
-    if len(about) == 1 and np.all(away):
+    apart = SAME_POINT * float(tables[0].scaling.length)
+    about = np.split(order, np.flatnonzero(np.diff(shifts[order]) > apart) + 1)
+    # Slow rates of an arm drift little enough to count as pure; their place says that they turn about its point.
+    about = [np.flatnonzero((shifts >= shifts[b[0]] - apart) & (shifts <= shifts[b[-1]] + apart)) for b in about]
+    if len(about) == 1 and len(about[0]) == len(shifts):
         return float(np.median(shifts))
     best = max(about, key=lambda rows: (_settings(over[rows]), -abs(float(np.median(shifts[rows])))))
-    enough = max(FEWEST_SETTINGS - 1, _settings(over[~away]))
+    pure = ~away
+    pure[best] = False
+    enough = max(FEWEST_SETTINGS - 1, _settings(over[pure]))
     return float(np.median(shifts[best])) if _settings(over[best]) > enough else 0.0
 
 

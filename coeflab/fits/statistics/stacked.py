@@ -14,17 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
+from coeflab.fits.statistics import linear_model
 from coeflab.fits.statistics.groups import constrained_space
 from coeflab.fits.statistics.least_squares import Factorised, Index, factorise
-from coeflab.fits.statistics.linear_model import (
-    FULL_LEVERAGE,
-    LinearFit,
-    fit_linear,
-    runs_probability,
-    t_factor,
-    t_probability,
-    variation,
-)
 
 OPEN = 1e-7
 ROUNDING = 1e-10
@@ -56,7 +48,7 @@ def influence(design: Array, errors: Array | None = None) -> Array:
     return np.asarray(f.estimator * f.root_weights)
 
 
-def spread_by_run(fit: LinearFit, moves: Array, run: Index, n_runs: int) -> Array:
+def spread_by_run(fit: linear_model.LinearFit, moves: Array, run: Index, n_runs: int) -> Array:
     """S with covariance S S', shape (p, n_runs): what the residuals of every run say about every coefficient.
 
     Parameters
@@ -68,7 +60,7 @@ def spread_by_run(fit: LinearFit, moves: Array, run: Index, n_runs: int) -> Arra
         Run of every row.
     n_runs : int
     """
-    room = np.where(fit.leverage < FULL_LEVERAGE, 1.0 - fit.leverage, np.inf)
+    room = np.where(fit.leverage < linear_model.FULL_LEVERAGE, 1.0 - fit.leverage, np.inf)
     rows = moves * (fit.residuals / np.sqrt(room))
     out = np.zeros((len(moves), n_runs))
     np.add.at(out.T, run, rows.T)
@@ -95,7 +87,7 @@ def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: in
     for rows in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
         basis, g = f.basis[rows], int(run[rows[0]])
         room, turn = np.linalg.eigh(np.eye(len(rows)) - basis @ basis.T)
-        free = room > 1.0 - FULL_LEVERAGE
+        free = room > 1.0 - linear_model.FULL_LEVERAGE
         moves = back @ basis.T
         lost |= np.linalg.norm(moves @ turn[:, ~free], axis=1) > 1e-9 * np.linalg.norm(back, axis=1)
         adjusted = moves @ ((turn[:, free] / np.sqrt(room[free])) @ turn[:, free].T)
@@ -190,7 +182,9 @@ def _violated(f: Factorised, contrast: Array, right: Array, y: Array, run: Index
     spread, freedom = _by_run(f, contrast @ f.back, weighted - f.basis @ (f.basis.T @ weighted), run, n_runs)
     error, violation = np.linalg.norm(spread, axis=1), np.abs(contrast @ inner - right)
     rounding = ROUNDING * (np.abs(contrast) @ np.abs(inner) + np.abs(right))
-    by_chance = t_probability(violation / np.where(error > rounding, error, 1.0), np.maximum(freedom, 1e-3))
+    by_chance = linear_model.t_probability(
+        violation / np.where(error > rounding, error, 1.0), np.maximum(freedom, 1e-3)
+    )
     exact = np.where(violation <= 10.0 * rounding, 1.0, 0.0)
     return np.where(freedom > 0.0, np.where(error > rounding, by_chance, exact), np.nan)
 
@@ -202,7 +196,7 @@ def fit_stacked(
     constraint: tuple[Array, Array],
     errors: Sequence[Array | None],
     n_runs: int,
-) -> tuple[LinearFit, Array]:
+) -> tuple[linear_model.LinearFit, Array]:
     """One fit of all responses under C b = d, coefficients in the order of the designs.
 
     Parameters
@@ -234,7 +228,7 @@ def fit_stacked(
     size = np.where(size > 0.0, size, 1.0)
     scaled = (constraint[0] / size, constraint[1])
     start, free = constrained_space(scaled, design.shape[1])
-    fit = fit_linear(design / size, y, sigma, scaled if len(scaled[1]) else None)
+    fit = linear_model.fit_linear(design / size, y, sigma, scaled if len(scaled[1]) else None)
     f = factorise((design / size) @ free, sigma**-2.0)
     back = free @ f.back / size[:, None]
     at_start = y - design @ (start / size)
@@ -250,7 +244,7 @@ def fit_stacked(
         coefficients=np.where(known, coefficients, np.nan),
         covariance=covariance,
         freedom=freedom,
-        half_width=np.where(known, deviation * t_factor(freedom), np.nan),
+        half_width=np.where(known, deviation * linear_model.t_factor(freedom), np.nan),
         correlation=covariance / np.outer(unit, unit),
         open_directions=open_directions,
     )
@@ -265,10 +259,12 @@ def _open_directions(unit: Array, free: Array) -> Array:
     return np.asarray((free @ right[rank:].T).T)
 
 
-def part_of(fit: LinearFit, rows: slice, columns: slice, response: Array, matrix: Array) -> LinearFit:
+def part_of(
+    fit: linear_model.LinearFit, rows: slice, columns: slice, response: Array, matrix: Array
+) -> linear_model.LinearFit:
     """The share of one response, with its own design matrix, in a stacked fit; AICc belongs to the whole and is NaN."""
     residuals, left_out = fit.residuals[rows], fit.left_out[rows]
-    total = variation(factorise(matrix), response)
+    total = linear_model.variation(factorise(matrix), response)
     coefficients = fit.coefficients[columns]
     touching = fit.open_directions[:, columns]
     return replace(
@@ -285,7 +281,7 @@ def part_of(fit: LinearFit, rows: slice, columns: slice, response: Array, matrix
         press_rms=float(np.sqrt(np.nanmean(left_out**2))) if np.any(np.isfinite(left_out)) else float("nan"),
         r_squared=1.0 - float(np.sum(residuals**2)) / total if total > 0.0 else float("nan"),
         aicc=float("nan"),
-        runs_probability=runs_probability(residuals),
+        runs_probability=linear_model.runs_probability(residuals),
         correlation=fit.correlation[columns, columns],
         open_directions=touching[np.any(np.abs(touching) > 1e-6, axis=1)],
         rank=int(np.isfinite(coefficients).sum()),

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import brief, locked
+from coeflab.core.types import brief, locking
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
@@ -176,6 +176,7 @@ FEWEST_DRAWS = 100  # fits that came out: 2.5 % tails of two or three
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("gradients sample nominal")
 class ModelEffects:
     """Inputs carried to the numbers of a fit: the coefficients of its models in their order, then those of its set.
 
@@ -196,10 +197,6 @@ class ModelEffects:
     sample: Array
     nominal: Array
     seed: int
-
-    def __post_init__(self) -> None:
-        for name in ("gradients", "sample", "nominal"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def shifts(self, numbers: slice) -> dict[str, Array]:
         """Signed 95 % shift of some numbers by every input that acts on them and could be carried to all of them."""

@@ -6,11 +6,13 @@ Header, source, and a program that holds them against the file's own law. It com
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from importlib.resources import files as resources
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier
 from coeflab.formats.c_program.source import law_of, numbers, remark, source
@@ -23,72 +25,14 @@ from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
-RESERVED = frozenset(
-    [
-        "auto",
-        "unit",  # unit.c of an FMU
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-        "bool",
-        "class",
-        "new",
-        "delete",
-        "this",
-        "true",
-        "false",
-        "and",
-        "or",
-        "not",
-        "xor",
-        "namespace",
-        "template",
-        "typename",
-        "using",
-        "public",
-        "private",
-        "protected",
-        "virtual",
-        "operator",
-        "friend",
-        "try",
-        "catch",
-        "throw",
-        "main",
-        "math",
-        "check",
-    ]
+# Words of C and C++, names of the files beside it, and unit.c of an FMU.
+_WORDS = (
+    "auto unit break case char const continue default do double else enum extern float for goto if inline int long "
+    "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
+    "bool class new delete this true false and or not xor namespace template typename using public private protected "
+    "virtual operator friend try catch throw main math check"
 )
+RESERVED = frozenset(_WORDS.split())
 CHECKED = 24  # states of the check program
 LONGEST_STEP = 40
 
@@ -202,9 +146,16 @@ def _check(parameters: ParameterFile, law: FlatLaw, name: str) -> str:
         rows.append("    {" + ", ".join(repr(float(x) + 0.0) for x in selected) + "}")
     scales = [float(np.abs(force[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
     turns = [float(np.abs(rates[~strict][:, g]).max(initial=0.0)) or 1.0 for g in (slice(0, 3), slice(3, 6))]
-    return _CHECK.format(
-        name=name, upper=name.upper(), count=len(nu), rows=",\n".join(rows), scales=", ".join(map(repr, [*scales, *turns])),
-    )  # fmt: skip
+    check = own_text(resources("coeflab.formats.c_program") / "check.c")
+    facts = {
+        "name": name,
+        "count": str(len(nu)),
+        "rows": ",\n".join(rows),
+        "scales": ", ".join(map(repr, [*scales, *turns])),
+    }
+    for key, value in facts.items():
+        check = check.replace(f"@{key}@", value)
+    return check
 
 
 def accelerations(parameters: ParameterFile, law: FlatLaw, force: Array, nu: Array, attitudes: Array) -> Array:
@@ -216,42 +167,6 @@ def accelerations(parameters: ParameterFile, law: FlatLaw, force: Array, nu: Arr
     still = np.column_stack(weighed(law.excess, *law.lever, *axes_in_earth(*attitudes.T)[2::3]))
     total = force + still - rigid_body_force(mass.mass, mass.centre_of_gravity, moments, nu)
     return np.asarray(total @ law.inverse.T)
-
-
-_CHECK = """/* Holds {name}.c against the law of the parameter file: exit code 0 where all agree. */
-#include "{name}.h"
-#include <math.h>
-#include <stdio.h>
-
-/* nu, delta, attitude, force, rates, 1 where a table refuses */
-static const double VECTOR[{count}][26] = {{
-{rows}
-}};
-static const double SCALE[4] = {{{scales}}};
-
-int main(void)
-{{
-    const double none[6] = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}};
-    double worst = 0.0;
-    int k, i, wrong = 0;
-    for (k = 0; k < {count}; k++) {{
-        double force[6], rates[6];
-        const double *x = VECTOR[k];
-        const int refused = {name}_force(x, x + 6, force);
-        const int status = {name}_acceleration(x, x + 9, x + 6, none, rates);
-        if (refused != (int) x[25]) wrong++;
-        for (i = 0; i < 6 && !refused; i++) {{
-            const double away = fabs(force[i] - x[13 + i]) / SCALE[i / 3];
-            const double rate = status ? 0.0 : fabs(rates[i] - x[19 + i]) / SCALE[2 + i / 3];
-            worst = away > worst ? away : worst;
-            worst = rate > worst ? rate : worst;
-            if (!(away <= 1e-12) || !(rate <= 1e-12)) wrong++;
-        }}
-    }}
-    printf("{name}: {count} states, furthest %.1e of the largest, %d wrong\\n", worst, wrong);
-    return wrong != 0;
-}}
-"""
 
 
 def _text(files: Mapping[str, bytes]) -> str:

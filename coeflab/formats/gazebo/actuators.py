@@ -13,14 +13,14 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.wording import one_line
 from coeflab.formats.gazebo.assembly import Assembly, Joint, Pose
 from coeflab.formats.gazebo.lift_drag import LiftDrag, at_hull, read_lift_drag
@@ -37,6 +37,7 @@ WAYS: tuple[tuple[Literal["dr", "ds"], int], ...] = (("dr", 2), ("ds", 1))
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("drift")
 class Actuators:
     """Thrusters and fins about the hull's origin, FRD.
 
@@ -60,9 +61,6 @@ class Actuators:
     read: tuple[Element, ...]
     findings: tuple[Finding, ...]
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "drift", locked(self.drift))
-
 
 def actuators(root: Element, found: Assembly, subject: str, file: Path | str | None = None) -> Actuators:
     """Thrusters and fins that act on a hull or on links held to it.
@@ -81,14 +79,14 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
     fins: list[tuple[LiftDrag, Joint | None]] = []
     unread: list[str] = []
     for plugin in root.iter("plugin"):
-        if _is(plugin, "thruster"):
+        if is_system(plugin, "thruster"):
             result = _thruster(plugin, found, {t.name for t in thrusters}, findings, subject, file)
             if result is None:
                 unread.append(f"Thruster of {one_line(plugin.findtext('joint_name') or 'no joint')}")
             else:
                 thrusters.append(result)
             read.append(plugin)
-        elif _is(plugin, "lift-drag") and not _is(plugin, "advanced"):
+        elif is_system(plugin, "lift-drag") and not is_system(plugin, "advanced"):
             foil = read_lift_drag(plugin, file)
             if foil.link not in found.links:
                 unread.append(f"LiftDrag of {foil.link or 'no link'}")
@@ -97,11 +95,14 @@ def actuators(root: Element, found: Assembly, subject: str, file: Path | str | N
                 fins.append((foil, named or found.joint_of(foil.link)))
             read.append(plugin)
     findings += left_out(subject, "actuators", unread)
-    controls, surfaces, drift, words = _fins(fins, found, subject)
-    return Actuators(tuple(thrusters), surfaces, controls, drift, tuple(read), (*findings, *words))
+    of_fins = fins_by_slopes(fins, found, subject)
+    return Actuators(
+        tuple(thrusters), of_fins.surfaces, of_fins.controls, of_fins.drift, tuple(read), (*findings, *of_fins.findings)
+    )
 
 
-def _is(plugin: Element, what: str) -> bool:
+def is_system(plugin: Element, what: str) -> bool:
+    """Whether a plugin is gz-sim's system of that name, such as ``lift-drag``."""
     name, file = plugin.get("name", "").lower(), plugin.get("filename", "").lower().rpartition("/")[2]
     own = file.removeprefix("lib").startswith(("gz-sim", "ignition-gazebo")) or name.startswith(
         ("gz::sim::systems::", "ignition::gazebo::systems::")
@@ -159,9 +160,25 @@ def _thruster(
                              position=(x, y, z), direction=(a, b, c), curve=curve)  # fmt: skip
 
 
-def _fins(
-    fins: list[tuple[LiftDrag, Joint | None]], found: Assembly, subject: str
-) -> tuple[dict[str, float], tuple[ParameterSurface, ...], Array, list[Finding]]:  # fmt: skip
+class Fins(NamedTuple):
+    """Fins as `Actuators` has them."""
+
+    controls: dict[str, float]
+    surfaces: tuple[ParameterSurface, ...]
+    drift: Array
+    findings: list[Finding]
+
+
+def fins_by_slopes(fins: list[tuple[LiftDrag, Joint | None]], found: Assembly, subject: str) -> Fins:
+    """Foils on joints by their slopes at a straight course.
+
+    Parameters
+    ----------
+    fins : list of (LiftDrag, Joint or None)
+    found : Assembly
+    subject : str
+        Whom the findings are about.
+    """
     controls: dict[str, float] = {}
     limits: dict[Literal["dr", "ds"], tuple[float, float | None]] = {}
     drift, odd, read = np.zeros((6, 6)), [], []
@@ -196,7 +213,7 @@ def _fins(
     if read:
         findings.append(Finding.of("model.fins", subject, Severity.NOTE, names=tuple(dict.fromkeys(read))))
     surfaces = tuple(ParameterSurface(control=c, limit=low, rate=rate) for c, (low, rate) in limits.items())
-    return controls, surfaces, drift, findings
+    return Fins(controls, surfaces, drift, findings)
 
 
 def _slopes(foil: LiftDrag, link: Pose) -> Array:

@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import about_another
 from coeflab.law.transforms import rotation
 
@@ -58,6 +58,7 @@ HERE = Pose(np.eye(3), np.zeros(3))
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("place axis")
 class Joint:
     """A joint in the frame of the hull.
 
@@ -85,10 +86,6 @@ class Joint:
     low: float
     high: float
     rate: float | None
-
-    def __post_init__(self) -> None:
-        for name in ("place", "axis"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 @brief
@@ -309,6 +306,15 @@ class Lumped(NamedTuple):
     names: tuple[str, ...]
 
 
+def own_inertia(inertial: Element, file: Path | str | None = None) -> Array | None:
+    """(3, 3) in the axes of an <inertial>; None without all three moments."""
+    entries = {(i, j): inertial.findtext(f"inertia/i{'xyz'[i]}{'xyz'[j]}") for i in range(3) for j in range(i, 3)}
+    if any(entries[i, i] is None for i in range(3)):
+        return None
+    values = {k: numbers(v or "0", (1,), "inertia", file)[0] for k, v in entries.items()}
+    return np.array([[values[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
+
+
 def lumped(found: Assembly, own: tuple[float, Array, Array | None], file: Path | str | None = None) -> Lumped:
     """All that is held to the hull as one body, moving joints at zero.
 
@@ -329,13 +335,8 @@ def lumped(found: Assembly, own: tuple[float, Array, Array | None], file: Path |
         if mass <= 0.0:
             continue
         at = pose.then(pose_of(inertial, file))
-        entries = {(i, j): inertial.findtext(f"inertia/i{'xyz'[i]}{'xyz'[j]}") for i in range(3) for j in range(i, 3)}
-        inertia = None
-        if all(entries[i, i] is not None for i in range(3)):
-            values = {k: numbers(v or "0", (1,), "inertia", file)[0] for k, v in entries.items()}
-            plain = np.array([[values[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
-            inertia = at.turn @ plain @ at.turn.T
-        parts.append((mass, at.place, inertia))
+        plain = own_inertia(inertial, file)
+        parts.append((mass, at.place, None if plain is None else at.turn @ plain @ at.turn.T))
         names.append(name)
     total = math.fsum(p[0] for p in parts)
     centre = sum((p[0] * p[1] for p in parts), np.zeros(3)) / total

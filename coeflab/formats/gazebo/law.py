@@ -17,7 +17,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.systems import GZ_SIM, System, system_of
 from coeflab.law.rigid_body import momentum_force
 from coeflab.law.transforms import rotation
@@ -33,6 +33,7 @@ DENSITIES = ("water_density", "waterDensity", "uniform_fluid_density", "default_
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("linear signed absolute plugin_mass fluid_mass centre")
 class GzLink:
     """One link and its Hydrodynamics plugin.
 
@@ -80,10 +81,6 @@ class GzLink:
     resistance: float = 0.0
     system: System = GZ_SIM
     missing: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for name in ("linear", "signed", "absolute", "plugin_mass", "fluid_mass", "centre"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def force(self, state: Array) -> Array:
         """Force and moment (n, 6) in steady motion without current, for velocities (n, 6) of the link's origin.

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.assembly import Pose
 from coeflab.law.transforms import turned_about
 
@@ -27,6 +27,7 @@ DEFAULTS = {
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("cp forward upward")
 class LiftDrag:
     """One foil, in the frame of its link.
 
@@ -47,10 +48,6 @@ class LiftDrag:
     upward: Array
     reversible: bool
     radial: bool
-
-    def __post_init__(self) -> None:
-        for name in ("cp", "forward", "upward"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def wrench(self, velocity: Array, rates: Array, angle: Array | float = 0.0) -> Array:
         """Force and moment (..., 6) about the link's origin in the link's frame, for its velocity and rates (..., 3) there.

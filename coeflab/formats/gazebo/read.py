@@ -24,8 +24,18 @@ from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
+from coeflab.formats.gazebo.actuator_checks import actuator_checks
 from coeflab.formats.gazebo.actuators import actuators
-from coeflab.formats.gazebo.assembly import MOVING, Assembly, Lumped, assembly, collision_box, displaced_by, lumped
+from coeflab.formats.gazebo.assembly import (
+    MOVING,
+    Assembly,
+    Lumped,
+    assembly,
+    collision_box,
+    displaced_by,
+    lumped,
+    own_inertia,
+)
 from coeflab.formats.gazebo.law import (
     DENSITIES,
     FORCES,
@@ -40,7 +50,8 @@ from coeflab.formats.gazebo.law import (
 from coeflab.formats.gazebo.systems import GZ_SIM
 from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import MOST, left_out, other_plugins, unread_tags
-from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
+from coeflab.law.water import ROUND_DENSITY
 from coeflab.vehicle.imported_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
@@ -52,7 +63,6 @@ reads = "SDF with the Hydrodynamics plugin"
 signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> positive."
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
-FRESH = 1000.0
 TURN, FREE = 2.0 * math.pi + 1e-3, 1e6  # rad; limits of joints that turn freely are written as huge numbers
 OF_BOX = (0.5, 2.5, 4.5)  # a cylinder has 1.5 times the water of its ellipsoid, a box 2
 
@@ -230,6 +240,7 @@ def examine(path: Path) -> tuple[Check, ...]:
     link = read_gz_link(root, path)
     own = link.plugin_mass if not link.disable_added_mass else np.zeros((6, 6))
     out = [*_units(root, link, path), *_angles(root, link, path), *_of_box(root, link, path)]
+    out += [*_links(root, link, path), *actuator_checks(root, path)]
     if np.any(link.fluid_mass) and np.any(own):
         out.append(_found(Severity.FAIL, "<fluid_added_mass>", "<fluid_added_mass> and <xDotU> ...", "one of the two",
                           "Added mass counts twice. Remove the plugin's."))  # fmt: skip
@@ -246,6 +257,29 @@ def examine(path: Path) -> tuple[Check, ...]:
         out.append(_found(Severity.WARN, "<mass>", f"added mass {heaviest:g} kg, link {link.mass:g} kg", "added mass below the link's",
                           "The plugin integrates it explicitly, which is unstable. Use <fluid_added_mass>."))  # fmt: skip
     return tuple(out)
+
+
+def _links(root: Element, link: GzLink, path: Path) -> list[Check]:
+    """The link that the plugin acts on, and moments of inertia of each that no body has; the whole may still have some."""
+    held = assembly(root, link.link.rpartition("::")[2], path)
+    out = []
+    if held.hull not in held.elements and held.elements and root.find(".//include") is None:
+        out.append(
+            Finding.of(
+                "model.no_link",
+                one_line(held.hull)[:100],
+                Severity.FAIL,
+                names=tuple(map(one_line, held.elements))[:MOST],
+            )
+        )
+    for name in held.links:
+        inertial = held.elements[name].find("inertial") if name in held.elements else None
+        matrix = None if inertial is None else own_inertia(inertial, path)
+        if inertial is not None and matrix is not None:
+            mass = numbers(inertial.findtext("mass") or "0", (1,), f"mass of {name}", path)[0]
+            if doubt := inertia_doubt(mass, np.zeros(3), matrix):
+                out.append(Finding.of("model.no_body", one_line(name)[:100], Severity.WARN, why=doubt))
+    return [as_check("gazebo", f) for f in out]
 
 
 def _angles(root: Element, link: GzLink, path: Path) -> list[Check]:
@@ -275,7 +309,7 @@ def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
     if box is None or not np.all(box > 0.0):
         return []
     own = np.diag(_added_mass(link))
-    due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or FRESH))
+    due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or ROUND_DENSITY))
     hull = held.elements.get(held.hull)
     boxed = hull is not None and hull.find("collision/geometry/box") is not None
     low, high = OF_BOX[0], OF_BOX[2 if boxed else 1]
@@ -306,7 +340,11 @@ def _units(root: Element, link: GzLink, path: Path) -> list[Check]:
         if len((element.text or "").split()) == 3:
             value = float(np.linalg.norm(numbers(element.text, (3,), "gravity", path)))
             out += gravity("gazebo", value, "<gravity>")
-    held, density = assembly(root, link.link.rpartition("::")[2], path), link.density or FRESH
+            if (upward := numbers(element.text, (3,), "gravity", path)[2]) > 0.0:
+                out.append(
+                    as_check("gazebo", Finding.of("model.gravity_up", "<gravity>", Severity.FAIL, statistic=upward))
+                )
+    held, density = assembly(root, link.link.rpartition("::")[2], path), link.density or ROUND_DENSITY
     volume = displaced_by(held, path).volume
     # A collision is often a rough box: only the ratios of units are told by it.
     if link.mass and link.mass > 0.0 and imperial(density * volume / link.mass):

@@ -56,93 +56,11 @@ _HEADINGS = {
     "potential": "Primed products of the ideal fluid, -C_A(nu) nu, that no coefficient above covers",
 }
 _VECTOR = ("rudder (rad)", "stern plane (rad)", "bow plane (rad)", "thrust (N)")
-_TURNED = '''
-    def turned(self, before, order, sampleTime):
-        """What follows an order from what was before: angles at their rates (rad/s) within limits (rad), thrusters by their lags (s)."""
-        out = np.array(order, float)
-        for k, lag in {lags!r}.items():
-            out[k] += (before[k] - out[k]) * math.exp(-sampleTime / lag)
-        for k, (limit, rate) in enumerate({angles!r}):
-            out[k] = max(-limit, min(limit, max(before[k] - rate * sampleTime, min(before[k] + rate * sampleTime, out[k]))))
-        return out
-'''
-_HEAD = '''
-import math
-
-import numpy as np
-
-GRAVITY = {gravity!r}  # m/s^2
 
 
-class {name}:
-    """Vehicle in steady hydrodynamics of a coefficient file.
-
-    {name}()
-        step inputs: the thrust that balances the resistance at U0, no control angles
-    {name}('stepInput', r_z, r_psi, V_current, beta_current)
-        current of V_current (m/s) towards beta_current (deg); r_z and r_psi are not used
-
-    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point. Without m dynamics() does not run; a rotation
-    whose moment is None is held. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
-    z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
-    weight and buoyancy equal.
-
-    u_control = [ {vector} ], followed at once{kept}.{controls}
-    """
-
-    def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
-                 m={m!r}, Ix={moments[0]!r}, Iy={moments[1]!r}, Iz={moments[2]!r}, products={products!r},
-                 r_bg={centre!r}, r_bb={buoyancy!r}, volume={volume!r}):
-        self.controlMode = "stepInput"
-        self.controlDescription = "Step inputs for thrust and control angles"
-        self.ref_z, self.ref_psi = r_z, r_psi
-        self.V_c, self.beta_c = V_current, math.radians(beta_current)
-        self.m, self.Ix, self.Iy, self.Iz, self.products = m, Ix, Iy, Iz, products
-        self.r_bg = np.array(r_bg, float)
-        self.r_bb = self.r_bg if r_bb is None else np.array(r_bb, float)
-        self.volume = volume
-        self.controls = ["Rudder (deg)", "Stern plane (deg)", "Bow plane (deg)", "Thrust (N)"{labels}]
-        self.dimU = len(self.controls)
-        self.u_actual = np.zeros(self.dimU)
-'''
-_TAIL = '''
-    def dynamics(self, eta, nu, u_actual, u_control, sampleTime):
-        """[nu, u_actual] = dynamics(eta, nu, u_actual, u_control, sampleTime): one step by Euler's method."""
-        if self.m is None:
-            raise ValueError("the coefficient file does not state m; pass it to the constructor")
-        moments = [self.Ix, self.Iy, self.Iz]
-        free = [0, 1, 2] + [3 + k for k in range(3) if moments[k] is not None]
-        Ix, Iy, Iz = [x or 0.0 for x in moments]
-        S = np.array([[0, -self.r_bg[2], self.r_bg[1]], [self.r_bg[2], 0, -self.r_bg[0]],
-                      [-self.r_bg[1], self.r_bg[0], 0]], float)
-        Ixy, Ixz, Iyz = self.products
-        MRB = np.zeros((6, 6))
-        MRB[:3, :3], MRB[:3, 3:], MRB[3:, :3] = self.m * np.eye(3), -self.m * S, self.m * S
-        MRB[3:, 3:] = [[Ix, Ixy, Ixz], [Ixy, Iy, Iyz], [Ixz, Iyz, Iz]]
-
-        u_c = self.V_c * math.cos(self.beta_c - eta[5])
-        v_c = self.V_c * math.sin(self.beta_c - eta[5])
-        Dnu_c = np.array([nu[5] * v_c, -nu[5] * u_c, 0, 0, 0, 0], float)
-        nu_r = nu - np.array([u_c, v_c, 0, 0, 0, 0], float)
-
-        momentum = MRB @ nu_r
-        CRB_nu = np.concatenate([np.cross(nu_r[3:], momentum[:3]),
-                                 np.cross(nu_r[3:], momentum[3:]) + np.cross(nu_r[:3], momentum[:3])])
-        down = np.array([-math.sin(eta[4]), math.cos(eta[4]) * math.sin(eta[3]), math.cos(eta[4]) * math.cos(eta[3])])
-        tau = self.hydrodynamics(nu_r, u_actual[:3])
-        tau[0] += u_actual[3]@DRIVEN@
-        weight = self.m * GRAVITY
-        buoyancy = weight if self.volume is None else self.rho * GRAVITY * self.volume
-        tau[:3] += (weight - buoyancy) * down
-        tau[3:] += np.cross(weight * self.r_bg - buoyancy * self.r_bb, down)
-        nu_dot = Dnu_c
-        nu_dot[free] += np.linalg.solve((MRB + self.MA)[np.ix_(free, free)], (tau - CRB_nu)[free])
-        return nu + sampleTime * nu_dot, @ACTUAL@
-
-    def stepInput(self, t):
-        """The thrust that balances the resistance at U0, and no control angles."""
-        return np.array([0.0, 0.0, 0.0, -self.hydrodynamics(self.nu_0)[0]@ZEROS@], float)
-'''
+def _own(name: str) -> str:
+    """A part of the class file."""
+    return own_text(resources("coeflab.formats.python_vehicle_simulator") / f"{name}.py.txt")
 
 
 def _place(group: str, name: str) -> str:
@@ -165,7 +83,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
         f"from: {one_line(p.reference_point.datum)}",
         *(f"# {words}" for words in in_header(p, tables=True)),
-        _HEAD.format(
+        _own("head").format(
             name=name,
             m=None if mass is None else mass.mass,
             moments=_moments(parameters),
@@ -211,19 +129,18 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         lines += [f"            {t!r}," for t in tables] + ["        ]"]
     angles = [(largest.get(c, UNLIMITED), turning.get(c, UNLIMITED)) for c in CONTROLS]
     tail = (
-        _TAIL.replace(
-            "@DRIVEN@", "\n        tau += driven(self.thrusters, self.segments, u_actual[4:])" if commands else ""
-        )
+        _own("tail")
+        .replace("@DRIVEN@", "\n        tau += driven(self.thrusters, self.segments, u_actual[4:])" if commands else "")
         .replace("@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if kept else "np.array(u_control, float)")
         .replace("@ZEROS@", ", 0.0" * len(commands))
     )
     lines += [*_added_mass(accelerations), *_force(terms, bool(tables), largest), tail.rstrip()]
     if kept:
-        lines.append(_TURNED.format(angles=angles, lags=lags).rstrip())
+        lines.append(_own("turned").format(angles=angles, lags=lags).rstrip())
     if commands:
-        lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "driven.py.txt").rstrip())
+        lines.append(_own("driven").rstrip())
     if tables:
-        lines.append(own_text(resources("coeflab.formats.python_vehicle_simulator") / "tables.py.txt").rstrip())
+        lines.append(_own("tables").rstrip())
     return {f"{name}.py": ("\n".join(lines) + "\n").encode()}
 
 

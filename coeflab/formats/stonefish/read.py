@@ -1,7 +1,7 @@
 """Stonefish scenarios (.scn): a robot's rigid body, what it displaces, and its thrusters, as far as the text states them.
 
 Stonefish makes drag, added mass and the volume of meshes from their surfaces (SolidEntity.cpp), so that a scenario holds no force law. Body
-axes are x forward, y starboard, z down. Thrust is K_T rho D^4 n|n| along +x of the actuator, n in 1/s (Thruster.cpp, UpdateThruster).
+axes are x forward, y starboard, z down.
 """
 
 from __future__ import annotations
@@ -25,11 +25,12 @@ from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
 from coeflab.formats.imported_file import Stated, imported_file
 from coeflab.formats.left_out import left_out
+from coeflab.formats.stonefish.thrusters import thrusters_of
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.transforms import rotation
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterHydrostatics, ParameterThruster
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 
 summary = (
     "Stonefish .scn: mass, inertia, volume of plain shapes and thrusters of one robot; its forces come from meshes"
@@ -78,18 +79,18 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
     parts = [] if base is None else [p for p in base.iter() if p.tag in PARTS] or [base]
     findings: list[Finding] = []
     mass = _mass(parts, name, findings, path)
-    thrusters, unread = _thrusters(robot, rho, path)
+    driven = thrusters_of(robot, rho, name, path)
     links = [
         e.get("name", "") for e in robot.iter("link") if e.find("physical") is not None or e.find("mass") is not None
     ]
     findings += [
         *left_out(name, "surfaces", [f"{p.get('type', '')} {p.get('name', '')}".strip() for p in parts if p.get("physics") in ("submerged", "floating")]),
-        *left_out(name, "actuators", unread),
+        *driven.findings,
         *left_out(name, "masses", links),
     ]  # fmt: skip
     result = Stated(
         name=name, body=name, scaling=Scaling(1.0, "1 m"), conditions=Conditions(rho, 1.0), coefficients={},
-        datum=Datum("origin of the robot"), mass=mass, hydrostatics=_afloat(parts, name, findings, path), thrusters=thrusters,
+        datum=Datum("origin of the robot"), mass=mass, hydrostatics=_afloat(parts, name, findings, path), thrusters=driven.thrusters,
         notes=("lengths made dimensionless by 1 m: the file states none", "axes x forward, y starboard, z down, as in the file"),
         findings=tuple(findings),
     )  # fmt: skip
@@ -184,47 +185,3 @@ def _afloat(parts: list[Element], name: str, findings: list[Finding], path: Path
         sum((s * _placed(p, path)[1] for p, s in zip(buoyant, sizes, strict=True) if s), np.zeros(3)) / whole
     ).tolist()
     return ParameterHydrostatics(volume=whole, centre_of_buoyancy=(x, y, z))
-
-
-def _thrusters(robot: Element, density: float, path: Path) -> tuple[tuple[ParameterThruster, ...], list[str]]:
-    """Thrusters with a quadratic law, and the other actuators by name."""
-    out: list[ParameterThruster] = []
-    unread = []
-    for actuator in robot.iter("actuator"):
-        name = one_line(actuator.get("name", "actuator"))[:100]
-        specs, propeller, model = actuator.find("specs"), actuator.find("propeller"), actuator.find("thrust_model")
-        value = None
-        if specs is not None and specs.get("thrust_coeff") is not None:
-            value = specs.get("thrust_coeff")
-        elif model is not None and model.find("thrust_coeff") is not None:
-            value = model.find("thrust_coeff").get("value")  # type: ignore[union-attr]
-        fastest = None if specs is None else specs.get("max_rpm")
-        reversible = any(
-            e is not None and e.get(key, plain).strip().lower() != plain
-            for e, key, plain in (
-                (specs, "inverted", "false"),
-                (propeller, "right", "true"),
-                (specs, "thrust_coeff_backward", ""),
-            )
-        )
-        if actuator.get("type") != "thruster" or propeller is None or value is None or fastest is None or reversible:
-            unread.append(f"{actuator.get('type', 'actuator')} {name}")
-            continue
-        per = numbers(value, (1,), "thrust_coeff", path)[0] * density * _one(propeller, "diameter", path) ** 4 / 3600.0
-        most = abs(numbers(fastest, (1,), "max_rpm", path)[0])
-        if not (per > 0.0 and most > 0.0) or name in {t.name for t in out}:
-            unread.append(f"thruster {name}")
-            continue
-        turn, at = _frame(actuator.find("origin"), path)
-        x, y, z = at.tolist()
-        along = turn[:, 0] / np.linalg.norm(turn[:, 0]) + 0.0
-        segments = (
-            CurveSegment(low=-most, high=0.0, coefficients=(0.0, 0.0, -per)), CurveSegment(low=0.0, high=most, coefficients=(0.0, 0.0, per)),
-        )  # fmt: skip
-        out.append(
-            ParameterThruster(
-                name=name, position=(x, y, z), direction=(float(along[0]), float(along[1]), float(along[2])),
-                curve=ParameterCurve(command="speed", unit="rpm", segments=segments),
-            )
-        )  # fmt: skip
-    return tuple(out), unread

@@ -23,7 +23,7 @@ from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 from coeflab.core.text.xml import numbers
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.law import symmetric
 from coeflab.formats.left_out import SILENT
 from coeflab.law.rigid_body import momentum_force
@@ -87,7 +87,7 @@ class Xacro(Mapping[str, float]):
         if expression is None:
             return self._known(self._arguments, argument or "")
         name = expression.strip()
-        if _NAME.fullmatch(name):
+        if _NAME.fullmatch(name) and (name != "pi" or name in self._raw):
             return self._known(self._raw, name)
         try:
             return repr(float(evaluate(name.replace("**", "^"), self, _FUNCTIONS)))
@@ -143,6 +143,7 @@ MATRICES = ("added_mass", "linear_damping", "linear_damping_forward_speed", "qua
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("added_mass linear forward quadratic centre reference")
 class FossenLink:
     """One link, in FRD about its origin.
 
@@ -175,10 +176,6 @@ class FossenLink:
     volume: float | None
     length: float | None
     inertia: Array | None
-
-    def __post_init__(self) -> None:
-        for name in ("added_mass", "linear", "forward", "quadratic", "centre", "reference"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def force(self, nu: Array) -> Array:
         """Force and moment (n, 6) about the link's origin in steady motion without current, for its velocities (n, 6)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -14,8 +15,10 @@ from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
+from coeflab.formats.gazebo.assembly import assembly
 from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
+from coeflab.formats.uuv_simulator.fins import fins_of
 from coeflab.formats.uuv_simulator.law import (
     FRD,
     MATRICES,
@@ -26,6 +29,7 @@ from coeflab.formats.uuv_simulator.law import (
     read_fossen_link,
     unfolded,
 )
+from coeflab.formats.uuv_simulator.thrusters import Driven, plain, thrusters_of
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.imported_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -83,11 +87,19 @@ def read(
         )
     name = root.get("name", "") or link.link
     afloat, not_afloat = _afloat(root, link, rho, name, path)
+    x = Xacro(root, path)
+    links = assembly(plain(root, x), link.link, path) if root.find(".//joint") is not None else None
+    driven = thrusters_of(root, links, name, x, path)
+    fins, of_fins = fins_of(root, links, name, x, path)
+    driven = driven._replace(plugins=(*driven.plugins, *of_fins), findings=(*driven.findings, *fins.findings))
+    form = _form(link)
+    absolute = form.absolute.copy()
+    absolute[:, :, 0] += fins.drift
     stated = LinkModel(
         model=root.get("name", ""),
         link=link.link,
         density=rho,
-        form=_form(link),
+        form=replace(form, absolute=absolute),
         added=np.einsum("il,ljk->ijk", link.arm, momentum_quadratics(link.added_mass)),
         matrix=link.arm @ link.added_mass,
         mass=link.mass,
@@ -96,8 +108,11 @@ def read(
         length=link.length,
         length_name="length of the box",
         notes=tuple(notes),
-        findings=(*_left_out(root, link), *not_afloat),
+        findings=(*_left_out(root, link, driven), *not_afloat),
         hydrostatics=afloat,
+        thrusters=driven.thrusters,
+        surfaces=fins.surfaces,
+        controls=fins.controls,
     )
     return link_file(stated, path, citations, length, speed)
 
@@ -127,24 +142,28 @@ PLUGIN = re.compile(r"(lib)?(uuv|dave)\w*underwater_object\w*(\.so)?", re.IGNORE
 CURRENT = ("flow_velocity_topic", "use_global_current", "default_current")
 
 
-def _left_out(root: Element, link: FossenLink) -> tuple[Finding, ...]:
+def _left_out(root: Element, link: FossenLink, driven: Driven) -> tuple[Finding, ...]:
     """What the file says of the vehicle's motion and a parameter file does not hold."""
     name = root.get("name", "") or link.link
     links = [e for e in root.iter("link") if e.get("name", "") == link.link]
     model = next(m for e in links if (m := e.find("hydrodynamic_model")) is not None)
     plugins = tuple(root.iter("plugin"))
     own = next((p for p in plugins if model in p.iter("hydrodynamic_model")), model)
+    others = [p for p in plugins if not any(p is q for q in driven.plugins)]
+    turned = {(p.findtext(tag) or "").strip() for p in driven.plugins for tag in ("jointName", "joint_name")}
+    joints = [j.get("name", "") for j in root.iter("joint") if j.get("type", "fixed") != "fixed"]
     ignored = link.quadratic - np.diag(np.diag(link.quadratic))
     off = [f"<quadratic_damping> row {i + 1} column {j + 1}" for i, j in np.argwhere(ignored)]
     out = [
         *left_out(name, "terms", unread_tags(model, (*MATRICES, "type"))),
         *left_out(name, "ignored", off),
         *left_out(name, "environment", [f"<{t}>" for t in CURRENT if own.find(t) is not None]),
-        *other_plugins(name, plugins, own),
+        *other_plugins(name, others, own),
+        *driven.findings,
         *other_masses(name, root.iter("link"), link.link),
         *left_out(name, "macros", unfolded(root)),
         *left_out(name, "includes", [e.get("filename", "").rpartition("/")[2] for e in root.iter(f"{SPACE}include")]),
-        *left_out(name, "joints", [j.get("name", "") for j in root.iter("joint") if j.get("type", "fixed") != "fixed"]),
+        *left_out(name, "joints", [j for j in joints if j not in turned]),
     ]
     file = own.get("filename", "")
     if not PLUGIN.fullmatch(file.rpartition("/")[2]):

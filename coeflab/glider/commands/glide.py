@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.glider.flight import Flown
@@ -22,30 +22,16 @@ def gliders(incomplete: str) -> list[str]:
     return complete.or_paths(("thauv", "slocum"), incomplete)
 
 
+@options.worded
 def command(
-    glider: str = typer.Argument(
-        ...,
-        metavar="GLIDER",
-        autocompletion=gliders,
-        help="A glider file, a folder of them, or a shipped one: thauv, slocum.",
-    ),
-    cycles: int = typer.Option(
-        1, "--cycles", metavar="COUNT", min=1, max=1000, help="How often the phases of the file are flown."
-    ),
-    roller: float = typer.Option(
-        0.0,
-        "--roller",
-        metavar="DEGREES",
-        min=-180.0,
-        max=180.0,
-        help="Turn the roller in every phase, to starboard above zero: spirals in place of straight glides.",
-    ),
-    record: float = typer.Option(1.0, "--record", metavar="SECONDS", help="Time between rows, s."),
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder for CSV and SVG; without it nothing is written."
-    ),
-    basis: bool = typer.Option(False, "--basis", help="Say where every number of the glider comes from."),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    glider: str,
+    cycles: int = 1,
+    roller: float = 0.0,
+    record: float = 1.0,
+    out: Path | None = None,
+    basis: bool = False,
+    json: bool = False,
 ) -> None:
     """Show the steady glides of a glider and fly its cycles.
 

@@ -4,51 +4,28 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import typer
-
-from coeflab.cli import complete, show
+from coeflab.cli import options, show
 
 EXAMPLE = "coeflab glider polar --body body.toml --engine 0.5 --net-mass 0.3 --out mine"
 
 
+@options.worded
 def command(
-    campaign: str = typer.Argument(
-        ..., metavar="TABLE", help="Forces X, Z, M over the angle of attack: a table, a campaign or its folder."
-    ),
-    body: str = typer.Option(
-        ...,
-        "--body",
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml with [[mass]] parts, or a shipped body.",
-    ),
-    engine: str = typer.Option(..., "--engine", metavar="MASS", help="Largest net mass either way; bare in kg."),
-    net_mass: str = typer.Option(
-        ..., "--net-mass", metavar="MASS", help="Of the dive, the climb is the opposite; bare in kg."
-    ),
-    engine_at: str = typer.Option(
-        "",
-        "--engine-at",
-        metavar="LENGTH",
-        help="x of the engine from the body's datum; the centre of buoyancy unless given.",
-    ),
-    sliding: str = typer.Option("", "--sliding", metavar="NAME", help="The [[mass]] part that slides along x."),
-    travel: str = typer.Option("0", "--travel", metavar="LENGTH", help="Of it to either side of its place; bare in m."),
-    shift: str = typer.Option(
-        "0", "--shift", metavar="LENGTH", help="Of it in the dive, ahead; the climb is the opposite."
-    ),
-    lasts: str = typer.Option("600", "--lasts", metavar="TIME", help="Of dive and climb each; bare in s."),
-    pitch_damping: str = typer.Option(
-        "", "--pitch-damping", metavar="VALUE", help="N m/(m/s rad/s); estimated from the shape unless given."
-    ),
-    method: str = typer.Option("all", metavar="METHOD", autocompletion=complete.methods, help="Of added mass."),
-    munk: bool = typer.Option(
-        False, "--without-munk", help="The table's M does not hold the Munk moment; that of CFD or a tank does."
-    ),
-    out: Path | None = typer.Option(
-        None, metavar="FOLDER", help="Folder for NAME.glider.toml; without it nothing is written."
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    campaign: str,
+    body: str,
+    engine: str,
+    net_mass: str,
+    engine_at: str = "",
+    sliding: str = "",
+    travel: str = "0",
+    shift: str = "0",
+    lasts: str = "600",
+    pitch_damping: str = "",
+    method: str = "all",
+    munk: bool = False,
+    out: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Make a glider file of a polar and a body, for coeflab glide.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, options, show
+from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check
@@ -18,50 +18,24 @@ if TYPE_CHECKING:
 EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
 
 
+@options.worded
 def command(
-    series: list[Path] = typer.Argument(
-        ...,
-        metavar="SERIES",
-        help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ...; of a bench t, speed, T, Q.",
-    ),
-    params: Path = typer.Option(
-        ...,
-        "--params",
-        metavar="PARAMS",
-        autocompletion=complete.parameters,
-        help="Parameter file: mass, inertia, scaling, and what to compare with.",
-    ),
-    columns: str = typer.Option(
-        "",
-        metavar="NAMES",
-        help='All columns of a file without a header, or under other names: "t [s], x [m], y [m], -psi [deg], -"; u, v, r follow of x, y, psi.',
-    ),
-    thruster: str = typer.Option(
-        "", metavar="NAME", help="A bench test of this thruster: thrust and torque over its command, no motion."
-    ),
-    terms: str = typer.Option(
-        "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."
-    ),
-    weak: bool = typer.Option(
-        True, "--weak/--derivative", help="Averages over windows, or differences for clean series."
-    ),
-    window: str = typer.Option(
-        "",
-        metavar="TIME",
-        help='Half of a window, such as "2 s"; default three quarters of L/V. Of a bench: within it a command is steady.',
-    ),
-    asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
-    fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
-    accelerations: str = options.ACCELERATIONS,
-    optimizer: str = typer.Option(
-        "stlsq", metavar="NAME", autocompletion=complete.optimizers, help="stlsq or sr3 of pysindy."
-    ),
-    resamples: int = typer.Option(200, metavar="COUNT", help="How often stretches of the series are drawn."),
-    seed: int = typer.Option(1, metavar="NUMBER", help="Of the draws."),
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder for CSV, JSON and SVG; without it nothing is written."
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    series: list[Path],
+    params: Path,
+    columns: str = "",
+    thruster: str = "",
+    terms: str = "",
+    weak: bool = True,
+    window: str = "",
+    asymmetric: bool = False,
+    fit_added_mass: bool = False,
+    accelerations: str = "measured",
+    optimizer: str = "stlsq",
+    resamples: int = 200,
+    seed: int = 1,
+    out: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Identify coefficients from time series of motions.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from coeflab.identify.tune import Tuned
@@ -22,17 +22,12 @@ def tunings(incomplete: str) -> list[str]:
     return complete.or_paths(complete.shipped_with("cfd_data", "tune.toml"), incomplete)
 
 
+@options.worded
 def command(
-    plan: Path = typer.Argument(
-        ...,
-        metavar="PLAN",
-        autocompletion=tunings,
-        help="A TOML file: [tune], [measured] and one [[free]] a parameter.",
-    ),
-    out: Path | None = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder for the files; default reports/NAME."
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+    *,
+    plan: Path,
+    out: Path | None = None,
+    json: bool = False,
 ) -> None:
     """Tune numbers of a parameter file to measured steady turns.
 

@@ -11,30 +11,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.types import Array, brief
+from coeflab.motion import manoeuvre
 from coeflab.motion.dynamics import Dynamics, rates_of_one
-from coeflab.motion.manoeuvre import (
-    NEAR,
-    NOT_FINITE,
-    STEP_TOO_SMALL,
-    TOO_FAST,
-    Marching,
-    Orders,
-    blank,
-    ramp,
-    reach_time,
-    watched_value,
-)
 
 
 def march_adaptive(
     dynamics: Dynamics,
-    orders: Orders,
+    orders: manoeuvre.Orders,
     start: Array,
     interval: float,
     fastest: float = 1e3,
     tolerance: float = 1e-9,
     method: str = "LSODA",
-) -> Marching:
+) -> manoeuvre.Marching:
     """Move one vehicle.
 
     Parameters
@@ -51,7 +40,7 @@ def march_adaptive(
     method : str
         A solver class of `scipy.integrate`.
     """
-    out = blank(1, orders, interval, 1)
+    out = manoeuvre.blank(1, orders, interval, 1)
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
     spun = None if orders.late is None else orders.late.begin[:1]
@@ -96,7 +85,7 @@ class _Phase:
     """One phase and the orders that stand in it."""
 
     dynamics: Dynamics
-    orders: Orders
+    orders: manoeuvre.Orders
     number: int
     begin: Array
     since: float
@@ -106,7 +95,7 @@ class _Phase:
     def angles(self, time: float) -> Array:
         """(3, 1) angles of the control surfaces."""
         target = self.orders.angles[self.number][:, None]
-        return ramp(self.begin[:, None], target, self.orders.rate, np.array([time - self.since]))
+        return manoeuvre.ramp(self.begin[:, None], target, self.orders.rate, np.array([time - self.since]))
 
     def spinning(self, time: float) -> Array | None:
         """(1, k) what thrusters with a lag do."""
@@ -124,7 +113,7 @@ class _Phase:
     def pieces(self) -> list[float]:
         """Times after the order at which a control surface stands or a thruster passes a knot, and the end of the phase."""
         target = self.orders.angles[self.number][:, None]
-        reach = reach_time(self.begin[:, None], target, self.orders.rate)[:, 0]
+        reach = manoeuvre.reach_time(self.begin[:, None], target, self.orders.rate)[:, 0]
         if self.orders.late is not None and self.spun is not None:
             reach = np.append(reach, self.orders.late.knots(self.spun, ONE, ONE + self.number)[:, 0])
         longest = float(self.orders.longest[self.number])
@@ -135,13 +124,13 @@ class _Phase:
         watched = int(self.orders.watched[self.number])
         if watched < 0:
             return 1.0
-        here = watched_value(watched, state[:, None])[0]
+        here = manoeuvre.watched_value(watched, state[:, None])[0]
         return float(self.orders.sign[self.number] * (here - self.orders.value[self.number]))
 
     def _level_inside(self, time: float, inside: Callable[[float], Array]) -> float:
         return self.level(inside(time))
 
-    def move(self, at: _At, until: float, out: Marching, tolerance: float, method: str) -> _At:
+    def move(self, at: _At, until: float, out: manoeuvre.Marching, tolerance: float, method: str) -> _At:
         """As far as a time, smooth all the way, or to the event before it."""
         from scipy import integrate
         from scipy.optimize import brentq
@@ -166,7 +155,7 @@ class _Phase:
             while solver.status == "running":
                 solver.step()
                 if solver.status == "failed":
-                    return _At(at.time, at.state, ended=STEP_TOO_SMALL)
+                    return _At(at.time, at.state, ended=manoeuvre.STEP_TOO_SMALL)
                 now, state = float(solver.t), solver.y
                 after = self.level(state) if watched else 1.0
                 met = level < 0.0 <= after
@@ -180,17 +169,17 @@ class _Phase:
                         row += 1
                 u, v, w = state[7:10].tolist()
                 fast = u * u + v * v + w * w > limit
-                at, level = _At(now, state, met, TOO_FAST if fast else 0), after
+                at, level = _At(now, state, met, manoeuvre.TOO_FAST if fast else 0), after
                 if met or fast:
                     break
         except (_NotFiniteError, OverflowError):
-            return _At(at.time, _upright(at.state), ended=NOT_FINITE)
+            return _At(at.time, _upright(at.state), ended=manoeuvre.NOT_FINITE)
         return replace(at, state=_upright(at.state))
 
 
-def _due(out: Marching) -> list[float]:
+def _due(out: manoeuvre.Marching) -> list[float]:
     """Times from which on a step holds a record, a rounding early, and an end that never comes."""
-    near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
+    near = manoeuvre.NEAR * out.times[-1] / max(len(out.times) - 1, 1)
     return [*(out.times - near).tolist(), math.inf]
 
 

@@ -9,14 +9,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, parse_options
-from coeflab.motion.approach import (
-    along,
-    judged,
-    propulsion,
-    turning_sense,
-    undetermined,
-    within_limit,
-)
+from coeflab.motion import approach
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
@@ -52,9 +45,11 @@ class Options:
 def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """Starboard turn, amidships, port turn, amidships."""
     o = parse_options(Options, options, NAME)
-    nu = along(vehicle, o.speed)
-    angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, words = propulsion(vehicle, float(nu[0]))
+    nu = approach.along(vehicle, o.speed)
+    angle = approach.within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * approach.turning_sense(
+        vehicle, "dr", "r", float(nu[0])
+    )
+    orders, words = approach.propulsion(vehicle, float(nu[0]))
     length = vehicle.length / float(nu[0])
     turn, after = o.turn * length, o.after * length
     phases = (
@@ -80,6 +75,8 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
             rate = settled(t, r, 0.2 * float(t[-1] - t[0]), SETTLED * top + 1e-12)
         status, why = ("ok", "") if rate is not None else ("not reached", "the rate still changes in the last fifth")
         text = f"steady yaw rate, rudder amidships after a turn to {side} (IMO MSC/Circ.1053)"
-        out.append(judged(Figure(f"residual yaw rate, {side}", rate, "rad/s", text, status, why), trajectory, end))
+        out.append(
+            approach.judged(Figure(f"residual yaw rate, {side}", rate, "rad/s", text, status, why), trajectory, end)
+        )
     lacking = unlimited(vehicle, "r", float(trajectory.velocity[0, 0]))
-    return tuple(undetermined(f, lacking) for f in out)
+    return tuple(approach.undetermined(f, lacking) for f in out)

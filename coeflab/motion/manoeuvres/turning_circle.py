@@ -9,15 +9,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, one_of, orders, parse_options
-from coeflab.motion.approach import (
-    along,
-    judged,
-    propulsion,
-    thruster_orders,
-    turning_sense,
-    undetermined,
-    within_limit,
-)
+from coeflab.motion import approach
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, settled, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
@@ -63,16 +55,16 @@ class Options:
 def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """One phase, until the turns are made."""
     o = parse_options(Options, options, NAME)
-    nu = along(vehicle, o.speed)
+    nu = approach.along(vehicle, o.speed)
     sign = 1.0 if o.side == "starboard" else -1.0
     done = Until("turned", True, 2.0 * np.pi * o.turns)
     if o.commands:
-        orders = thruster_orders(vehicle, o.commands)
+        orders = approach.thruster_orders(vehicle, o.commands)
         phase = Phase("turning", orders, o.longest, done)
         return Manoeuvre(NAME, (phase,), nu, statements=("thrusters as commanded from time zero",))
-    angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder")
-    order = angle * sign * turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, words = propulsion(vehicle, float(nu[0]))
+    angle = approach.within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder")
+    order = angle * sign * approach.turning_sense(vehicle, "dr", "r", float(nu[0]))
+    orders, words = approach.propulsion(vehicle, float(nu[0]))
     rudder = f"rudder {np.degrees(order):+.4g} deg turns to {o.side} by the coefficients of the file"
     return Manoeuvre(
         NAME, (Phase("turning", {"dr": order}, o.longest, done),), nu, orders=orders, statements=(words, rudder)
@@ -98,8 +90,8 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         unit = "s" if name.startswith("time") else "m"
         status = "ok" if value is not None else "not reached"
         why = "" if value is not None else f"heading changed by {np.degrees(heading[-1]):.3g} deg in {t[-1]:g} s"
-        out.append(judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking))
-    return (*out, *(undetermined(f, lacking) for f in _steady(trajectory, vehicle)))
+        out.append(approach.judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking))
+    return (*out, *(approach.undetermined(f, lacking) for f in _steady(trajectory, vehicle)))
 
 
 def swinging(trajectory: Trajectory, vehicle: Vehicle) -> str:
@@ -140,6 +132,6 @@ def _steady(trajectory: Trajectory, vehicle: Vehicle) -> list[Figure]:
         ("speed in turn / approach speed", "1", "once it is steady"),
     )
     return [
-        judged(Figure(n, v, u, d, status, why), trajectory, float(t[-1]))
+        approach.judged(Figure(n, v, u, d, status, why), trajectory, float(t[-1]))
         for (n, u, d), v in zip(rows, values, strict=True)
     ]

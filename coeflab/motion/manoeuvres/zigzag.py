@@ -11,16 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, orders, parse_options
-from coeflab.motion.approach import (
-    along,
-    judged,
-    mirrored,
-    propulsion,
-    thruster_orders,
-    turning_sense,
-    within_limit,
-    yaw_acceleration,
-)
+from coeflab.motion import approach
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
@@ -69,15 +60,15 @@ class Options:
 def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """One phase a leg, first to starboard."""
     o = parse_options(Options, options, NAME)
-    nu = along(vehicle, o.speed)
+    nu = approach.along(vehicle, o.speed)
     if o.commands:
         standing: dict[str, float] = {}
         sides, words = _by_thrusters(vehicle, o.commands, nu)
     else:
-        angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(
+        angle = approach.within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * approach.turning_sense(
             vehicle, "dr", "r", float(nu[0])
         )
-        standing, thrust = propulsion(vehicle, float(nu[0]))
+        standing, thrust = approach.propulsion(vehicle, float(nu[0]))
         sides = {"dr": angle}, {"dr": -angle}
         words = (
             thrust,
@@ -94,14 +85,16 @@ def _by_thrusters(
     vehicle: Vehicle, commands: tuple[str, ...], nu: NDArray[np.float64]
 ) -> tuple[tuple[dict[str, float], dict[str, float]], tuple[str, ...]]:
     """Orders that turn to starboard and to port, and what that means, in words."""
-    given = thruster_orders(vehicle, commands)
-    other = mirrored(vehicle, given)
-    turning = yaw_acceleration(vehicle, mirrored(vehicle, other), nu) - yaw_acceleration(vehicle, other, nu)
+    given = approach.thruster_orders(vehicle, commands)
+    other = approach.mirrored(vehicle, given)
+    turning = approach.yaw_acceleration(vehicle, approach.mirrored(vehicle, other), nu) - approach.yaw_acceleration(
+        vehicle, other, nu
+    )
     if turning == 0.0:
         raise InputError(
             f"{' '.join(commands)}, which turns to neither side", "unequal commands", column=f"{NAME}.commands"
         )
-    sides = (mirrored(vehicle, other), other) if turning > 0.0 else (other, mirrored(vehicle, other))
+    sides = (approach.mirrored(vehicle, other), other) if turning > 0.0 else (other, approach.mirrored(vehicle, other))
     first = " ".join(f"{name}={value:g}" for name, value in sides[0].items())
     return sides, (f"thrusters instead of a rudder: first {first} (to starboard), then exchanged",)
 
@@ -114,7 +107,7 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
 
     def figure(name: str, value: float | None, unit: str, text: str, when: float | None) -> Figure:
         status, why = ("ok", "") if value is not None else ("not reached", f"not within {t[-1]:g} s")
-        return judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking)
+        return approach.judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking)
 
     first = reached[0]
     distance = None if first is None else value_at(t, trajectory.position[:, 0], first)

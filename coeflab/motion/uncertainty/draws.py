@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.fits.uncertainty.propagation import reaches_zero
 from coeflab.law.force_law import WIND, ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
@@ -35,6 +35,7 @@ UNSTATED = "not varied: no uncertainty is stated"
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("values covariance")
 class Uncertain:
     """What is drawn.
 
@@ -59,10 +60,6 @@ class Uncertain:
     sources: tuple[str, ...]
     held: tuple[str, ...]
     statements: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        for name in ("values", "covariance"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
     def deviation(self) -> Array:

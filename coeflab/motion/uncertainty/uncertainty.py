@@ -14,7 +14,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import MEMBERS
 from coeflab.core.machine import compiles, cores, one_thread, stage
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import in_current, undetermined_at_once
@@ -85,6 +85,7 @@ class Question:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("deviations values")
 class Carried:
     """What came out.
 
@@ -127,10 +128,6 @@ class Carried:
     rows: int
     statements: tuple[str, ...]
     undetermined: str = ""
-
-    def __post_init__(self) -> None:
-        for name in ("deviations", "values"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
     def sample(self, name: str) -> Array:
         """(n,) values of the members that have a figure of the manoeuvre."""

@@ -23,10 +23,13 @@ from coeflab.estimates import Estimates, Water, estimated
 from coeflab.estimates.crossflow import contributions
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import primed
-from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import Acceptance
 from coeflab.study.plan import read_plan
 from coeflab.vehicle.parameter_file import read_parameter_file
 from coeflab.vehicle.reference import Reference, read_references
+
+PAPER = publication("estimates")
 
 FOOT = 0.3048
 LEADING, TRAILING = (13.46990, 0.43004), (14.21661, 0.35659)  # ft aft of the nose, radius: Groves et al., DARPA2WINGS
@@ -40,7 +43,7 @@ INSIDE, WIDE, APART = 0.90, 0.50, 0.25
 
 @brief
 @dataclass(frozen=True, slots=True)
-class Row:
+class Measured:
     """One measured derivative.
 
     Attributes
@@ -109,7 +112,7 @@ def suboff(name: str, with_ring: bool) -> Body:
     return replace(body, outlined=lambda: whole)
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[Measured, ...]:
     """Every measured derivative of configurations 3, 2 and 1, in that order."""
     folder = Path(shipped("cfd_data")) / "suboff"
     plan = read_plan(folder / "plan.toml")
@@ -123,7 +126,7 @@ def rows() -> tuple[Row, ...]:
     for name, result in (("3", bare), ("2", whole), ("1", whole)):
         reference = by_name[f"Roddy configuration {name}"]
         out += [
-            Row(name, s, v, result.coefficients[s], (reference.name, s) not in COPIES)
+            Measured(name, s, v, result.coefficients[s], (reference.name, s) not in COPIES)
             for s, v in _measured(reference).items()
             if s in result.coefficients
         ]
@@ -138,7 +141,7 @@ def _measured(reference: Reference) -> dict[str, float]:
     return found
 
 
-def table(found: tuple[Row, ...]) -> Table:
+def table(found: tuple[Measured, ...]) -> Table:
     """Every derivative, the answer of the validation: 79 columns at most."""
     cells = tuple(
         (r.configuration, primed(r.symbol), f"{r.value:.5f}", f"{r.measured:.5f}", f"{r.ratio:.2f}", f"{100 * r.width:.0f} %",
@@ -149,21 +152,22 @@ def table(found: tuple[Row, ...]) -> Table:
     main = [r for r in counted if r.symbol in MAIN]
     errors = [r.ratio - 1.0 for r in main]
     worst = max(main, key=lambda r: abs(r.ratio - 1.0))
+    width = 100 * np.median([r.width for r in counted])
     notes = (
-        f"{sum(r.inside for r in counted)} of {len(counted)} inside the U95 of the estimate, median U95 {100 * np.median([r.width for r in counted]):.0f} %.",
-        f"Main derivatives: median |error| {100 * np.median(np.abs(errors)):.0f} %, mean signed error {100 * np.mean(errors):+.0f} %, "
-        f"worst {primed(worst.symbol)} of configuration {worst.configuration}, {100 * (worst.ratio - 1.0):+.0f} %.",
-        "Revised twice: the first version had 9 of 15 inside, and which was known (docs/estimates.md). No blind prediction.",
-        goals(found),
-        "Configuration 3: bare hull; 2 and 1: hull, sail, four planes, ring wing 1. copy: alike by symmetry, counts once.",
-    )
+        PAPER.text("inside", inside=sum(r.inside for r in counted), count=len(counted), width=width),
+        PAPER.text(
+            "main", apart=100 * np.median(np.abs(errors)), mean=100 * np.mean(errors), worst=primed(worst.symbol),
+            configuration=worst.configuration, most=100 * (worst.ratio - 1.0),
+        ),
+        PAPER.text("revised"), goals(found), PAPER.text("configurations"),
+    )  # fmt: skip
     headers = ("config", "", "estimate", "measured", "ratio", "U95", "")
     return Table(
         "SUBOFF: estimates from the shape against Roddy's measurements", headers, cells, notes, frozenset({0, 1, 6})
     )
 
 
-def goals(found: tuple[Row, ...]) -> str:
+def goals(found: tuple[Measured, ...]) -> str:
     """What the project asks of the estimates, and whether they reach it; a goal is no measured number and does not count."""
     counted = [r for r in found if r.counts]
     share = sum(r.inside for r in counted) / len(counted)
@@ -185,32 +189,17 @@ def goals(found: tuple[Row, ...]) -> str:
 def acceptance() -> Acceptance:
     """Rows, and what has no verdict; goals are statements."""
     found = rows()
-    counted = [r for r in found if r.counts]
-    derivatives = tuple(
-        Compared(
-            f"configuration {r.configuration}", primed(r.symbol), "1", r.measured, r.value, float(r.found.u95 or 0.0),
-            Basis.REVISED,
-        )
-        for r in counted
-    )  # fmt: skip
-    source = "Roddy (1990), Table 4"
-    return Acceptance(
-        "estimates",
-        "Estimates from the shape against SUBOFF tests",
-        (
-            ComparedTable("derivatives", "Derivatives, allowed: U95 of the estimate", derivatives, source, (
-                "No share or constant uses an error on SUBOFF. The first version had 9 of 15 inside; the methods were revised once "
-                "knowing which (docs/estimates.md): no blind prediction, so none counts as validation.",)),
-            ComparedTable("levers", "Where the drag across the hull acts", levers(), "the centroid of the hull's plane across the stream"),
-        ),
-        (),
-        (*table(found).notes, *_beside()),
-        ("roddy1990", "groves1989", "whicker1958", "pitts1957", "hopkins1951", "allen1951"),
-        shown=(table(found),),
-    )  # fmt: skip
+    derivatives = [
+        Row(f"configuration {r.configuration}", primed(r.symbol), "1", r.measured, r.value, float(r.found.u95 or 0.0))
+        for r in found
+        if r.counts
+    ]
+    answer = table(found)
+    tables = (PAPER.table("derivatives", derivatives), PAPER.table("levers", levers()))
+    return PAPER.acceptance(tables, (*answer.notes, *_beside()), shown=(answer,))
 
 
-def levers() -> tuple[Compared, ...]:
+def levers() -> tuple[Row, ...]:
     """Where the drag across the bare hull acts in a pure sway or heave: at the centroid of its plane across the stream."""
     seen = suboff("suboff_bare_hull", False).outline
     if seen is None:
@@ -222,24 +211,13 @@ def levers() -> tuple[Compared, ...]:
         force = drag(np.eye(6)[along][None, :], {})[0]
         due = float(np.trapezoid(width * hull.x, hull.x) / np.trapezoid(width, hull.x))
         found = float(sign * force[about] / force[along]) if force[along] < 0.0 else None
-        rows.append(
-            Compared(
-                f"bare hull, {what}",
-                "x of the cross-flow drag from the nose",
-                "m",
-                due,
-                found,
-                1e-9,
-                Basis.CONSISTENCY,
-                True,
-            )
-        )
+        rows.append(Row(f"bare hull, {what}", "x of the cross-flow drag from the nose", "m", due, found))
     return tuple(rows)
 
 
 def _beside() -> tuple[str, ...]:
     """Vehicles whose numbers are others' estimates or CFD: no verdict."""
-    words = ["HUUV and THAUV: no verdict; their publications give no shape, and no derivatives of the HUUV."]
+    words = [PAPER.text("no_shape")]
     body = read_body(Path(shipped("geometry")) / "remus100" / "body.toml")
     if body.outline is None:
         return tuple(words)
@@ -253,11 +231,7 @@ def _beside() -> tuple[str, ...]:
         for s, p in pairs.items()
         if printed.get(p) is not None
     ]
-    words.append(
-        "REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins."
-    )
-    words.append(f"REMUS 100: {', '.join(parts)}.")
-    return tuple(words)
+    return (*words, PAPER.text("remus"), f"REMUS 100: {', '.join(parts)}.")
 
 
 def _value(made: Estimates, symbol: str) -> float:

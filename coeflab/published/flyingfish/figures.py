@@ -15,11 +15,14 @@ from coeflab.identify.thruster import BenchTest
 from coeflab.motion.trajectory import Trajectory
 from coeflab.published.flyingfish.model import ROTORS, FlyingFish, Medium
 from coeflab.published.flyingfish.motions import Craft, benches, hop, steady
+from coeflab.published.publication import publication
 from coeflab.report.acceptance import ComparedTable
 from coeflab.report.document import Figure
-from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.laws import Plot, Trace
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
+
+PAPER = publication("flyingfish")
 
 ALONG = "motion of Table 1  [-]"
 FINE = 57
@@ -70,14 +73,7 @@ def _operating_points(nearest: ComparedTable) -> Figure:
         plots.append(Plot(f"{name}  [{unit}]", ALONG, tuple(both), 108.0, is_scaled=False))
         plots.append(Plot(f"apart  [{unit}]", ALONG, tuple(apart), 66.0, rows[first].tolerance, is_scaled=first == 4))
     worst = np.nanmax(np.abs(found - printed), axis=0)
-    return laws_figure(
-        "flyingfish-operating-points", "Operating points: tilts and rotor speeds, printed and recomputed",
-        f"The trim nearest to each row of Table 1. Below each panel, recomputed less printed; grey: allowed. The largest is "
-        f"{worst[:4].max():.4f} deg and {worst[4:].max():.3f} rpm. In-sample: the constants come from these rows.",
-        "Four panels over the ten motions: tilt of four rotors, printed and recomputed, and their difference; rotor speed "
-        "likewise.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-operating-points", plots, tilt=worst[:4].max(), speed=worst[4:].max())
 
 
 def _law(factors: Array, n: Array) -> Array:
@@ -100,13 +96,7 @@ def _rotors(fish: FlyingFish) -> Figure:
             at = fish.speeds[:, i]
             traces.append(Trace(f"rotor {rotor}, Table 1", at, _law(factors, at), i, "hollow", _noted(fish)))
         plots.append(Plot(f"{name}  [{unit}]", "rotor speed  [rpm]", tuple(traces), 130.0, is_scaled=last))
-    return laws_figure(
-        "flyingfish-rotors", "Rotors: thrust and torque over speed, with the operating points",
-        "Equations 47 and 48, with 6.0355e-4 for the printed 0.0006. Marks: where the ten motions of Table 1 lie on the curves; "
-        "they are no measurements. The paper prints none.",
-        "Two panels over the rotor speed: thrust and torque as rising curves, with the speeds of Table 1 marked for four rotors.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-rotors", plots)
 
 
 def _thrust_over_tilt(fish: FlyingFish) -> Figure:
@@ -117,13 +107,7 @@ def _thrust_over_tilt(fish: FlyingFish) -> Figure:
         )
         for i, rotor in enumerate(ROTORS)
     )  # fmt: skip
-    return laws_figure(
-        "flyingfish-thrust-over-tilt", "Thrust against tilt at the operating points",
-        "One mark a rotor and motion, thrust by equation 47 at the speeds of Table 1. At no tilt the thrust points down, at 90 deg "
-        "across the arm. Rotors 1 and 2, tilted apart, drive it ahead; 3 and 4 trim pitch, roll and sway.",
-        "Thrust of four rotors over their tilt: rotors 1 and 2 lie at 45 to 86 and at -47 to -82 degrees, rotors 3 and 4 between -44 and 39 degrees.",
-        (Plot("thrust T  [N]", "tilt beta  [deg]", traces, 190.0),),
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-thrust-over-tilt", (Plot("thrust T  [N]", "tilt beta  [deg]", traces, 190.0),))
 
 
 def _damping(fish: FlyingFish, medium: Medium) -> Figure:
@@ -146,14 +130,7 @@ def _damping(fish: FlyingFish, medium: Medium) -> Figure:
             points = np.asarray(table.forces["XYZKMN"[k]])[alone]
             traces.append(Trace(f"{name.split(':')[0]}, synthetic", factor * x[alone], points, i, "hollow"))
         plots.append(Plot(f"{'force' if unit == 'N' else 'moment'}  [{unit}]", across, tuple(traces), 120.0))
-    number = "50" if wet else "49"
-    return laws_figure(
-        f"flyingfish-damping{'' if wet else '-air'}", f"Damping in {medium}, as the paper prints it",
-        f"Equation {number}; of Fig. 8 the paper prints the laws, not the points. Hollow: synthetic points made of these laws with 0.2 % "
-        f"of noise (flyingfish_{medium}_synthetic), no computation. Drag along each axis alone: there is no drag surface to show.",
-        "Two panels of odd, nearly quadratic curves: forces over speed along x, y, z, and moments over rates about them.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure(f"flyingfish-damping{'' if wet else '-air'}", plots)
 
 
 def _tilt() -> Figure:
@@ -175,22 +152,13 @@ def _tilt() -> Figure:
         )
         for k, (name, curves) in enumerate(shares)
     ]
-    return laws_figure(
-        "flyingfish-tilt", "Tilt of the arms: where the thrust points under water",
-        "Equations 35 to 37, in units of the thrust. Tilts turn a rotor about its own arm, right-handed outward, counter-clockwise seen "
-        "from the tip as in Fig. 3: at none the thrust points down, at 180 deg up.",
-        "Three panels over the tilt: sines along x for rotors 1 and 2 and along y for rotors 3 and 4, a cosine along z.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-tilt", plots)
 
 
 def _bench(medium: Medium, test: BenchTest) -> Figure:
     """Fig. 5."""
-    result = bench_figure(
-        test,
-        f"Rotor in {medium}, synthetic series made of equations {'47 and 48' if medium == 'water' else '45 and 46'} with 1 % of noise: the "
-        "paper plots its readings in Fig. 5 and prints none.",
-    )
+    which = "47 and 48" if medium == "water" else "45 and 46"
+    result = bench_figure(test, PAPER.text("bench", medium=medium, which=which))
     return replace(
         result,
         anchor=f"flyingfish-bench-{medium}",
@@ -215,24 +183,14 @@ def _level(craft: Craft, found: Mapping[int, Trajectory]) -> Figure:
         tilts.append(Trace(f"motion {k}, printed tilts", rotor, np.degrees(craft.fish.angles[k - 1]), style, "hollow"))
         trimmed = np.degrees(craft.trims[k - 1, :4])
         tilts.append(Trace(f"motion {k}, corrected tilts", rotor, trimmed, style, "filled"))
-    return laws_figure(
-        "flyingfish-level", "Level motions under water, integrated",
-        "Motions 1 and 3 of Table 1, level and pitched by 45 deg, for 20 s from the trims by the corrected equation 40, held, and their "
-        "tilts: our picture for Fig. 9 (a) and (b), which prints no number of its tracks.",
-        "Depth and distance east over distance north, two equal level lines, and tilts of the four rotors.",
-        (*_tracks(found, ((1, 0), (3, 1))), Plot("tilt  [deg]", "rotor  [-]", tuple(tilts), 80.0)),
-    )  # fmt: skip
+    return PAPER.figure(
+        "flyingfish-level", (*_tracks(found, ((1, 0), (3, 1))), Plot("tilt  [deg]", "rotor  [-]", tuple(tilts), 80.0))
+    )
 
 
 def _oblique(found: Mapping[int, Trajectory]) -> Figure:
     """Fig. 9 (c)."""
-    return laws_figure(
-        "flyingfish-oblique", "Oblique motions under water, integrated",
-        "Motions 4 to 8 of Table 1 for 20 s from the trims by the corrected equation 40, held: our picture for Fig. 9 (c), which prints "
-        "no number of its tracks. Motions 5 and 6 are one motion with different commands.",
-        "Depth and distance east over distance north: straight lines at different slopes.",
-        _tracks(found, ((4, 0), (5, 1), (6, -1), (7, 2), (8, 3))),
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-oblique", _tracks(found, ((4, 0), (5, 1), (6, -1), (7, 2), (8, 3))))
 
 
 def _curves(found: Mapping[int, Trajectory]) -> Figure:
@@ -245,13 +203,10 @@ def _curves(found: Mapping[int, Trajectory]) -> Figure:
         Trace(name, t.time, t.position[:, 2], i)
         for i, (name, t) in enumerate((("motion 9", circle), ("motion 10", spiral)))
     )
-    return laws_figure(
-        "flyingfish-curves", "Circle and helix under water, integrated",
-        "Motions 9 and 10 of Table 1 from the trims by the corrected equation 40, held: one turn in 72 s on 5.73 m, and two turns of 18 s "
-        "on 1.432 m, 1.08 m down each (our picture for Fig. 10, which prints no number of its tracks).",
-        "A large circle and a small one seen from above, and depth over time: none, and steadily down.",
+    return PAPER.figure(
+        "flyingfish-curves",
         (Plot("north  [m]", "east  [m]", both, 190.0, is_equal=True), Plot("depth  [m]", "time  [s]", depth, 80.0)),
-    )  # fmt: skip
+    )
 
 
 def _surface(found: Trajectory) -> Figure:
@@ -264,10 +219,4 @@ def _surface(found: Trajectory) -> Figure:
     for name, values in (("height  [m]", above + depth), ("speed up  [m/s]", up)):
         traces = tuple(Trace(medium, time[at], values[at], style) for medium, at, style in media)
         plots.append(Plot(name, "time  [s]", traces, 100.0, is_scaled=len(plots) == 1))
-    return laws_figure(
-        "flyingfish-surface", "Out of the water and back",
-        "Height over the surface: from rest 2 m under it with rotors turned up at 2500 rpm; in air at 5000 rpm, less than hovering takes. The medium "
-        "changes where the craft is at the surface, located within the step. The paper shows no such motion.",
-        "Height and vertical speed over time: a rise at a steady speed, then a short arc above the surface.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("flyingfish-surface", plots)

@@ -21,7 +21,7 @@ from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import TomlFile, read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, locking
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, operating_point
 from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterThruster
 
@@ -125,6 +125,7 @@ ROTORS = ("1", "2", "3", "4")
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("air rotor_air arms motion angles speeds")
 class FlyingFish:
     """Published data, SI and rad, rotor speeds in rpm.
 
@@ -161,10 +162,6 @@ class FlyingFish:
     angles: Array
     speeds: Array
     errata: tuple[str, ...] = field(default=())
-
-    def __post_init__(self) -> None:
-        for name in ("air", "rotor_air", "arms", "motion", "angles", "speeds"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def read_flyingfish(folder: Path | None = None) -> FlyingFish:

@@ -24,25 +24,23 @@ from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish import model
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise, turned
 from coeflab.published.parameter_files import flyingfish_file
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import Basis, ComparedTable
+
+PAPER = publication("flyingfish")
 
 INERTIA = (0.02, 0.03, 0.045)  # kg m^2, unequal: with equal ones the gyroscopic moments of equations 10 to 12 vanish
-STATES, SEED, EXACT = (
-    40,
-    20260102,
-    1e-9,
-)  # nothing is said finer than a tenth of what is allowed, so that every machine says the same
+STATES, SEED, EXACT = 40, 20260102, 1e-9
 EQUATION_45, EQUATION_46 = (2.8619e-5, 1.1587e-7), (2.5078e-6, 1.6430e-9)
+EQUATION_48 = (1.81713e-7, 5.1233e-9)
 EQUATION_49 = ((0.0010, 0.0006, 0.0004, 0.0, 0.0, 0.0), (0.0165, 0.0227, 0.0364, 0.0002, 0.0005, 0.0013))
 EQUATION_50 = ((0.0998, 0.1658, 0.0064, 0.0032, 0.0008, 0.0029), (18.2222, 15.8047, 24.7142, 0.0489, 0.1554, 0.1872))
 DESCENT = float(np.radians(-5.0))  # pitch of the flight ahead, nose down
-PATH = 1e-6  # m
 PATHS = {9: 72.0, 10: 36.0}  # s: one turn of motion 9, two of motion 10; the others 20 s
 STRAIGHT = 20.0
 # m below the surface, rotor speeds, and the yaw rate at the start of the hop, rad/s
 DEPTH, UNDER, ABOVE, TURNING = 2.0, 2500.0, 5000.0, 0.5
-CROSSED = 1e-6
-BENCH, ONE_PERCENT = "flyingfish_bench_synthetic", 0.01
+BENCH = "flyingfish_bench_synthetic"
 BENCH_AT: dict[model.Medium, float] = {"water": 2000.0, "air": 6000.0}
 
 
@@ -153,40 +151,11 @@ def equations(c: Craft, medium: model.Medium) -> ComparedTable:
         (numbers[2], "acceleration apart", "m/s^2", apart[:, :3], EXACT),
         (numbers[3], "rate of turn apart", "rad/s^2", apart[:, 3:], 1e-7),
     )
-    rows = [
-        Compared(
-            f"equations {which}",
-            what,
-            unit,
-            0.0,
-            max(float(np.max(np.abs(x))), 0.1 * within),
-            within,
-            Basis.CONSISTENCY,
-        )
-        for which, what, unit, x, within in found
-    ]
-    words = [
-        f"{STATES} random states, seed {SEED}, with unequal moments of inertia: with those of the file the gyroscopic terms vanish."
-    ]
-    if wet:
-        words.append("Added mass X_A .. N_A and X_CA .. N_CA: the paper prints no number of it, and none is in either.")
-    else:
-        rows.append(
-            Compared("equations 7-12", "buoyancy of air they leave out", "N", 0.002 * body.weight, lift, 0.0, Basis.CONSISTENCY,
-                     at_most=True)
-        )  # fmt: skip
-        words.append(
-            "Rotors by equations 31 to 34 with the signs of Z_P and K_P corrected, curves of 45 and 46 and damping of 49 typed a "
-            "second time. The buoyancy of air in the file is added to the equations."
-        )
-    place = "Equations 1-6, 19-30" if wet else "Equations 1-18, 31-34, 45, 46, 49"
-    return ComparedTable(
-        f"equations_{medium}",
-        f"The printed equations in {medium} and what is integrated",
-        tuple(rows),
-        place,
-        tuple(words),
-    )
+    rows = [Row.none(f"equations {which}", what, unit, x, within) for which, what, unit, x, within in found]
+    if not wet:
+        neglected = 0.002 * body.weight
+        rows.append(Row("equations 7-12", "buoyancy of air they leave out", "N", neglected, lift, 0.0, at_most=True))
+    return PAPER.table(f"equations_{medium}", rows, states_drawn=PAPER.text("states", states=STATES, seed=SEED))
 
 
 def speed_for(thrust: float) -> float:
@@ -200,9 +169,7 @@ def hovering(c: Craft) -> ComparedTable:
     weight = c.air.weight - c.air.buoyancy
     still = trimmed(c.air, dict.fromkeys(("u", "v", "w", "yaw_rate", "roll", "pitch"), 0.0), starts=0).point.values
     rows = [
-        Compared(
-            "hovering", f"omega{name}", "rpm", speed_for(weight / 4.0), still[f"rotor{name}"], 1e-3, Basis.CONSISTENCY
-        )
+        Row("hovering", f"omega{name}", "rpm", speed_for(weight / 4.0), still[f"rotor{name}"], 1e-3)
         for name in model.ROTORS
     ]
     linear, square = EQUATION_49[0][0], EQUATION_49[1][0]
@@ -212,17 +179,10 @@ def hovering(c: Craft) -> ComparedTable:
         c.air, {"v": 0.0, "w": 0.0, "yaw_rate": 0.0, "roll": 0.0, "pitch": DESCENT}, near={"u": fast}, starts=0
     ).point.values
     case = f"pitch {np.degrees(DESCENT):g} deg"
-    rows.append(Compared(case, "u", "m/s", fast, ahead["u"], 1e-6, Basis.CONSISTENCY))
+    rows.append(Row(case, "u", "m/s", fast, ahead["u"]))
     thrust = sum(EQUATION_45[0] * n + EQUATION_45[1] * n**2 for n in (ahead[f"rotor{name}"] for name in model.ROTORS))
-    rows.append(Compared(case, "sum of T", "N", weight * float(np.cos(DESCENT)), thrust, 1e-6, Basis.CONSISTENCY))
-    return ComparedTable(
-        "hovering", "Trims in air", tuple(rows), "Equations 7-18, 31-34, 45, 46, 49",
-        (
-            "The paper prints no motion in air. Reference: equation 9 at rest, W = 4 T, and equations 7 and 9 with w = 0, in closed form; "
-            "found: the trim of the parameter file, as `coeflab trim flyingfish_air` finds it.",
-            "The mass is calibrated on motions under water.",
-        ),
-    )  # fmt: skip
+    rows.append(Row(case, "sum of T", "N", weight * float(np.cos(DESCENT)), thrust))
+    return PAPER.table("hovering", rows)
 
 
 def both_readings(c: Craft) -> ComparedTable:
@@ -239,33 +199,13 @@ def both_readings(c: Craft) -> ComparedTable:
         thrust = fish.rotors.thrust[0] * printed[4:] + fish.rotors.thrust[1] * printed[4:] ** 2
         lever = -2.0 * fish.constants["arm_length"] * float(thrust @ np.sin(printed[:4]))
         case = f"motion {row + 1}"
-        rows.append(
-            Compared(
-                case, "N left by the printed row", "N m", lever, float(left(printed)[5]), 1.5e-4, Basis.CALIBRATION
-            )
-        )
+        rows.append(Row(case, "N left by the printed row", "N m", lever, float(left(printed)[5])))
         found = _nearest(fish, row, left, c.trims[row])
         for i, name in enumerate(model.UNKNOWNS):
             unit, factor, within = ("deg", np.degrees(1.0), 1e-3) if i < 4 else ("rpm", 1.0, 1e-2)
-            rows.append(
-                Compared(
-                    case,
-                    name,
-                    unit,
-                    float(factor * c.trims[row, i]),
-                    float(factor * found[i]),
-                    within,
-                    Basis.CONSISTENCY,
-                )
-            )
-    return ComparedTable(
-        "both_readings", "Table 1 with equation 40 corrected", tuple(rows), "Table 1, equations 35-40 and 51-56",
-        (
-            "N left: -2 L sum(T sin beta), twice the lever term, which the printed rows balance with the other sign; found: the "
-            "parameter file, whose rotors push where they stand. In the printed reading the rows are 'What the equations leave'.",
-            "Tilts and speeds: the trim nearest to the row in scales of 1 deg and 20 rpm, by the equations and from the parameter file.",
-        ),
-    )  # fmt: skip
+            due, ours = float(factor * c.trims[row, i]), float(factor * found[i])
+            rows.append(Row(case, name, unit, due, ours, within, Basis.CONSISTENCY))
+    return PAPER.table("both_readings", rows)
 
 
 def third(fish: model.FlyingFish) -> ComparedTable:
@@ -285,16 +225,15 @@ def third(fish: model.FlyingFish) -> ComparedTable:
     over = float(u * np.cos(pitch) + w * np.sin(pitch))
     climb = float(u * np.sin(pitch) - w * np.cos(pitch))
     body = left(np.array([0.5, 0.0]))
-    return ComparedTable(
-        "third", "The speed of motion 3", (
-            Compared("motion 3", "speed over the ground", "m/s", 0.5, over, 5e-4, Basis.VERIFICATION),
-            Compared("motion 3", "climb", "m/s", 0.0, climb, 5e-4, Basis.VERIFICATION),
-        ), "Table 1, equations 51 and 53",
+    return PAPER.table(
+        "third",
         (
-            "u and w that the printed tilts and rotor speeds keep at a pitch of 45 deg, with constants of motions 1, 2, 9 and 10 alone.",
-            f"Read in body axes, u = 0.5 and w = 0, the row leaves {body[0]:.2f} N along x and {body[1]:.2f} N along z.",
+            Row("motion 3", "speed over the ground", "m/s", 0.5, over),
+            Row("motion 3", "climb", "m/s", 0.0, climb),
         ),
-    )  # fmt: skip
+        ahead=body[0],
+        down=body[1],
+    )
 
 
 def steady(c: Craft, row: int) -> Trajectory:
@@ -314,19 +253,10 @@ def tracks(c: Craft) -> ComparedTable:
         due = helix(found.velocity[0, :3], found.attitude[0], float(c.fish.motion[row, 2]), np.asarray(found.time))
         apart = float(np.max(np.linalg.norm(found.position - due, axis=1)))
         rows.append(
-            Compared(f"motion {row + 1}", f"off its path within {found.time[-1]:g} s", "m", 0.0, max(apart, 0.1 * PATH), PATH,
-                     Basis.CONSISTENCY)
+            Row.none(f"motion {row + 1}", f"off its path within {found.time[-1]:g} s", "m", apart)
         )  # fmt: skip
     u, w, r = c.fish.motion[9, :3]
-    return ComparedTable(
-        "tracks", "Tracks of the steady motions", tuple(rows), "Figs. 9 and 10",
-        (
-            "Commands of the corrected trims, held; adaptive integration of the parameter file in water. The paper prints no number of "
-            f"a track. From Table 1: motion 9 turns on {0.5 / np.radians(5.0):.4g} m in 72 s, motion 10 on {u / r:.4g} m in 18 s and sinks "
-            f"{w * 18.0:.3g} m a turn.",
-            "Motions 1 to 8 keep straight; moments of inertia, which are assumed, do not enter as long as the motion is steady.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("tracks", rows, circle=0.5 / np.radians(5.0), helix=u / r, sunk=w * 18.0)
 
 
 def hop(c: Craft) -> Trajectory:
@@ -368,23 +298,14 @@ def surface(c: Craft) -> ComparedTable:
         return None if when is None else float(values[np.argmin(np.abs(np.asarray(found.time) - when))])
 
     rows = (
-        Compared("out of the water", "time", "s", time, out, CROSSED, Basis.CONSISTENCY),
-        Compared("out of the water", "speed up", "m/s", speed, at(out), CROSSED, Basis.CONSISTENCY),
-        Compared("out of the water", "heading", "rad", left, at(out, heading), CROSSED, Basis.CONSISTENCY),
-        Compared("back at the surface", "time after that", "s", up + down, None if out is None or again is None else again - out,
-                 CROSSED, Basis.CONSISTENCY),
-        Compared("back at the surface", "speed up", "m/s", -back, at(again), CROSSED, Basis.CONSISTENCY),
-        Compared("back at the surface", "heading", "rad", came, at(again, heading), CROSSED, Basis.CONSISTENCY),
+        Row("out of the water", "time", "s", time, out),
+        Row("out of the water", "speed up", "m/s", speed, at(out)),
+        Row("out of the water", "heading", "rad", left, at(out, heading)),
+        Row("back at the surface", "time after that", "s", up + down, None if out is None or again is None else again - out),
+        Row("back at the surface", "speed up", "m/s", -back, at(again)),
+        Row("back at the surface", "heading", "rad", came, at(again, heading)),
     )  # fmt: skip
-    return ComparedTable(
-        "surface", "Out of the water and back", rows, "Equations 7-30, 45, 47, 49, 50; the paper prints no change of medium",
-        (
-            f"From rest {DEPTH:g} m below the surface, but for a turn of {TURNING:g} rad/s, rotors turned up at {UNDER:g} rpm, in air at {ABOVE:g} rpm, less than hovering takes. "
-            f"It stands {height:.4f} m above the surface.",
-            "Reference: closed form, and on the way up in air a quadrature over the speed. The change of medium is located within a step, and a march has the "
-            "forces of one medium; the craft is a point there: no partial immersion, slamming or spray.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("surface", rows, depth=DEPTH, turning=TURNING, under=UNDER, above=ABOVE, height=height)
 
 
 def benches(fish: model.FlyingFish) -> Mapping[model.Medium, BenchTest]:
@@ -395,18 +316,11 @@ def benches(fish: model.FlyingFish) -> Mapping[model.Medium, BenchTest]:
 
 def bench(fish: model.FlyingFish) -> ComparedTable:
     """Curves identified from synthetic bench tests against the printed ones."""
-    printed = {"water": (tuple(fish.rotors.thrust), (1.81713e-7, 5.1233e-9)), "air": (EQUATION_45, EQUATION_46)}
+    printed = {"water": (tuple(fish.rotors.thrust), EQUATION_48), "air": (EQUATION_45, EQUATION_46)}
     rows = [
-        Compared(f"{medium}, {at:g} rpm", law.load, law.unit, a * at + b * at**2, float(law.value @ [at, at**2]), ONE_PERCENT,
-                 Basis.CONSISTENCY, True)
+        Row(f"{medium}, {at:g} rpm", law.load, law.unit, a * at + b * at**2, float(law.value @ [at, at**2]))
         for medium, found in benches(fish).items()
         for at in (BENCH_AT[medium],)
         for law, (a, b) in zip(found.laws, printed[medium], strict=True)
     ]  # fmt: skip
-    return ComparedTable(
-        "bench", "Rotor curves identified from synthetic bench tests", tuple(rows), "Fig. 5, equations 45-48",
-        (
-            "The paper plots the readings of its bench and prints none. These series are synthetic, made of the printed curves, the lag of a "
-            "motor and 1 % of noise: the identification gives back what went in (`coeflab identify --thruster`).",
-        ),
-    )  # fmt: skip
+    return PAPER.table("bench", rows)

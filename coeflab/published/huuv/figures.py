@@ -16,29 +16,19 @@ from coeflab.published.huuv.five_dof import FiveDof, assumed_body, elevator_laws
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, commands, thrust
 from coeflab.published.huuv.tuning import IN_WORDS
+from coeflab.published.publication import publication
 from coeflab.report.document import Figure
 from coeflab.report.figures.body import body_figure
-from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.laws import Plot, Trace
 
-CANNOT = (
-    "Fig. 1, views and dimensions: the dimensions stand in the picture alone.",
-    "Figs. 2 and 3, tracking set-up and a frame of the film: photographs.",
-    "Figs. 8-11, meshes and domains of the computations: pictures; Table 1 prints only cells and lengths, and no flow was computed here.",
-    "The published curves of Figs. 12-16 and 18: pictures, no number printed. Ours are drawn without points.",
-)
+PAPER = publication("huuv")
+
 
 FINE = 57
 LAWS = (
     ("drag / V^2  [N/(m/s)^2]", ("d0", "d2"), (0, 2)),
     ("side force / V^2  [N/(m/s)^2]", ("s1", "s3"), (1, 3)),
     ("yaw moment / V^2  [N m/(m/s)^2]", ("n1", "n3"), (1, 3)),
-)
-CAPTION = (
-    "Constants of the steady turns, and the two fits to Fig. 17, each as far as its turns reach: {reach}. All turns are to port; the "
-    "other side is their mirror image. Where turns do not determine a coefficient the curve is one of many that fit them: {open}. "
-    "C_S is known only up to the mass, C_m only up to the arm and m_y - m_x. The paper draws C_D over "
-    "alpha and beta in Fig. 12 without printing numbers, and all turns lie at alpha = 0: the data allow these curves and no drag "
-    "surface."
 )
 
 
@@ -69,12 +59,7 @@ def forces_figure(huuv: Huuv, halves: Mapping[str, Tuning]) -> Figure:
         )
         for k, (name, keys, powers) in enumerate(LAWS)
     ]  # fmt: skip
-    reach = f"{ends[MATLAB]:.3g} deg in the simulation, {ends[TRACKER]:.3g} deg in the pool"
-    return laws_figure(
-        "huuv-forces", "Drag, side force and yaw moment over sideslip", CAPTION.format(reach=reach, open=_open(halves)),
-        "Three panels over sideslip: even curves of drag, odd curves of side force and yaw moment, for three sets of constants.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("huuv-forces", plots, matlab=ends[MATLAB], tracker=ends[TRACKER], open=_open(halves))
 
 
 def _open(halves: Mapping[str, Tuning]) -> str:
@@ -111,7 +96,6 @@ def tuning_figures(huuv: Huuv, halves: dict[str, Tuning]) -> Iterator[tuple[str,
 
 TALL = 76.0  # points of a panel
 SEEN = 60.0  # s of the dives
-ASSUMED = "Assumed laws of five_dof.toml: the paper prints no number of this figure."
 
 
 def paper_figures(five: FiveDof, dives: Mapping[float, Dive]) -> Iterator[tuple[str, Figure]]:
@@ -140,31 +124,17 @@ def laws_over_attack_and_rates(five: FiveDof) -> Figure:
         Plot("M / V^2  [N m/(m/s)^2]", across, (Trace("beta 0 deg", x, -laws["C_m alpha"], 0),), TALL),
         Plot("moment  [N m]", "rate of rotation  [rad/s]", (Trace("M_mq, pitch", rate, pitching, 3), Trace("M_mr, yaw", rate, yawing, -1)), TALL),
     ]  # fmt: skip
-    caption = (
-        f"{ASSUMED} Drag is C_D(alpha) + C_D(beta) - C_D(0), the caption of Fig. 12 less what it counts twice. M is positive nose up "
-        "and without the Munk moment, which C_A adds. M_mr is chosen with the steady turns, which do not determine it; M_mq is half of "
-        "it, as the paper doubled M_mr alone. Fig. 14, C_S and C_m over beta: see the figure over sideslip."
-    )
-    return laws_figure(
-        "huuv-fig12-13-16", "Figs. 12, 13 and 16: forces over attack, moments over rates", caption,
-        "Four panels: even curves of drag, odd curves of lift and moment over attack; odd curves of moments over rates.", plots,
-    )  # fmt: skip
+
+    return PAPER.figure("huuv-fig12-13-16", plots)
 
 
 def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
     """The elevators' coefficients over their angle (Figs. 6 and 15), and what a deflection does in time."""
     end = float(np.degrees(five.constants["largest_angle"]))
     x = np.linspace(-end, end, FINE)
-    names = ("drag C_D", "lift C_L", "moment C_M")
-    laws = zip(names, elevator_laws(five, np.radians(x)), strict=True)
-    plots = [
-        Plot(
-            "coefficients  [1]",
-            "elevator delta at alpha = 0  [deg]",
-            tuple(Trace(n, x, y, i) for i, (n, y) in enumerate(laws)),
-            TALL,
-        )
-    ]
+    laws = zip(("drag C_D", "lift C_L", "moment C_M"), elevator_laws(five, np.radians(x)), strict=True)
+    curves = tuple(Trace(n, x, y, i) for i, (n, y) in enumerate(laws))
+    plots = [Plot("coefficients  [1]", "elevator delta at alpha = 0  [deg]", curves, TALL)]
     motions = (("depth  [m]", "depth", 1.0), ("pitch  [deg]", "pitch", 180.0 / np.pi))
     for k, (name, key, factor) in enumerate(motions):
         traces = (
@@ -173,16 +143,9 @@ def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
             for seen in [d.time <= SEEN]
         )
         plots.append(Plot(name, "time  [s]", tuple(traces), TALL, is_scaled=k == 1))
-    caption = (
-        "Assumed laws: the paper prints no number of it. Above, the synthetic elevator laws over delta - alpha; a positive angle turns the "
-        f"leading edge down. Below, not in the paper: a start at {five.level.chosen['speed']:g} m/s, by huuv_5dof.parameters.json. "
-        f"Coefficients by the area of both, {five.constants['area']:g} m^2, moments also by {five.constants['length']:g} m, about the axis "
-        "of rotation. Both thrusters at 60 %; depth grows downward."
-    )
-    return laws_figure(
-        "huuv-fig15", "Fig. 15: the elevators, and a start with them deflected", caption,
-        "An even curve of drag, odd curves of lift and moment over the elevator angle; depth and pitch over time for three angles.", plots,
-    )  # fmt: skip
+
+    c = five.constants
+    return PAPER.figure("huuv-fig15", plots, speed=five.level.chosen["speed"], area=c["area"], length=c["length"])
 
 
 def straight_speeds(huuv: Huuv, total: Array, drag_left_out: float = 0.0) -> Array:
@@ -220,17 +183,13 @@ def speeds_figure(five: FiveDof) -> Figure:
         Trace("straight, submerged, our model", fine, straight_speeds(huuv, fine), -1),
         Trace("straight, without the mast's drag", fine, straight_speeds(huuv, fine, mast), 1),
     )
-    caption = (
-        "Above Fig. 17 a and b, below Fig. 18, which prints no point, with and without the drag of a mast that was in air: "
-        f"{mast / c['d0']:.0%} of the fitted one, for an assumed radius and height. The pool vehicle ran at the surface; the mast is taken as "
-        "round, with a drag coefficient of 1."
+
+    across = "right thruster, in the lower panel both  [%]"
+    plots = (
+        Plot("u in turns  [m/s]", across, tuple(traces), 170.0, is_scaled=False),
+        Plot("u straight  [m/s]", across, straight),
     )
-    return laws_figure(
-        "huuv-fig17-18", "Figs. 17 and 18: forward speed in turns and on a straight course", caption,
-        "Two panels over the thruster command: speeds of turns with printed points, and speeds of straight runs.",
-        [Plot("u in turns  [m/s]", "right thruster, in the lower panel both  [%]", tuple(traces), 170.0, is_scaled=False),
-         Plot("u straight  [m/s]", "right thruster, in the lower panel both  [%]", straight)],
-    )  # fmt: skip
+    return PAPER.figure("huuv-fig17-18", plots, share=mast / c["d0"])
 
 
 def masses_figure(five: FiveDof) -> Figure:
@@ -249,12 +208,5 @@ def masses_figure(five: FiveDof) -> Figure:
         )
         for k, name in enumerate(names)
     ]  # fmt: skip
-    caption = (
-        "The constants were fitted with m_x, m_y, m_yr of 5 kg, 17 kg, 0.95 kg m, which the paper does not print. The assumed geometry "
-        "gives others: with them the yaw moment no longer undoes the Munk moment, and the turns tighten. With m_yr kept, the slope of "
-        "C_m(beta) moved by as much as m_y - m_x, and C_S scaled as m + m_x, they return: only these are what turns determine."
-    )
-    return laws_figure(
-        "huuv-masses", "Turns with the stated masses and with those of the assumed geometry", caption,
-        "Three panels over the 28 turns: printed points, and those of three sets of masses.", plots,
-    )  # fmt: skip
+
+    return PAPER.figure("huuv-masses", plots)

@@ -35,7 +35,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.formats.imported_file import stated_table
 from coeflab.law.added_mass import AddedMass, OtherMethod
@@ -72,6 +72,7 @@ MASSES = {
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("geometry")
 class FiveDof:
     """The vehicle, SI and rad, FRD about the centre of buoyancy.
 
@@ -91,9 +92,6 @@ class FiveDof:
     constants: Mapping[str, float]
     masses: Masses
     geometry: Array
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "geometry", locked(self.geometry))
 
     @property
     def density(self) -> float:
@@ -439,7 +437,7 @@ def five_dof_file(huuv: FiveDof) -> ParameterFile:
     content = {
         **base.model_dump(),
         "name": "huuv_5dof" if huuv.masses == "stated" else "huuv_5dof_geometry",
-        "body": "HUUV, five degrees of freedom",
+        "body": "HUUV",
         "mass": MassProperties(c["m"], 0.0, own["pitch_inertia"], centre).primed(primes, density),
         "models": models,
         "added_mass": _added_mass(huuv),

@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.bodies.closed_forms import plate_added_mass
 from coeflab.bodies.shape import Cylinder, Parts, Plate
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import momentum_force
 from coeflab.motion.dynamics import from_euler
 from coeflab.motion.simulation import simulate
@@ -17,12 +17,15 @@ from coeflab.motion.steady_state import steady_turns, turn_figures
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import five_dof
 from coeflab.published.huuv.model import MATLAB, Turns, commands, thrust
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
+
+PAPER = publication("huuv")
 
 FREE = ("u", "v", "w", "q", "r")
 ROWS = ("X", "Y", "Z", "M", "N")
-MOTIONS, SEED, EXACT, FINEST = 1000, 20251217, 1e-9, 1e-10
+MOTIONS, SEED = 1000, 20251217
 # Worked out apart from this package: u v w q r, pitch, elevator, commands; X Y Z M N that accelerate, N and N m.
 BY_HAND = (
     ((0.8, 0.1, 0.05, 0.2, -0.3), -0.15, 0.12, (30.0, 70.0), (-2.714048, -1.291923, 4.927592, 0.4611365, -0.3840439)),
@@ -36,11 +39,11 @@ SETS = (
     ("its m_x, m_y; C_m, C_S moved", "moved"),
 )
 STRAIGHT = tuple(np.arange(20.0, 101.0, 10.0))
-SOURCE_1 = "equations 1-17, 23-27"
 
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("time depth pitch speed end")
 class Dive:
     """A simulated start with the elevators deflected, all (n,): s, m, rad, m/s; and u v w q r at its end."""
 
@@ -49,10 +52,6 @@ class Dive:
     pitch: Array
     speed: Array
     end: Array
-
-    def __post_init__(self) -> None:
-        for name in ("time", "depth", "pitch", "speed", "end"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
 
 
 def dived(file: ParameterFile) -> dict[float, Dive]:
@@ -76,16 +75,7 @@ def moving_rows(five: five_dof.FiveDof, dives: Mapping[float, Dive]) -> tuple[Co
     return (_dives(five, dives), _turns(five))
 
 
-def _row(
-    case: str, what: str, unit: str, against: float, found: float, tolerance: float, relative: bool = False
-) -> Compared:
-    held, ours = (
-        float(f"{value:.12g}") for value in (against, found)
-    )  # what is finer differs from one machine to the next
-    return Compared(case, what, unit, held, ours, tolerance, Basis.CONSISTENCY, relative)
-
-
-def _by_hand(five: five_dof.FiveDof) -> list[Compared]:
+def _by_hand(five: five_dof.FiveDof) -> list[Row]:
     rows = []
     for i, (nu, pitch, delta, ordered, forces) in enumerate(BY_HAND, start=1):
         left, right = (np.array([c]) for c in ordered)
@@ -93,35 +83,33 @@ def _by_hand(five: five_dof.FiveDof) -> list[Compared]:
             five, np.array([nu]), np.array([pitch]), np.array([delta]), five_dof.thrusts(five, left, right)
         )[0]
         rows += [
-            _row(f"state {i}, worked out apart", name, "N" if name in "XYZ" else "N m", against, float(one), 1e-5)
+            Row(f"state {i}, worked out apart", name, "N" if name in "XYZ" else "N m", against, float(one), 1e-5)
             for name, against, one in zip(ROWS, forces, found, strict=True)
         ]
     return rows
 
 
-def _commanded(five: five_dof.FiveDof) -> list[Compared]:
+def _commanded(five: five_dof.FiveDof) -> list[Row]:
     """Thrusters by their two inputs, and elevators beyond their largest angle, at 1 m/s; numbers by hand."""
     ahead, none = np.array([[1.0, 0.0, 0.0, 0.0, 0.0]]), np.zeros(1)
     tau = five_dof.thrusts(five, *commands(np.array([50.0]), np.array([10.0])))[0]
     held = -five_dof.elevator_damping(five, ahead, np.radians([40.0]))[0]
     still = float(five_dof.elevator_laws(five, none)[0][0])
     moved = replace(five, constants={**five.constants, "C_D0": 2.0 * still})
-    apart = float(
-        np.max(np.abs(five_dof.damping(moved, ahead, np.array([0.3])) - five_dof.damping(five, ahead, np.array([0.3]))))
-    )
+    apart = five_dof.damping(moved, ahead, np.array([0.3])) - five_dof.damping(five, ahead, np.array([0.3]))
     words, beyond = "inputs 50 % and 10 %", "elevators ordered to 40 deg, held at 30 deg"
     return [
-        _row(words, "X", "N", 11.864, float(tau[0]), 1e-5),
-        _row(words, "N", "N m", -0.3308, float(tau[4]), 1e-5),
-        _row(beyond, "X", "N", -6.031425, float(held[0]), 1e-5),
-        _row(beyond, "Z", "N", 20.826314, float(held[2]), 1e-5),
-        _row(beyond, "M", "N m", -4.436358, float(held[3]), 1e-5),
-        _row("Fig. 15, elevators at 0 deg", "C_D", "1", 0.03, still, 1e-4),
-        _row("C_D at 0 deg doubled", "force apart", "N", 0.0, max(apart, FINEST), EXACT),
+        Row(words, "X", "N", 11.864, float(tau[0]), 1e-5),
+        Row(words, "N", "N m", -0.3308, float(tau[4]), 1e-5),
+        Row(beyond, "X", "N", -6.031425, float(held[0]), 1e-5),
+        Row(beyond, "Z", "N", 20.826314, float(held[2]), 1e-5),
+        Row(beyond, "M", "N m", -4.436358, float(held[3]), 1e-5),
+        Row("Fig. 15, elevators at 0 deg", "C_D", "1", 0.03, still, 1e-4),
+        Row.none("C_D at 0 deg doubled", "force apart", "N", apart),
     ]
 
 
-def _matrices(five: five_dof.FiveDof) -> tuple[Compared, ...]:
+def _matrices(five: five_dof.FiveDof) -> tuple[Row, ...]:
     nu = np.random.default_rng(SEED).normal(size=(MOTIONS, 5))
     whole = np.zeros((MOTIONS, 6))
     whole[:, five_dof.AT] = nu
@@ -130,9 +118,9 @@ def _matrices(five: five_dof.FiveDof) -> tuple[Compared, ...]:
     held = -np.einsum("nij,nj->ni", matrix, nu)
     case = f"{MOTIONS} random motions"
     return (
-        _row("M", "apart from its transpose", "kg, kg m", 0.0, max(float(np.max(np.abs(m - m.T))), FINEST), EXACT),
-        _row(case, "C + C^T", "kg m/s", 0.0, float(np.max(np.abs(matrix + np.swapaxes(matrix, 1, 2)))), 0.0),
-        _row(case, "force apart from Kirchhoff's", "N, N m", 0.0, max(float(np.max(np.abs(held - theory))), FINEST), EXACT),
+        Row.none("M", "apart from its transpose", "kg, kg m", m - m.T),
+        Row(case, "C + C^T", "kg m/s", 0.0, float(np.max(np.abs(matrix + np.swapaxes(matrix, 1, 2)))), 0.0),
+        Row.none(case, "force apart from Kirchhoff's", "N, N m", held - theory),
     )  # fmt: skip
 
 
@@ -153,20 +141,13 @@ def _forces(five: five_dof.FiveDof, file: ParameterFile) -> ComparedTable:
         whole[:, five_dof.AT], controls[:, 2] = motion, angle
         attitude = np.array([from_euler(0.0, float(p), 0.0) for p in pitch])
         found = result.unbalanced(whole, attitude, controls, np.zeros(6))[:, five_dof.AT]
-        apart = np.max(np.abs(found - five_dof.unbalanced(five, motion, pitch, angle, none)))
-        rows.append(_row(case, "parameter file less equations", "N, N m", 0.0, max(float(apart), FINEST), EXACT))
+        apart = found - five_dof.unbalanced(five, motion, pitch, angle, none)
+        rows.append(Row.none(case, "parameter file less equations", "N, N m", apart))
     speed, alpha, beta = five_dof.angles(nu)
     power = np.sum(five_dof.hull_damping(five, nu)[:, :3] * nu[:, :3], axis=1)
     drag = speed**3 * five_dof.hull_laws(five, alpha, beta)["C_D"]
-    rows.append(_row("hull", "power less V F_D", "W", 0.0, max(float(np.max(np.abs(power - drag))), FINEST), EXACT))
-    return ComparedTable(
-        "five_dof_forces", "Five degrees of freedom: every term of equation 1, and the parameter file", tuple(rows), "equations 1-17, 23-38",
-        ("Two states with attack, drift, rates, pitch, elevators and unequal thrusts: what accelerates, worked out apart from this package.",
-         "C in the printed pattern, with the moments of the added masses where the paper prints m_z z_CG, against the kinetic energy of M. "
-         "Lift and side force do no work by equations 5-7 as corrected; as printed they do. The file reads V^2 where equations 15-17 have "
-         "V_xz^2 = V^2 cos^2(beta): at 21 deg of drift 15 % more of the elevators.",
-         "The elevators' drag at 0 deg is in the hull's tables with neutral elevators already: it moves no force, and Fig. 15 alone shows it.",),
-    )  # fmt: skip
+    rows.append(Row.none("hull", "power less V F_D", "W", power - drag))
+    return PAPER.table("five_dof_forces", rows)
 
 
 def _geometry(five: five_dof.FiveDof) -> ComparedTable:
@@ -182,29 +163,19 @@ def _geometry(five: five_dof.FiveDof) -> ComparedTable:
     height = float(parts[1].centre[2])
     j_y = by_hand["J_y"] + sum(float(m[4, 4]) for m in own)
     rows = (
-        _row("equation 28", "m_x", "kg", by_hand["m_x"], matrix[0, 0], EXACT),
-        _row("equation 29", "m_y", "kg", by_hand["m_y"], matrix[1, 1], EXACT),
-        _row("equation 30", "m_z, and 0.1 of the mast", "kg", by_hand["m_z"] + 0.1 * standing, matrix[2, 2], EXACT),
-        _row("equation 31", "J_y, and the plates' own", "kg m^2", j_y, matrix[4, 4], EXACT),
-        _row("equation 32", "J_z", "kg m^2", by_hand["J_z"], matrix[5, 5], EXACT),
-        _row("equation 33", "m_zq from the elevators", "kg m", -normal, matrix[2, 4], EXACT),
-        _row("equation 33", "m_yr, all alike fore and aft", "kg m", 0.0, matrix[1, 5], EXACT),
-        _row("equation 1, row 1, column 4", "m_x z of the mast", "kg m", standing * height, matrix[0, 4], EXACT),
-        _row("equation 1, C, column 5", "m_y z of the mast", "kg m", standing * height, -matrix[1, 3], EXACT),
+        Row("equation 28", "m_x", "kg", by_hand["m_x"], matrix[0, 0]),
+        Row("equation 29", "m_y", "kg", by_hand["m_y"], matrix[1, 1]),
+        Row("equation 30", "m_z, and 0.1 of the mast", "kg", by_hand["m_z"] + 0.1 * standing, matrix[2, 2]),
+        Row("equation 31", "J_y, and the plates' own", "kg m^2", j_y, matrix[4, 4]),
+        Row("equation 32", "J_z", "kg m^2", by_hand["J_z"], matrix[5, 5]),
+        Row("equation 33", "m_zq from the elevators", "kg m", -normal, matrix[2, 4]),
+        Row("equation 33", "m_yr, all alike fore and aft", "kg m", 0.0, matrix[1, 5]),
+        Row("equation 1, row 1, column 4", "m_x z of the mast", "kg m", standing * height, matrix[0, 4]),
+        Row("equation 1, C, column 5", "m_y z of the mast", "kg m", standing * height, -matrix[1, 3]),
     )
+    ours = {"m_x": matrix[0, 0], "m_y": matrix[1, 1], "m_yr": matrix[1, 5], "m_zq": matrix[2, 4]}
     c = five.level.constants
-    printed = c["m"] / 20.0
-    return ComparedTable(
-        "five_dof_geometry", "Added mass of the assumed geometry", rows, "equations 28-33",
-        (
-            "Printed: lengths of 0.75 m and 0.2 m, 19 kg, fins at the bow, mast in the middle. Assumed: radii, the mast's height, the "
-            "fins' span and place. So the masses are an illustration.",
-            f"Assumed geometry against the steady turns: m_x {matrix[0, 0]:.3g} against {c['mx']:.3g} kg, m_y {matrix[1, 1]:.3g} against "
-            f"{c['my']:.3g} kg, m_yr {matrix[1, 5]:.3g} against {c['myr']:.3g} kg m. Those of the turns were chosen: the paper prints none, "
-            "and doubled C_S, C_m(beta) and M_mr.",
-            f"Equation 33 gives {printed:.3g}, in kg, for all four couplings; the elevators at the bow give m_zq {matrix[2, 4]:.3g} kg m.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("five_dof_geometry", rows, printed=c["m"] / 20.0, turns=c, **ours)
 
 
 def _straight(five: five_dof.FiveDof) -> ComparedTable:
@@ -218,17 +189,13 @@ def _straight(five: five_dof.FiveDof) -> ComparedTable:
     found, growth = five_dof.steady(neutral, np.zeros(len(speed)), push, start)
     floating, _ = five_dof.steady(five, np.zeros(len(speed)), push, start)
     rows = tuple(
-        _row(f"{command:g} %", "u, neutrally buoyant", "m/s", float(u), float(ours), 1e-9, True)
+        Row(f"{command:g} %", "u, neutrally buoyant", "m/s", float(u), float(ours))
         for command, u, ours in zip(ordered, speed, found[:, 0], strict=True)
     )
     up = floating[:, 2] * np.cos(floating[:, 3]) - floating[:, 0] * np.sin(floating[:, 3])
     light = five.buoyancy - five.weight
     stable = "all are stable" if np.all(growth < 0.0) else "some are not stable"
-    return ComparedTable(
-        "five_dof_straight", "Straight runs of Fig. 18 in five degrees of freedom", rows, "Fig. 18, equations 1 and 34",
-        (f"Both thrusters from 20 to 100 %; {stable}. Fig. 18 prints no number. With the assumed {light:.2g} N of buoyancy over weight "
-         f"the vehicle rises at {-up[0]:.2g} m/s at 20 % and {-up[-1]:.2g} m/s at 100 %.",),
-    )  # fmt: skip
+    return PAPER.table("five_dof_straight", rows, stable=stable, light=light, slow=-up[0], fast=-up[-1])
 
 
 def _dives(five: five_dof.FiveDof, dives: Mapping[float, Dive]) -> ComparedTable:
@@ -246,16 +213,12 @@ def _dives(five: five_dof.FiveDof, dives: Mapping[float, Dive]) -> ComparedTable
             ("pitch", "deg", np.degrees(pitch), np.degrees(dive.pitch[-1])),
         )
         rows += [
-            _row(f"elevators {angle:+g} deg", what, unit, float(a), float(b), SETTLED * (200.0 if unit == "deg" else 1.0))
+            Row(f"elevators {angle:+g} deg", what, unit, float(a), float(b), SETTLED * (200.0 if unit == "deg" else 1.0))
             for what, unit, a, b in pairs
         ]  # fmt: skip
     down = dives[DIVES[-1]]
     sinks = (down.depth[-1] - down.depth[-2]) / (down.time[-1] - down.time[-2])
-    return ComparedTable(
-        "five_dof_dives", f"Elevators deflected: {DURATION:g} s with the parameter file, and steady by the equations", tuple(rows),
-        SOURCE_1,
-        (f"At +10 deg it dives at {sinks:.2g} m/s. Assumed vertical laws: a picture of the equations, not of the vehicle.",),
-    )  # fmt: skip
+    return PAPER.table("five_dof_dives", rows, duration=DURATION, sinks=sinks)
 
 
 def with_masses(five: five_dof.FiveDof, how: str, turns: Turns) -> Array:
@@ -305,18 +268,14 @@ def _turns(five: five_dof.FiveDof) -> ComparedTable:
             (some.figures[i, 2], radius[i]),
         )
         rows += [
-            _row(case, what, unit, float(a), float(b), 1e-2, True)
+            Row(case, what, unit, float(a), float(b))
             for (what, unit), (a, b) in zip((("u", "m/s"), ("|beta|", "deg"), ("R", "m")), figures, strict=True)
         ]  # fmt: skip
     steep = float(np.degrees(np.max(np.abs(found[:, 3]))))
     all_of = five.level.turns[MATLAB]
     words = [_departure(label, with_masses(five, how, all_of), all_of) for label, how in SETS]
     stable = "all are stable" if np.all(growth < 0.0) else "some are not stable"
-    return ComparedTable(
-        "five_dof_turns", "Steady turns with heave and pitch", tuple(rows), "equations 1-17, 23-38",
-        (f"1 % allowed: heave and pitch change a turn by that at most. Pitch reaches {steep:.2g} deg; {stable}.", *words),
-        "steady_turns",
-    )  # fmt: skip
+    return PAPER.table("five_dof_turns", rows, steep=steep, stable=stable, words=words)
 
 
 def _departure(label: str, found: Array, turns: Turns) -> str:

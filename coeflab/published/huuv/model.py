@@ -18,7 +18,7 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.formats.imported_file import stated_table
 from coeflab.law.added_mass import AddedMass
@@ -41,6 +41,7 @@ MATLAB, TRACKER = "matlab", "tracker"
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("left right figures")
 class Turns:
     """Printed turns, one row a pair of commands.
 
@@ -56,13 +57,10 @@ class Turns:
     right: Array
     figures: Array
 
-    def __post_init__(self) -> None:
-        for name in ("left", "right", "figures"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("accepted_rate")
 class Huuv:
     """Published data, SI and rad, FRD; commands in per cent.
 
@@ -92,9 +90,6 @@ class Huuv:
     accepted_rate: Array
     chosen: Mapping[str, float]
     errata: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "accepted_rate", locked(self.accepted_rate))
 
     @property
     def theta(self) -> Array:
@@ -218,7 +213,7 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
     body: dict[str, Any] = {
         "schema_version": SCHEMA_VERSION,
         "name": "huuv",
-        "body": "HUUV, horizontal plane",
+        "body": "HUUV",
         "scaling": primes,
         "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "cb"},
         "conditions": Conditions(chosen["density"], chosen["speed"]),

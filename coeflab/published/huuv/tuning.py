@@ -22,7 +22,10 @@ from coeflab.identify.tuning import (
 )
 from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, thrust, thrust_rates
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import Basis, ComparedTable
+
+PAPER = publication("huuv")
 
 NAMES = (*COEFFICIENTS, "slope", "intercept", "arm")
 AT_SLOPE = len(COEFFICIENTS)
@@ -134,67 +137,46 @@ def hidden(huuv: Huuv, tuning: Tuning, source: str, constant: str) -> tuple[str,
 
 LIMITS = {"u": ("m/s", 0.007), "beta": ("deg", 0.40), "radius": ("m", 0.027)}
 ABOUT = {"u": ("m/s", 0.063), "beta": ("deg", 1.1), "radius": ("m", 0.14)}
-ROUGHLY = 0.1
-INTERCEPT, EITHER_WAY = 2.30, 0.15
+INTERCEPT = 2.30
 
 
 def origin_rows(huuv: Huuv) -> ComparedTable:
     """The constants of the steady turns, fitted again."""
     fit = tuned(huuv, MATLAB, BASE)
     rows = tuple(
-        Compared("fit of seven", IN_WORDS[n], p.unit, huuv.constants[n], p.after, 1e-3, Basis.CONSISTENCY, True)
-        for n in BASE
-        if (p := fit.parameter(n))
+        Row("fit of seven", IN_WORDS[n], p.unit, huuv.constants[n], p.after) for n in BASE if (p := fit.parameter(n))
     )
-    words = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
-    return ComparedTable(
-        "origin", "Where the constants of the steady turns come from", rows, "Fig. 17 b, d, f",
-        (f"Quadratic yaw damping held at 1, none linear. Root mean square: {words}; its radius does not reach 0.027 m.",),
-    )  # fmt: skip
+    return PAPER.table("origin", rows, **_facts(fit))
+
+
+def _facts(fit: Tuning) -> dict[str, object]:
+    """What texts on a fit name: how far it leaves the turns, what moved, what goes together, what else it states."""
+    rms = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    moved = [moved_in_words(p) for p in fit.parameters]
+    return {"words": rms, "moved": moved, "together": fit.together, "statements": fit.statements}
 
 
 def tuned_rows(fit: Tuning) -> ComparedTable:
     """What the fit to the paper's simulation leaves, and its thrust intercept."""
-    rows = [
-        Compared(
-            "MATLAB",
-            "thrust intercept",
-            "N",
-            INTERCEPT,
-            -fit.parameter("intercept").after,
-            EITHER_WAY,
-            Basis.CONSISTENCY,
-        )
-    ]
+    rows = [Row("MATLAB", "thrust intercept", "N", INTERCEPT, -fit.parameter("intercept").after)]
     rows += [
-        Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, Basis.CALIBRATION, at_most=True)
+        Row("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, basis=Basis.CALIBRATION, at_most=True)
         for n, (unit, most) in LIMITS.items()
     ]
-    words = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
-    return ComparedTable(
-        "tuned_matlab", "Tuned to the paper's simulation, 28 turns", tuple(rows), "Fig. 17 b, d, f",
-        (f"Root mean square: {words}.", *(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
-    )  # fmt: skip
+    return PAPER.table("tuned_matlab", rows, **_facts(fit))
 
 
 def pool_rows(fit: Tuning) -> ComparedTable:
     """What the fit to the pool leaves."""
     rows = tuple(
-        Compared("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms(), ROUGHLY, Basis.CALIBRATION, True)
-        for n, (unit, about) in ABOUT.items()
+        Row("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms()) for n, (unit, about) in ABOUT.items()
     )
-    return ComparedTable(
-        "tuned_tracker", "Tuned to the pool, 28 turns", rows, "Fig. 17 a, c, e",
-        (*(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
-    )  # fmt: skip
+    return PAPER.table("tuned_tracker", rows, **_facts(fit))
 
 
 NEAR = 70.0  # per cent: turns with no more on the right are fitted, the others predicted
-AHEAD = {
-    "u": 0.011,
-    "beta": 0.79,
-    "radius": 0.049,
-}  # what an independent fit of seven leaves of the paper's simulation, as rms
+# What an independent fit of seven leaves of the paper's simulation, as rms.
+AHEAD = {"u": 0.011, "beta": 0.79, "radius": 0.049}
 
 
 def predicted(huuv: Huuv, source: str, start: Array | None = None) -> Array:
@@ -225,17 +207,11 @@ def predicted_rows(huuv: Huuv) -> ComparedTable:
     """Twelve turns that the fit has not seen, by their root mean square."""
     rms = {source: np.sqrt(np.mean(predicted(huuv, source) ** 2, axis=0)) for source in (MATLAB, TRACKER)}
     rows = tuple(
-        Compared("MATLAB", f"rms of {name}", unit, AHEAD[name], float(x), 0.0, Basis.CONSISTENCY, at_most=True)
+        Row("MATLAB", f"rms of {name}", unit, AHEAD[name], float(x))
         for (name, unit, _), x in zip(QUANTITIES, rms[MATLAB], strict=True)
     )
     pool = ", ".join(f"{name} {x:.2g} {unit}" for (name, unit, _), x in zip(QUANTITIES, rms[TRACKER], strict=True))
-    return ComparedTable(
-        "out_of_sample", f"Fitted to the turns with right at most {NEAR:g} %, the twelve others predicted", rows, "Fig. 17",
-        (
-            "Seven numbers, as under the origin of the constants; nothing of the twelve turns is in the fit. Limits: what an independent fit left.",
-            f"The same of the pool, fitted to its own sixteen turns: root mean square {pool}.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("out_of_sample", rows, near=NEAR, pool=pool)
 
 
 def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
@@ -243,17 +219,8 @@ def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
     rows, words = [], []
     for name in ("m", "my", "arm"):
         found = hidden(huuv, fit, MATLAB, name)
-        rows.append(
-            Compared(
-                "MATLAB", f"sets that {IN_WORDS[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY
-            )
-        )
+        rows.append(Row("MATLAB", f"sets that {IN_WORDS[name]} hides in", "1", 1.0, float(len(found))))
         words += list(found)
     both = sum("beta^3" in text and "r|r|" in text for text in fit.together)
-    rows.append(
-        Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, Basis.CONSISTENCY)
-    )
-    return ComparedTable(
-        "hidden", "What the turns do not determine", tuple(rows), "Fig. 17 b, d, f",
-        (*words, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
-    )  # fmt: skip
+    rows.append(Row("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both)))
+    return PAPER.table("hidden", rows, words=words)

@@ -17,10 +17,13 @@ from coeflab.core.machine import one_thread
 from coeflab.core.table import plus_minus
 from coeflab.fits.uncertainty.grid_convergence import cell_sizes, grid_convergence
 from coeflab.law.coefficient import Coefficient
-from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import Acceptance, ComparedTable
 from coeflab.study.run import run
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
+
+PAPER = publication("tank")
 
 # c/a, k1, k2, k' as printed in R&M 623.
 LAMB = (
@@ -28,16 +31,11 @@ LAMB = (
     (2.99, 0.122, 0.803, 0.465), (3.99, 0.082, 0.860, 0.608), (4.99, 0.059, 0.895, 0.701), (6.01, 0.045, 0.918, 0.764),
     (6.97, 0.036, 0.933, 0.805), (8.01, 0.029, 0.945, 0.840), (9.02, 0.024, 0.954, 0.865), (9.97, 0.021, 0.960, 0.883),
 )  # fmt: skip
-PRINTED_TO = 0.0025  # at c/a = 2 its closed form gives 0.2100, 0.7042, 0.2394
 PLANE, SPHEROID = "tank_naca0020_plane", "tank_spheroid"  # campaigns
 ASPECT = 1.4673  # of the plane and its mirror image, which is also their area over the mean chord squared
 FINENESS = 6.0
-PLANE_WITHIN, SPHEROID_WITHIN = 0.10, 0.25
-SWEEPS, LONG, LONG_WITHIN = (
-    (0.0, 30.0, 45.0, 60.0),
-    1e6,
-    1e-5,
-)  # deg; aspect of a wing without end, and what is left of its ends
+SWEEPS = (0.0, 30.0, 45.0, 60.0)  # deg
+LONG, LONG_WITHIN = 1e6, 1e-5  # aspect of a wing without end, and what is left of its ends
 EDGES, ORDER = (64, 32, 16), 2.0  # cells along the edge of a cube, and the order of the values made up on them
 
 
@@ -69,58 +67,40 @@ def acceptance(folder: Path | None = None) -> Acceptance:
             tables.append(judged(_slopes(place / name)))
         except InputError as why:
             statements.append(f"Open: {name} has {why.found}.")
-    return Acceptance(
-        "tank", "The tow tank against theory: an isolated plane and a spheroid", tuple(tables), (), tuple(statements),
-        ("lamb1918", "whicker1958"),
-    )  # fmt: skip
+    return PAPER.acceptance(tables, statements)
 
 
 def _lamb() -> ComparedTable:
     rows = tuple(
-        Compared(f"c/a = {ratio:g}", name, "1", printed, ours, PRINTED_TO, Basis.VERIFICATION)
+        Row(f"c/a = {ratio:g}", name, "1", printed, ours)
         for ratio, *values in LAMB
         for name, printed, ours in zip(("k1", "k2", "k'"), values, inertia_of_spheroid(ratio), strict=True)
     )
-    return ComparedTable(
-        "lamb", "Coefficients of inertia of prolate spheroids", rows, "Lamb (1918), table",
-        ("The printed table is good to 0.0022: at c/a = 2 the closed form gives 0.2100, 0.7042 and 0.2394.",),
-    )  # fmt: skip
+    return PAPER.table("lamb", rows)
 
 
 def _closed_forms() -> ComparedTable:
     """What theory says of formulas that the tow tank and the estimates use, where it says it in closed form."""
-    rows = [
-        Compared(
-            f"infinite span, sweep {sweep:g} deg", "lift slope", "1/rad", LIFT_LOSS * 2.0 * np.pi * float(np.cos(np.radians(sweep))),
-            low_aspect_lift_slope(LONG, float(np.radians(sweep))), LONG_WITHIN, Basis.CONSISTENCY, True,
-        )
-        for sweep in SWEEPS
-    ]  # fmt: skip
+    rows = []
+    for sweep in SWEEPS:
+        due = LIFT_LOSS * 2.0 * np.pi * float(np.cos(np.radians(sweep)))
+        found = low_aspect_lift_slope(LONG, float(np.radians(sweep)))
+        rows.append(Row(f"infinite span, sweep {sweep:g} deg", "lift slope", "1/rad", due, found, LONG_WITHIN))
     x, weight = graded_nodes(-FINENESS, FINENESS, 64)
     radius = np.sqrt(1.0 - (x / FINENESS) ** 2)
-    found = meridian_integrals(x, weight, radius, -x / FINENESS**2)
-    volume = 4.0 / 3.0 * np.pi * FINENESS
+    whole = meridian_integrals(x, weight, radius, -x / FINENESS**2)
+    turning = whole.second_moment / whole.volume / FINENESS**2
     rows += [
-        Compared("6:1 by sections", "volume over b^3", "1", volume, found.volume, 1e-9, Basis.CONSISTENCY, True),
-        Compared(
-            "6:1 by sections", "turning over displaced mass and a^2", "1", 0.2, found.second_moment / found.volume / FINENESS**2,
-            1e-9, Basis.CONSISTENCY, True,
-        ),
-    ]  # fmt: skip
+        Row("6:1 by sections", "volume over b^3", "1", 4.0 / 3.0 * np.pi * FINENESS, whole.volume),
+        Row("6:1 by sections", "turning over displaced mass and a^2", "1", 0.2, turning),
+    ]
     sizes = cell_sizes(np.array(EDGES, dtype=float) ** 3)
     result = grid_convergence(1.0 + 0.01 * (EDGES[0] / np.array(EDGES)) ** ORDER, sizes)
     rows += [
-        Compared("cubes of 64, 32 and 16 cells an edge", "order", "1", ORDER, result.order, 1e-6, Basis.CONSISTENCY, True),
-        Compared("cubes of 64, 32 and 16 cells an edge", "value without cells", "1", 1.0, result.extrapolated, 1e-9, Basis.CONSISTENCY, True),
+        Row("cubes of 64, 32 and 16 cells an edge", "order", "1", ORDER, result.order, 1e-6),
+        Row("cubes of 64, 32 and 16 cells an edge", "value without cells", "1", 1.0, result.extrapolated),
     ]  # fmt: skip
-    return ComparedTable(
-        "closed_forms", "Formulas where theory has a closed form", tuple(rows),
-        "simple sweep theory; a spheroid by sections; Richardson's series on cubes",
-        (
-            "A swept wing without end lifts by the stream across it: the section's slope, 0.9 of 2 pi, times cos of the sweep.",
-            "Cubes: values 1 + h^2 made up by the length of an edge; the study knows the number of cells alone.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("closed_forms", rows)
 
 
 def _slopes(campaign: Path) -> dict[str, Coefficient]:
@@ -137,34 +117,15 @@ def _plane(found: dict[str, Coefficient]) -> ComparedTable:
     if side is not None and side.value is not None:
         drag = 0.0 if along is None or along.value is None else along.value
         slope = (drag - side.value) / ASPECT
-    row = Compared(
-        "a = 1.467", "lift slope", "1/rad", low_aspect_lift_slope(ASPECT), slope, PLANE_WITHIN, Basis.CONSISTENCY, True
-    )
-    return ComparedTable(
-        "plane", "Isolated stern plane with its mirror image, NACA 0020", (row,), "Whicker & Fehlner (1958), equation 1",
-        (
-            "Side force at the origin less the drag at rest. 10 % is allowed, as the equation was fitted to other sections "
-            "and tips; it was set before the tow.",
-            *_of(side, "Yv'"),
-        ),
-    )  # fmt: skip
+    row = Row("a = 1.467", "lift slope", "1/rad", low_aspect_lift_slope(ASPECT), slope)
+    return PAPER.table("plane", (row,), side=_of(side, "Yv'"))
 
 
 def _spheroid(found: dict[str, Coefficient]) -> ComparedTable:
     moment, side = (found.get(s) for s in ("Nv", "Yv"))
     value = None if moment is None else moment.value
-    row = Compared(
-        "6:1", "Nv'", "1", spheroid_munk_slope(FINENESS, 1.0), value, SPHEROID_WITHIN, Basis.CONSISTENCY, True
-    )
-    return ComparedTable(
-        "spheroid", "Prolate spheroid 6:1", (row,), "Munk moment of Lamb's k1 and k2",
-        (
-            "Potential flow has this moment and no side force. In a viscous flow the afterbody lifts, which takes from the "
-            "moment: 25 % is allowed, and was set before the tow.",
-            *_of(moment, "Nv'"),
-            *_of(side, "Yv'"),
-        ),
-    )  # fmt: skip
+    row = Row("6:1", "Nv'", "1", spheroid_munk_slope(FINENESS, 1.0), value)
+    return PAPER.table("spheroid", (row,), moment=_of(moment, "Nv'"), side=_of(side, "Yv'"))
 
 
 def _of(c: Coefficient | None, name: str) -> tuple[str, ...]:

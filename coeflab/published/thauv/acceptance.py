@@ -24,9 +24,12 @@ from coeflab.glider.glide import steady_glides
 from coeflab.glider.glider import Glider, GliderPhase
 from coeflab.glider.motion import Polar, balanced, glide, unexplained_power
 from coeflab.published.parameter_files import thauv_file
-from coeflab.published.thauv.figures import NOT_DRAWN, figures
-from coeflab.published.thauv.in_space import ASSUMED, compared_in_space, dive_files, flown_spiral, space_of
-from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.published.thauv.figures import figures
+from coeflab.published.thauv.in_space import compared_in_space, dive_files, flown_spiral, space_of
+from coeflab.report.acceptance import Acceptance, Basis, ComparedTable
+
+PAPER = publication("thauv")
 
 STEEP = np.radians(40.0)
 NOWHERE = 1.0
@@ -123,43 +126,15 @@ def _linear(known: Sequence[GlideSpeed]) -> tuple[Array, Array]:
     return rows, moments
 
 
-SAME, SPEED, BALLAST, GAIN, SETTLED = 1e-4, 0.005, 5e-4, 1.0, 1e-6
-REPEATED = {
-    "m3 - m1": ("kg", 0.05),
-    "moment below": ("N m", 5e-4),
-    "moment ahead, 1": ("N m", 5e-4),
-    "moment ahead, 2": ("N m", 5e-4),
-}
-SURFACED, FINE = 1e-6, 1e-8  # m
-STEADY_AFTER, AROUND = 170.0, 5.0  # s, as printed; half of its last digit that is not zero
-EXACT, FINEST, STATES, SEED = 1e-9, 1e-10, 300, 20260101  # no finer than that, so that every machine says the same
+GAIN, SETTLED = 1.0, 1e-6
+REPEATED = {"m3 - m1": ("kg", 0.05)} | dict.fromkeys(
+    ("moment below", "moment ahead, 1", "moment ahead, 2"), ("N m", 0.0005)
+)
+FINE = 1e-8  # m; no finer than that, so that every machine says the same
+STEADY_AFTER = 170.0  # s, as printed
+STATES, SEED = 300, 20260101
 VEHICLE = 66.35
 SPIRALS = "02"
-CONVENTIONS = (
-    "Motion in the vertical plane: u, w and q. Depth is positive downward, alpha = atan2(w, u), pitch theta is positive bow up.",
-    "Glide angle zeta = theta - alpha, below zero on a dive. Lift and drag are across and along the velocity, lift positive upward on "
-    "a body that moves ahead.",
-    "The paper writes v1, v3 and omega2 for u, w and q, and m1, m3 for mass plus added mass along x and z.",
-    "Net mass is mass less displaced mass: above zero is heavy. Angles of Table 3 are taken in degrees, see the errata.",
-    "The pitch moment of Table 3 is taken to be without the Munk moment, which equation 19 adds; see What to know.",
-)
-ERRATA = (
-    "Equation 6: m_B is called the largest displaced mass; M_B is the displaced mass at no stroke, m_B what is left of it.",
-    "Equation 9: b = R V stands for b_dot = R V.",
-    "Equation 12: the weight of the pistons alone turns the vehicle. All masses and the buoyancy do, as in equation 19; without "
-    "them a roller has no effect.",
-    "Equation 18: -m1 v1 omega2 stands for +m1 v1 omega2; with the minus sign kinetic energy is not conserved.",
-    "Equation 19: r_rx and r_rz, called the roller's, are the whole centre of gravity's, for they go with m g.",
-    "Table 1: m1 and m3 are called added masses; they are mass plus added mass.",
-    "Table 2, the values of the vehicle, is lost: m1, m3, J and the centres are calibrated or assumed here.",
-    "Table 3 prints no unit of the angle: it is degrees.",
-    "Section 5: 25.58 % and 28 % are swapped: case 02 gains 28 % in the first stage and 25.58 % in the second.",
-    "Section 5: 483 g is what both engines take in together.",
-)
-CALIBRATED = (
-    "m3 - m1, the moment below and a moment ahead for each stage are calibrated on the six published speeds: agreement "
-    "with them is in-sample and proves nothing. Four constants from six numbers of two digits leave little to test."
-)
 
 
 @one_thread()
@@ -168,16 +143,12 @@ def acceptance() -> Acceptance:
     flown = fly(shipped("cfd_data") / "thauv", 1, {})
     gliders = {f.run.glider.name.rpartition("_")[2]: f for f in flown}
     spiral = flown_spiral(gliders[SPIRALS].run.glider)
-    return Acceptance(
-        "thauv",
-        "THAUV, twin-hull glider: steady glides, speeds and two dive-and-surface cycles",
+    known = map(PAPER.text, ("calibrated", "assumed", "not_drawn"))
+    return PAPER.acceptance(
         (*compared(gliders), *compared_in_space(gliders[SPIRALS].run.glider, spiral)),
-        ERRATA,
-        (CALIBRATED, ASSUMED, NOT_DRAWN, _munk(gliders), _damping(gliders), _radians(gliders), *_motion(gliders)),
-        ("thauv", "leonard_graver2001"),
-        tuple(figures(flown, spiral[0])),
-        CONVENTIONS,
-        (*(thauv_file(f.run.glider) for f in flown), *dive_files([f.run.glider for f in flown])),
+        (*known, _munk(gliders), _damping(gliders), _radians(gliders), *_motion(gliders)),
+        figures=tuple(figures(flown, spiral[0])),
+        parameter_files=(*(thauv_file(f.run.glider) for f in flown), *dive_files([f.run.glider for f in flown])),
     )
 
 
@@ -198,8 +169,8 @@ def _dive(glider: Glider, stage: str) -> GliderPhase:
 
 def _engine(gliders: dict[str, Flown]) -> ComparedTable:
     found = 2.0 * space_of(gliders["01"].run.glider)[0].masses.ballast(0.03)
-    row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST, Basis.VERIFICATION)
-    return ComparedTable("engine", "Ballast water", (row,), "Equation 5 and section 5")
+    row = Row("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found)
+    return PAPER.table("engine", (row,))
 
 
 def _steady(gliders: dict[str, Flown]) -> ComparedTable:
@@ -209,13 +180,9 @@ def _steady(gliders: dict[str, Flown]) -> ComparedTable:
         weight = _dive(g, p["stage"]).net_mass * g.gravity
         speed, zeta = glide(g.body.polar, weight, np.radians(float(p["alpha [deg]"])))
         case = f"case {p['case']}, {p['alpha [deg]']} deg"
-        rows.append(Compared(case, "V", "m/s", float(p["V [m/s]"]), float(speed), SAME, Basis.CONSISTENCY))
-        rows.append(
-            Compared(case, "zeta", "deg", float(p["zeta [deg]"]), float(np.degrees(zeta)), SAME, Basis.CONSISTENCY)
-        )
-    return ComparedTable(
-        "steady_glides", "Steady glides at an angle of attack, first stage", tuple(rows), "Table 3, equations 28 and 29"
-    )
+        rows.append(Row(case, "V", "m/s", float(p["V [m/s]"]), float(speed)))
+        rows.append(Row(case, "zeta", "deg", float(p["zeta [deg]"]), float(np.degrees(zeta))))
+    return PAPER.table("steady_glides", rows)
 
 
 def _speeds(gliders: dict[str, Flown]) -> ComparedTable:
@@ -224,11 +191,8 @@ def _speeds(gliders: dict[str, Flown]) -> ComparedTable:
         g = gliders[p["case"]].run.glider
         found = steady_glides(g, _dive(g, p["stage"]))
         speed = found[0].speed if len(found) == 1 else None
-        rows.append(Compared(_case(p), "V", "m/s", float(p["V [m/s]"]), speed, SPEED, Basis.CALIBRATION))
-    return ComparedTable(
-        "speeds", "Dive speeds in balance of pitch", tuple(rows), "Section 5, text to Figure 13",
-        (CALIBRATED, "No other upright glide ahead is in balance within 30 degrees of attack."),
-    )  # fmt: skip
+        rows.append(Row(_case(p), "V", "m/s", float(p["V [m/s]"]), speed))
+    return PAPER.table("speeds", rows)
 
 
 def _known(gliders: dict[str, Flown]) -> list[GlideSpeed]:
@@ -245,11 +209,8 @@ def _left_out(gliders: dict[str, Flown]) -> ComparedTable:
     for i, p in enumerate(_published("published_speed")):
         speed = speed_of(known[i], calibrated([*known[:i], *known[i + 1 :]]))
         found = speed if np.isfinite(speed) else None
-        rows.append(Compared(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found, SPEED, Basis.VERIFICATION))
-    return ComparedTable(
-        "left_out", "Each speed from a calibration on the other five", tuple(rows), "Section 5",
-        ("Least squares, started from the linear pitch balance, not from known constants.",),
-    )  # fmt: skip
+        rows.append(Row(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found))
+    return PAPER.table("left_out", rows)
 
 
 def _constants(gliders: dict[str, Flown]) -> ComparedTable:
@@ -258,65 +219,42 @@ def _constants(gliders: dict[str, Flown]) -> ComparedTable:
     ahead = [g.body.moments(*_dive(g, stage).setting[:2])[0] for stage in ("1", "2")]
     stated = (g.body.munk, g.mass.moment_below, *ahead)
     rows = tuple(
-        Compared(
-            "all six speeds", name, unit, ours, float(again) if np.isfinite(again) else None, within, Basis.CONSISTENCY
-        )
+        Row("all six speeds", name, unit, ours, float(again) if np.isfinite(again) else None, within)
         for (name, (unit, within)), ours, again in zip(REPEATED.items(), stated, found, strict=True)
     )
-    return ComparedTable("constants", "Constants that the six speeds imply", rows, "Section 5", (CALIBRATED,))
+    return PAPER.table("constants", rows)
 
 
 def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
-    rows: list[Compared] = []
+    rows: list[Row] = []
     settled: list[float] = []
     for p in _published("published_speed"):
         run = gliders[p["case"]].run
         index = next((i for i in range(len(run.ends)) if run.phase_of(i) == _dive(run.glider, p["stage"])), None)
         speed = None if index is None else float(run.speed[run.ends[index]])
-        rows.append(Compared(_case(p), "V at the end", "m/s", float(p["V [m/s]"]), speed, SPEED, Basis.CALIBRATION))
+        rows.append(Row(_case(p), "V at the end", "m/s", float(p["V [m/s]"]), speed))
         steady = None if index is None else run.nearest(index)
         if speed is not None and steady is not None:
             settled.append(abs(speed - steady.speed))
     far = max([SETTLED, *settled])  # no finer than that, so that every machine says the same
-    return ComparedTable(
-        "cycle", "Dives of two dive-and-surface cycles in time, where they end", tuple(rows), "Figures 13 to 16",
-        (
-            "The second stage dives at 1060 s and surfaces at 1430 s, as printed; the first climb at 660 s is assumed.",
-            "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to compare them with.",
-            f"Every dive ends within {far:.0e} m/s of our own steady glide; that comparison does not count.",
-        ), "speeds",
-    )  # fmt: skip
+    return PAPER.table("cycle", rows, far=far)
 
 
 def _climbs(gliders: dict[str, Flown]) -> ComparedTable:
     """A dive ends where its time does; the last climb ends at the surface, which only a glider that is light comes to."""
     rows = tuple(
-        Compared(f"case {case}", "depth after the second climb", "m", 0.0, max(abs(float(f.run.depth[-1])), FINE), SURFACED, Basis.CONSISTENCY)
+        Row(f"case {case}", "depth after the second climb", "m", 0.0, max(abs(float(f.run.depth[-1])), FINE))
         for case, f in gliders.items()
     )  # fmt: skip
-    return ComparedTable(
-        "climbs", "Where two dive-and-surface cycles end", rows, "Figures 13 to 16",
-        ("The buoyancy engine makes the glider light on the way up: the motion ends when it meets the surface, or after its time.",),
-    )  # fmt: skip
+    return PAPER.table("climbs", rows)
 
 
 def _settling(gliders: dict[str, Flown]) -> ComparedTable:
     times = [f.run.settling(0) for f in gliders.values()]
     slowest = max(t for t in times if t is not None) if None not in times else None
     mass, polar = gliders["01"].run.glider.mass, gliders["01"].run.glider.polar
-    row = Compared(
-        "slowest of three cases", "time until the dive is steady", "s", STEADY_AFTER, slowest, AROUND, Basis.CALIBRATION
-    )
-    return ComparedTable(
-        "settling", "When the first dive is steady", (row,), "Section 5, text to Figure 13",
-        (
-            f"Printed: around 170 s. Steady: within 1 % of the speed of the balance. It calibrates the pitch damping, "
-            f"{polar.pitch_damping:g} N m per m/s and rad/s, for J = {mass.pitch_inertia:g} kg m^2, which is assumed: one number "
-            "cannot give both.",
-            "With J = 20 kg m^2 no damping meets both 170 s and the printed speeds of the second stage: 10 lets case 01 swing up "
-            "there, 1300 is too slow for all three.",
-        ),
-    )  # fmt: skip
+    row = Row("slowest of three cases", "time until the dive is steady", "s", STEADY_AFTER, slowest)
+    return PAPER.table("settling", (row,), damping=polar.pitch_damping, inertia=mass.pitch_inertia)
 
 
 def _power(gliders: dict[str, Flown]) -> ComparedTable:
@@ -324,19 +262,12 @@ def _power(gliders: dict[str, Flown]) -> ComparedTable:
     rows = []
     for case, f in gliders.items():
         power, drift = unexplained_power(f.run.glider.body, _dive(f.run.glider, "1").setting, draws)
-        for quantity, unit, found in (
-            ("power without a force", "W", power),
-            ("velocity without a cause", "m/s", drift),
-        ):
-            rows.append(
-                Compared(
-                    f"case {case}, {STATES} motions", quantity, unit, 0.0, max(found, FINEST), EXACT, Basis.CONSISTENCY
-                )
-            )
-    return ComparedTable(
-        "power", "Energy of the equations that are integrated", tuple(rows), "Equations 14-19 as corrected",
-        ("Drag and pitch moment alone change the energy of body and water, weight and buoyancy; inertia and lift do no work.",),
-    )  # fmt: skip
+        moved = f"case {case}, {STATES} motions"
+        rows += [
+            Row.none(moved, "power without a force", "W", power),
+            Row.none(moved, "velocity without a cause", "m/s", drift),
+        ]
+    return PAPER.table("power", rows)
 
 
 def _gains(gliders: dict[str, Flown]) -> ComparedTable:
@@ -344,29 +275,18 @@ def _gains(gliders: dict[str, Flown]) -> ComparedTable:
     rows = []
     for stage, printed in (("1", 28.0), ("2", 25.58)):
         found = 100.0 * (known["02", stage] / known["01", stage] - 1.0)
-        rows.append(
-            Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005, Basis.VERIFICATION)
-        )
+        rows.append(Row(f"stage {stage}", "gain of the printed speeds", "%", printed, found))
         ours = [steady_glides(g, _dive(g, stage)) for g in (gliders[c].run.glider for c in ("01", "02"))]
         gain = 100.0 * (ours[1][0].speed / ours[0][0].speed - 1.0) if all(ours) else None
-        rows.append(
-            Compared(f"stage {stage}", "gain of our steady speeds", "%", printed, gain, GAIN, Basis.CALIBRATION)
-        )
-    return ComparedTable(
-        "gains", "Gain in speed, the two printed numbers swapped back", tuple(rows), "Section 5",
-        ("Gain of case 02 over 01. The printed speeds give the printed gains once these are swapped back.",),
-    )  # fmt: skip
+        rows.append(Row(f"stage {stage}", "gain of our steady speeds", "%", printed, gain, GAIN, Basis.CALIBRATION))
+    return PAPER.table("gains", rows)
 
 
 def _munk(gliders: dict[str, Flown]) -> str:
     munk, known = gliders["01"].run.glider.body.munk, _known(gliders)
     without = calibrated(known, 0.0)
     missed = max(abs(speed_of(k, without) - k.speed) for k in known)
-    return (
-        f"m3 - m1 = {munk:.1f} kg is {munk / VEHICLE:.1f} times the mass of the vehicle, {VEHICLE} kg. Added mass that large "
-        "suggests that the CFD moment M already holds the Munk moment (m3 - m1) v1 v3, which equation 19 then adds once more. "
-        f"The published speeds were made that way: without the addition the best constants miss them by up to {missed:.3f} m/s."
-    )
+    return PAPER.text("munk", munk=munk, times=munk / VEHICLE, vehicle=VEHICLE, missed=missed)
 
 
 def _damping(gliders: dict[str, Flown]) -> str:
@@ -381,11 +301,10 @@ def _damping(gliders: dict[str, Flown]) -> str:
     free = [growth(g, p, 0.0) for g, p in pairs]
     least = [brentq(lambda d, g=g, p=p: growth(g, p, d), 0.0, g.polar.pitch_damping, xtol=0.01) for g, p in pairs]
     used = gliders["01"].run.glider
-    return (
-        f"The paper's equations have no pitch damping. Without any, {sum(v > 0.0 for v in free)} of the {len(free)} steady glides "
-        f"are unstable (J = {used.mass.pitch_inertia:g} kg m^2 assumed); they settle with at least {max(least):.1f} N m per m/s "
-        f"and rad/s. Calibrated here: {used.polar.pitch_damping:g}. It changes no steady glide."
-    )
+    return PAPER.text(
+        "damping", unstable=sum(v > 0.0 for v in free), count=len(free), inertia=used.mass.pitch_inertia, least=max(least),
+        used=used.polar.pitch_damping,
+    )  # fmt: skip
 
 
 def _radians(gliders: dict[str, Flown]) -> str:
@@ -393,10 +312,7 @@ def _radians(gliders: dict[str, Flown]) -> str:
     per_radian = replace(g, polar=replace(g.polar, angle_unit="rad"))
     alpha = np.linspace(-np.pi / 2, np.pi / 2, 1801)
     speed, _ = glide(per_radian.body.polar, _dive(g, "1").net_mass * g.gravity, alpha)
-    return (
-        f"With Table 3 per radian no glide of case 01 in the first stage is slower than {speed.min():.2f} m/s within 90 degrees "
-        "of attack, where 0.25 m/s is published: the angle is in degrees."
-    )
+    return PAPER.text("radians", slowest=speed.min())
 
 
 def _motion(gliders: dict[str, Flown]) -> tuple[str, ...]:

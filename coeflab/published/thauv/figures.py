@@ -13,20 +13,18 @@ from coeflab.core.types import Array
 from coeflab.glider.figures import motion_figure, polar_figure
 from coeflab.glider.flight import Flown
 from coeflab.glider.glide import GlideRun
+from coeflab.published.publication import publication
 from coeflab.published.thauv.in_space import space_of
 from coeflab.report.document import Figure
-from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.laws import Plot, Trace
+
+PAPER = publication("thauv")
 
 SHOWN = (-15.0, 15.0)
 SPEEDS = (0.25, 0.5, 0.75, 1.0)
 CRUISES = (0.0, 1.5)
 PRINTED = {"01": (0.25, 0.43), "02": (0.32, 0.54), "03": (0.34, 0.57)}
 STEADY, SECOND = 170.0, 1430.0  # s, as printed
-NOT_DRAWN = (
-    "Figures of the paper without a picture of ours: 1 and 7 (the text prints no size of hull or wing), 5 and 6 (mesh and grid "
-    "study: cells are printed, forces are not). Figure 4 is the report's drawing of axes. Axes of the paper's own figures are not "
-    "known here; ranges are chosen."
-)
 
 
 def figures(flown: Sequence[Flown], spiral: GlideRun) -> Iterator[tuple[str, Figure]]:
@@ -52,14 +50,7 @@ def _forces(flown: Sequence[Flown]) -> Figure:
         )
         label = f"{name} / V^2  [{unit}/(m/s)^2]"
         plots.append(Plot(label, "angle of attack alpha  [deg]", traces, 104.0, is_scaled=name == "moment"))
-    return laws_figure(
-        "thauv-forces", "Lift, drag and pitch moment of the three wings",
-        "Equations 28 to 30 with Table 3, over the square of the speed, so that one curve holds for every speed. The paper states "
-        "these laws over the angle of attack alone: there are no data for a drag surface over alpha and beta.",
-        "Three panels over the angle of attack: straight lines of lift, parabolas of drag and straight lines of moment, for three "
-        "wings.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("thauv-forces", plots)
 
 
 def _at_speeds(flown: Flown) -> Figure:
@@ -72,13 +63,7 @@ def _at_speeds(flown: Flown) -> Figure:
         plots.append(
             Plot(f"{name}  [{unit}]", "angle of attack alpha  [deg]", traces, 104.0, is_scaled=name == "moment")
         )
-    return laws_figure(
-        "thauv-forces-case-01", "Figures 8 to 10: lift, drag and pitch moment of case 01 at four speeds",
-        "Equations 28 to 30 with Table 3; speeds and angles are chosen. No computed point of the paper is known here: its table of "
-        "forces is not printed.",
-        "Three panels over the angle of attack, four speeds each: lift and moment are straight, drag is a parabola.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("thauv-forces-case-01", plots)
 
 
 def _cruise(flown: Sequence[Flown]) -> Figure:
@@ -93,13 +78,7 @@ def _cruise(flown: Sequence[Flown]) -> Figure:
         plots.append(Plot(f"{name}, Figure {number}  [N]", "speed V  [m/s]", traces, 110.0, is_scaled=name == "drag"))
     drag = [float(_over_speed(f, "drag")(np.array(0.0))) for f in flown]
     spread = 100.0 * (max(drag) / min(drag) - 1.0)
-    return laws_figure(
-        "thauv-cruise", "Figures 11 and 12: lift and drag of the level cruise",
-        f"K_L0 V^2 and K_D0 V^2 of Table 3, at no angle of attack, as the text states for the cruise. The drags of the three wings "
-        f"lie within {spread:.1f} %: as the paper concludes, the hulls make most of it. The range of speeds is chosen.",
-        "Two panels over the speed: lift falls below zero, drag grows, each with its square, for three wings.",
-        plots,
-    )  # fmt: skip
+    return PAPER.figure("thauv-cruise", plots, spread=spread)
 
 
 def _speeds(flown: Sequence[Flown]) -> Figure:
@@ -112,13 +91,7 @@ def _speeds(flown: Sequence[Flown]) -> Figure:
             f"case {_case(f)}, printed", np.array([STEADY, SECOND]), np.array(PRINTED[_case(f)]), i, "hollow", notes
         )
         traces.append(points)
-    return laws_figure(
-        "thauv-speeds", "Figure 13: speed in time, with the printed speeds",
-        "Printed speeds of section 5, on which the constants are calibrated: in-sample. The text puts the first at around 170 s; it "
-        "gives no time for the second, which stands where the dive ends. The first climb at 660 s is assumed.",
-        "Speed over time of three cases, two dives and two climbs, with six printed speeds.",
-        (Plot("V  [m/s]", "time  [s]", tuple(traces), 170.0),),
-    )  # fmt: skip
+    return PAPER.figure("thauv-speeds", (Plot("V  [m/s]", "time  [s]", tuple(traces), 170.0),))
 
 
 def _masses(flown: Flown) -> Figure:
@@ -140,16 +113,13 @@ def _masses(flown: Flown) -> Figure:
     angle = np.linspace(-90.0, 90.0, 61)
     place = np.array([masses.roller_place(a) for a in np.radians(angle)])
     turned = (Trace("roller, y", angle, place[:, 1], 0), Trace("roller, z", angle, place[:, 2], 1))
-    return laws_figure(
-        "thauv-masses", "Figures 2 and 3: where the masses are, and the roller's centre",
-        "Masses are printed in section 2. Their places are not: x of the pistons and of the rest follow from the calibrated moments, "
-        "hulls 0.5 m apart and a roller arm of 0.05 m are assumed. Lower panel: equation 4.",
-        "Above, a plan view with pistons, roller, rest and centre of gravity; below, y and z of the roller over its angle.",
+    return PAPER.figure(
+        "thauv-masses",
         (
             Plot("x, forward  [m]", "y, to starboard  [m]", plan, 130.0),
             Plot("place of the roller  [m]", "roller angle gamma  [deg]", turned, 110.0),
         ),
-    )  # fmt: skip
+    )
 
 
 def _spiral(run: GlideRun) -> Figure:
@@ -158,17 +128,14 @@ def _spiral(run: GlideRun) -> Figure:
     track = (Trace(run.glider.name, t.position[:, 1], t.position[:, 0], -1),)
     roll = (Trace(run.glider.name, t.time, np.degrees(t.angles[:, 0]), -1),)
     height = (Trace(run.glider.name, t.time, -run.depth, -1),)
-    return laws_figure(
-        "thauv-spiral", "A spiral: the first dive of case 02 with the roller at 60 degrees",
-        "The paper describes this motion (section 2, text to Figure 3) and shows none. All that moves the vehicle to the side is "
-        "assumed, so radius and rate are an illustration of equations 8 to 13.",
-        "Track over ground, roll and height over time of a spiral to starboard.",
+    return PAPER.figure(
+        "thauv-spiral",
         (
             Plot("north  [m]", "east  [m]", track, 150.0),
             Plot("roll  [deg]", "time  [s]", roll, 80.0, is_scaled=False),
             Plot("height  [m]", "time  [s]", height, 80.0),
         ),
-    )  # fmt: skip
+    )
 
 
 def _over_speed(flown: Flown, name: str) -> Callable[[Array], Array]:

@@ -36,19 +36,18 @@ from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.vehicle import vehicle
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.published.publication import Row, publication
+from coeflab.report.acceptance import Basis, ComparedTable
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterHydrostatics, ParameterThruster
+
+PAPER = publication("thauv")
 
 FlownSpiral = tuple[GlideRun, Spiral | None]
 UNIT = Scaling(1.0, "unit length (the paper prints none)")
 ROLLED, FLOWN_FOR, CRUISE = np.radians(60.0), 420.0, 0.5
 STATES, SEED = 60, 20260102
-SAME, FINEST, EXACT, ROUNDED, TRUNCATED, TUMBLING = 1e-4, 1e-10, 1e-9, 5e-4, 0.03, 0.01
-ASSUMED = (
-    "All that moves THAUV to the side is assumed, for the paper prints none of it: the spirals show what its equations do, they "
-    "are no prediction of the vehicle."
-)
+EXACT, TUMBLING = 1e-9, 0.01
 
 
 def space_of(glider: Glider) -> tuple[SpaceBody, Array]:
@@ -90,31 +89,18 @@ def _masses(glider: Glider) -> ComparedTable:
     masses, g = space.masses, glider.gravity
     right_angle = g * (masses.moments(0.0, np.pi / 2, rest) - masses.moments(0.0, 0.0, rest))
     rows = [
-        Compared("section 2", "static mass m_s", "kg", 65.33, masses.static, 0.005, Basis.VERIFICATION),
-        Compared("stroke 0.03 m", "mass less displaced mass", "kg", glider.phases[0].net_mass,
-                 masses.total - masses.displaced(0.03), 1e-5, Basis.CONSISTENCY),
+        Row("section 2", "static mass m_s", "kg", 65.33, masses.static, 0.005, Basis.VERIFICATION),
+        Row("stroke 0.03 m", "mass less displaced mass", "kg", glider.phases[0].net_mass, masses.total - masses.displaced(0.03), 1e-5),
     ]  # fmt: skip
     for stage, stroke, ahead in (("1", 0.03, 2.272), ("2", 0.05, 3.898)):
         found = g * masses.moments(stroke, 0.0, rest)
         for name, value, against in (("ahead", found[0], ahead), ("aside", found[1], 0.0), ("below", found[2], 4.712)):
-            row = Compared(f"stage {stage}", f"moment {name}", "N m", against, float(value), ROUNDED, Basis.CONSISTENCY)
-            rows.append(row)
+            rows.append(Row(f"stage {stage}", f"moment {name}", "N m", against, float(value)))
     lever = masses.roller * g * masses.roller_arm
     for name, at, against in (("aside", 1, lever), ("below", 2, -lever)):
-        row = Compared("roller at 90 deg", f"moment {name} gained", "N m", against, float(right_angle[at]), EXACT,
-                       Basis.CONSISTENCY)  # fmt: skip
-        rows.append(row)
+        rows.append(Row("roller at 90 deg", f"moment {name} gained", "N m", against, float(right_angle[at]), EXACT))
     j = masses.inertia(0.0, 0.0, rest)
-    return ComparedTable(
-        "masses", "Masses, pistons, roller and buoyancy", tuple(rows), "Equations 1 to 7, section 2",
-        (
-            "The moments ahead and below are those that the six speeds imply; the mass model gives them again from every mass and "
-            "the buoyancy. Places of roller and hulls are assumed, Table 2 is lost.",
-            f"The masses alone have moments of inertia of {j[0, 0]:.1f}, {j[1, 1]:.1f} and {j[2, 2]:.1f} kg m^2 about x, y and z, "
-            f"with assumed radii of gyration. J2 = {glider.mass.pitch_inertia:g} kg m^2 is assumed, the rest of it is water.",
-            "Equation 7 as printed moves the water's lever with the piston; here it stays where it was calibrated.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("masses", rows, j_x=j[0, 0], j_y=j[1, 1], j_z=j[2, 2], inertia=glider.mass.pitch_inertia)
 
 
 def _energy(glider: Glider) -> ComparedTable:
@@ -123,18 +109,13 @@ def _energy(glider: Glider) -> ComparedTable:
     draws = np.random.default_rng(SEED).uniform(-1.0, 1.0, (STATES, 8)) * sizes
     setting = rolled(glider).setting._replace(right=1.0, left=2.0)
     power, drift, spun = unexplained_in_space(space, setting, draws)
-    rows = tuple(
-        Compared(f"{STATES} motions", quantity, unit, 0.0, max(found, FINEST), EXACT, Basis.CONSISTENCY)
-        for quantity, unit, found in (
-            ("power without a force", "W", power),
-            ("velocity without a cause", "m/s", drift),
-            ("rotation without a cause", "rad/s", spun),
-        )
+    moved = f"{STATES} motions"
+    rows = (
+        Row.none(moved, "power without a force", "W", power),
+        Row.none(moved, "velocity without a cause", "m/s", drift),
+        Row.none(moved, "rotation without a cause", "rad/s", spun),
     )
-    return ComparedTable(
-        "power_in_space", "Energy of the equations in space", rows, "Equations 8 to 13 as corrected",
-        ("Water, thrusters, weight and buoyancy alone change the energy; inertia does no work.",),
-    )  # fmt: skip
+    return PAPER.table("power_in_space", rows)
 
 
 def _cruise(glider: Glider) -> ComparedTable:
@@ -144,18 +125,14 @@ def _cruise(glider: Glider) -> ComparedTable:
     left = out_of_balance(space, found.setting, level)
     pushed = out_of_balance(space, found.setting._replace(right=found.setting.right + 1.0), level) - left
     rows = (
-        Compared("thrust of the drag", "force ahead left over", "N", 0.0, float(left[0]), EXACT, Basis.CONSISTENCY),
-        Compared("net mass of the lift", "force down left over", "N", 0.0, float(left[2]), EXACT, Basis.CONSISTENCY),
-        Compared("1 N more on the right", "force ahead", "N", 1.0, float(pushed[0]), EXACT, Basis.CONSISTENCY),
-        Compared("1 N more on the right", "yaw moment", "N m", -0.25, float(pushed[5]), EXACT, Basis.CONSISTENCY),
+        Row("thrust of the drag", "force ahead left over", "N", 0.0, float(left[0])),
+        Row("net mass of the lift", "force down left over", "N", 0.0, float(left[2])),
+        Row("1 N more on the right", "force ahead", "N", 1.0, float(pushed[0])),
+        Row("1 N more on the right", "yaw moment", "N m", -0.25, float(pushed[5])),
     )
-    return ComparedTable(
-        "cruise", f"Level cruise under thrusters at {CRUISE:g} m/s", rows, "Section 4, Figures 11 and 12",
-        (
-            f"At no angle of attack: drag {found.drag:.2f} N, lift {found.lift:.2f} N, so {found.drag / 2:.2f} N a thruster and "
-            f"{1e3 * found.setting.net_mass:.0f} g of net mass. {found.elevator:.2f} N m of pitch are the elevator's, of which the "
-            "paper prints nothing. Thrusters 0.25 m aside are assumed.",
-        ),
+    return PAPER.table(
+        "cruise", rows, speed=CRUISE, drag=found.drag, lift=found.lift, each=found.drag / 2,
+        grams=1e3 * found.setting.net_mass, elevator=found.elevator,
     )  # fmt: skip
 
 
@@ -178,17 +155,9 @@ def _spiral(glider: Glider, run: GlideRun, steady: Spiral | None) -> tuple[Compa
     }
     case = f"roller at {np.degrees(ROLLED):.0f} deg"
     same = tuple(
-        Compared(case, name, unit, float(against or np.nan), found, SAME, Basis.CONSISTENCY, relative=True)
-        for (name, unit), (against, found) in values.items()
+        Row(case, name, unit, float(against or np.nan), found) for (name, unit), (against, found) in values.items()
     )
-    settled = ComparedTable(
-        "spiral", f"A spiral of {glider.name}: equilibrium and motion in time", same, "Equations 8 to 13; Figure 3",
-        (
-            f"From rest, {FLOWN_FOR:g} s, with the orders of the first dive. The equilibrium is solved without any motion in time; "
-            "the radius of the motion is that of the last arc over ground.",
-            ASSUMED,
-        ),
-    )  # fmt: skip
+    settled = PAPER.table("spiral", same, glider=glider.name, lasts=FLOWN_FOR)
     return settled, _senses(glider, steady, phase)
 
 
@@ -203,17 +172,11 @@ def _senses(glider: Glider, steady: Spiral | None, phase: GliderPhase) -> Compar
             space, phase.setting._replace(roller=-ROLLED), straight.speed, straight.alpha, straight.theta
         )
     rows = [
-        Compared("dive, roller to starboard", "sense of the turn", "1", 1.0, _sign(steady), 0.0, Basis.CONSISTENCY),
-        Compared("climb, roller to starboard", "sense of the turn", "1", -1.0, _sign(climb[0] if climb else None), 0.0,
-                 Basis.CONSISTENCY),
-        Compared("dive, roller to port", "sense of the turn", "1", -1.0, _sign(port), 0.0, Basis.CONSISTENCY),
+        Row("dive, roller to starboard", "sense of the turn", "1", 1.0, _sign(steady)),
+        Row("climb, roller to starboard", "sense of the turn", "1", -1.0, _sign(climb[0] if climb else None)),
+        Row("dive, roller to port", "sense of the turn", "1", -1.0, _sign(port)),
     ]  # fmt: skip
-    return ComparedTable(
-        "senses", "Which way a roller turns it", tuple(rows), "Section 2, text to Figure 3",
-        (
-            "The centre of gravity moves to the roller's side, the hulls roll, and the lift leans: up on a dive, down on a climb.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("senses", rows)
 
 
 def _sign(turn: Spiral | None) -> float | None:
@@ -252,14 +215,8 @@ def dive_file(glider: Glider, phase: GliderPhase, name: str) -> ParameterFile:
     stated = Stated(
         name, glider.title, UNIT, at, coefficients, datum=Datum("cb"), matrix=added,
         mass=MassProperties(masses.total, masses.total * float(centre[0]), None, centre, rigid),
-        notes=(
-            f"{glider.name} on the orders of '{phase.name}': net mass {phase.net_mass:g} kg, stroke {phase.position:g} m, roller "
-            f"{np.degrees(phase.roller):g} deg, all at rest. Simulators hold neither moving pistons, roller nor buoyancy engine.",
-            "Polar of Table 3 as powers of w/V, up to the fourth in X and the third in Z and M: within 0.02 % of the force at 8 deg. Drift "
-            "comes in up to the second order.",
-            "m3 - m1 and the moments of the masses are calibrated on the six published speeds, pitch damping on 170 s until a dive is "
-            "steady. Moments of inertia: of the mass model with assumed radii of gyration, the rest of the assumed totals is water.",
-            "All of the motion to the side, and the thrusters, are assumed: the paper prints none of it.",
+        notes=PAPER.texts(
+            "notes_dive", glider=glider.name, phase=phase.name, net=phase.net_mass, stroke=phase.position, roller=np.degrees(phase.roller),
         ),
     )  # fmt: skip
     folder = Path(str(shipped("cfd_data") / "thauv"))
@@ -301,19 +258,12 @@ def _carried(glider: Glider) -> ComparedTable:
                 float(np.max(np.abs(space_of(glider)[0].moments(phase.setting)))),
             )
             found = max(float(np.max(np.abs(left[:3]))) / force, float(np.max(np.abs(left[3:]))) / arm)
-            rows.append(Compared(name, "left over", "1", 0.0, found, TRUNCATED, Basis.CONSISTENCY))
+            rows.append(Row(name, "left over", "1", 0.0, found))
     rows.append(_tumbling(glider))
-    return ComparedTable(
-        "carried", "The dive as a parameter file, in the rigid body of every simulator", tuple(rows), "Equations 8 to 13",
-        (
-            "Largest force over the net weight, or moment over that of the masses, which the parameter file of a dive leaves in the "
-            "state of our equations.",
-            "The file has other code, products of velocities in place of the polar, and the centre of gravity in the inertia.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("carried", rows)
 
 
-def _tumbling(glider: Glider) -> Compared:
+def _tumbling(glider: Glider) -> Row:
     """Moments of a fast rotation without way: those of inertia and of the masses, where the water gives none."""
     space, _ = space_of(glider)
     phase = rolled(glider)
@@ -323,4 +273,4 @@ def _tumbling(glider: Glider) -> Compared:
     upright = np.array([[1.0, 0.0, 0.0, 0.0]])
     theirs = craft.unbalanced(nu[None, :], upright, np.zeros((1, 3)), np.zeros(6))[0, 3:]
     apart = float(np.max(np.abs(ours - theirs)) / np.max(np.abs(ours)))
-    return Compared("rotation without way", "moment apart", "1", 0.0, apart, TUMBLING, Basis.CONSISTENCY)
+    return Row("rotation without way", "moment apart", "1", 0.0, apart, TUMBLING)

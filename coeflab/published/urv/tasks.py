@@ -16,11 +16,14 @@ from coeflab.arm.motion import at_rest, equations_of, track_of_end, track_to
 from coeflab.arm.thrusters import thruster_matrix
 from coeflab.core.types import Array
 from coeflab.motion.dynamics import rotations
+from coeflab.published.publication import Row, publication
 from coeflab.published.urv import model
 from coeflab.published.urv.model import dry, wet
-from coeflab.published.urv.theory import SPEEDS, Q, none, same
+from coeflab.published.urv.theory import SPEEDS, Q
 from coeflab.report.acceptance import ComparedTable
 from coeflab.report.document import Figure
+
+PAPER = publication("urv")
 
 CONSERVED, BALANCED = 1e-8, 1e-6
 LASTS, RELATIVE = 5.0, 1e-9
@@ -34,29 +37,16 @@ def energy() -> ComparedTable:
     for words, chain in (("free, without water", dry()), ("free, with added mass", _ideal(wet()))):
         start, end, _ = _motion(chain, lambda _: np.zeros(9))
         apart = _kinetic(chain, end) / _kinetic(chain, start) - 1.0
-        rows.append(none(f"{words}, {LASTS:g} s", "change of kinetic energy over itself", "1", apart, CONSERVED))
+        rows.append(Row.none(f"{words}, {LASTS:g} s", "change of kinetic energy over itself", "1", apart, CONSERVED))
         if chain is dry():
             gone = _momentum(chain, end) - _momentum(chain, start)
-            rows.append(none(f"{words}, {LASTS:g} s", "change of momentum", "N s, N m s", gone, 1e-7))
+            rows.append(Row.none(f"{words}, {LASTS:g} s", "change of momentum", "N s, N m s", gone, 1e-7))
     start, end, work = _motion(wet(), _driven)
     gained = _kinetic(wet(), end) - _kinetic(wet(), start)
-    largest = max(abs(gained), abs(work))
-    rows.append(
-        none(
-            f"with drag and torques, {LASTS:g} s",
-            "energy gained less work, over the larger",
-            "1",
-            (gained - work) / largest,
-            BALANCED,
-        )
-    )
-    return ComparedTable(
-        "energy", "Energy and momentum in time", tuple(rows), "Equations 24 and 25",
-        (
-            "Free from the speeds above, by an eighth-order method with a tolerance of 1e-9.",
-            f"With drag and joint torques: {work:+.4g} J of work, {gained:+.4g} J of kinetic energy gained.",
-        ),
-    )  # fmt: skip
+    apart = (gained - work) / max(abs(gained), abs(work))
+    case = f"with drag and torques, {LASTS:g} s"
+    rows.append(Row.none(case, "energy gained less work, over the larger", "1", apart, BALANCED))
+    return PAPER.table("energy", rows, work=work, gained=gained)
 
 
 def _ideal(chain: Chain) -> Chain:
@@ -165,31 +155,25 @@ def control(runs: dict[str, ControlledRun]) -> ComparedTable:
     lifted = thruster_matrix(heavy.chain.thrusters) @ heavy.ordered[0]
     case, moving = "computed torque, thrusters at once", "computed torque, thrusters at once, joints move"
     rows = [
-        none(f"{case}, 0.37 m off and turning", "distance apart from e_0 (1 + w t) exp(-w t)", "m", offset.apart - fades, 1e-5),
-        none(f"{case}, joints 0.1 rad off", "error apart from e_0 (1 + w t) exp(-w t)", "rad", offset.q - offset.wanted - joints, 1e-3),
-        same(f"turned by {angle:g} rad", "angular acceleration asked for", "rad/s^2", -2.0 * 1.5**2 * np.sin(angle / 2.0), float(asked[5]), 1e-9),
-        same(f"turned by {2.0 * angle:g} rad, the other quaternion", "angular acceleration asked for", "rad/s^2", -2.0 * 1.5**2 * np.sin(angle), float(other[5]), 1e-9),
-        none(moving, "distance from the station", "m", runs["ideal"].apart, 1e-6),
-        none(moving, "end effector from its track", "m", runs["ideal"].end_apart, 1e-4),
-        same("computed torque that does not know the current", "distance that stays", "m", float(np.linalg.norm(steady)), float(pushed.apart[-1]), 1e-4),
-        same("station keeping of a heavy vehicle", "force down that is asked for", "N", -excess, float(lifted[2]), 1e-9),
+        Row.none(f"{case}, 0.37 m off and turning", "distance apart from e_0 (1 + w t) exp(-w t)", "m", offset.apart - fades, 1e-5),
+        Row.none(f"{case}, joints 0.1 rad off", "error apart from e_0 (1 + w t) exp(-w t)", "rad", offset.q - offset.wanted - joints, 1e-3),
+        Row(f"turned by {angle:g} rad", "angular acceleration asked for", "rad/s^2", -2.0 * 1.5**2 * np.sin(angle / 2.0), float(asked[5]), 1e-9),
+        Row(f"turned by {2.0 * angle:g} rad, the other quaternion", "angular acceleration asked for", "rad/s^2", -2.0 * 1.5**2 * np.sin(angle), float(other[5]), 1e-9),
+        Row.none(moving, "distance from the station", "m", runs["ideal"].apart, 1e-6),
+        Row.none(moving, "end effector from its track", "m", runs["ideal"].end_apart, 1e-4),
+        Row("computed torque that does not know the current", "distance that stays", "m", float(np.linalg.norm(steady)), float(pushed.apart[-1]), 1e-4),
+        Row("station keeping of a heavy vehicle", "force down that is asked for", "N", -excess, float(lifted[2]), 1e-9),
     ]  # fmt: skip
     words = [
-        f"{TITLES[name]}: up to {1e3 * float(run.apart.max()):.2g} mm and {np.degrees(float(run.turned.max())):.2g} deg off station, the end "
-        f"effector up to {1e3 * float(run.end_apart.max()):.2g} mm off its track; thrust up to {float(np.abs(run.thrust).max()):.2g} N, "
-        f"joint torque up to {float(np.abs(run.torque).max()):.2g} N m; {'; '.join(run.status) or 'nothing at its limit'}."
-        for name, run in runs.items()
-        if name in TITLES
-    ]
-    return ComparedTable(
-        "control", "Computed torque and station keeping", tuple(rows), "Sections 1, 3.6 and 3.7",
-        (
-            "The paper prints no controller and no run. The law and its gains are ours: 1 rad/s for the vehicle, 4 rad/s for joints, critical "
-            "damping.",
-            "M^-1 F / w^2 is the distance that a current leaves whose force F the controller does not know.",
-            *words,
-        ),
-    )  # fmt: skip
+        PAPER.text(
+            "run", title=title, apart=1e3 * float(run.apart.max()), turned=np.degrees(float(run.turned.max())),
+            end=1e3 * float(run.end_apart.max()), thrust=float(np.abs(run.thrust).max()), torque=float(np.abs(run.torque).max()),
+            status="; ".join(run.status) or PAPER.text("no_limit"),
+        )
+        for name, title in PAPER.content["runs"].items()
+        if (run := runs.get(name)) is not None
+    ]  # fmt: skip
+    return PAPER.table("control", rows, words=words)
 
 
 def _fading(pace: float, time: Array, error: float) -> Array:
@@ -197,76 +181,24 @@ def _fading(pace: float, time: Array, error: float) -> Array:
     return np.asarray(error * (1.0 + pace * time) * np.exp(-pace * time))
 
 
-TITLES = {
-    "torque": "Computed torque, torque-driven thrusters",
-    "voltage": "Computed torque, voltage-driven thrusters",
-    "station": "Station keeping without the model, torque-driven thrusters",
-    "end": "End effector on a straight line, computed torque",
-}
-
-
 def figures() -> Iterator[tuple[str, Figure]]:
     """Our pictures: of the paper's only figure, and of the runs under control."""
     runs = tasks()
     end, selected = runs["end"], runs["torque"]
-    yield (
-        "urv_frames",
-        arm.frames_figure(
-            arm.ArmMotion(end.chain, model.hull(), selected.time[:1], selected.state[:1]),
-            "urv-frames",
-            "Our picture of the paper's Figure 1: frame 0 on the vehicle at c₀ from its centre of mass, x forward, y left and z up; frames 1 "
-            "to 3 of the arm; north, east, down. Hull and links are the chosen spheroid and cylinders.",
-        ),
-    )
-    yield (
-        "urv_poses",
-        arm.poses_figure(
-            arm.ArmMotion(end.chain, model.hull(), end.time, end.state), "urv-poses", "End effector on a straight line",
-            "Computed torque, torque-driven thrusters. The line is the path of the end effector. urv_motion.html plays it.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_path",
-        arm.path_figure(
-            end.end, end.end_wanted, "urv-path", "Path of the end effector",
-            "The same run; dots where the track asks for it. The axes have scales of their own.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_joints",
-        arm.joints_figure(selected, "urv-joints", "Joints that move while the vehicle keeps its station"),
-    )
-    named = [
-        (TITLES[name].split(", ")[-1] if name != "station" else "station keeping", runs[name])
-        for name in ("torque", "voltage", "station")
-    ]
-    yield (
-        "urv_station",
-        arm.station_figure(
-            named, "urv-station", "Station keeping while the joints move",
-            "Computed torque with torque-driven and with voltage-driven thrusters, and station keeping without the model.",
-        ),
-    )  # fmt: skip
-    yield (
-        "urv_thrust",
-        arm.thrust_figure(
-            selected,
-            "urv-thrust",
-            "Thrust while the joints move",
-            "Torque-driven thrusters; dots where thrust is asked for.",
-        ),
-    )
+    hull, w = model.hull(), PAPER.words
+    at_rest = arm.ArmMotion(end.chain, hull, selected.time[:1], selected.state[:1])
+    yield "urv_frames", arm.frames_figure(at_rest, *w("urv-frames"))
+    moved = arm.ArmMotion(end.chain, hull, end.time, end.state)
+    yield "urv_poses", arm.poses_figure(moved, *w("urv-poses"))
+    yield "urv_path", arm.path_figure(end.end, end.end_wanted, *w("urv-path"))
+    yield "urv_joints", arm.joints_figure(selected, *w("urv-joints"))
+    named = {"torque-driven thrusters": "torque", "voltage-driven thrusters": "voltage", "station keeping": "station"}
+    yield "urv_station", arm.station_figure([(label, runs[name]) for label, name in named.items()], *w("urv-station"))
+    yield "urv_thrust", arm.thrust_figure(selected, *w("urv-thrust"))
 
 
 def page() -> bytes:
     """The straight line of the end effector, as a page that plays it."""
     run = tasks()["end"]
-    words = (
-        f"Vehicle with links 1 to 3 of a PUMA 560: the end effector goes {float(np.linalg.norm(REACH)):.2g} m along a straight line while the "
-        "vehicle keeps its station, by computed torque with torque-driven thrusters."
-    )
-    return arm.animation(
-        arm.ArmMotion(run.chain, model.hull(), run.time, run.state),
-        "URV with an arm: end effector on a straight line",
-        words,
-    )
+    words = PAPER.text("page", reach=float(np.linalg.norm(REACH)))
+    return arm.animation(arm.ArmMotion(run.chain, model.hull(), run.time, run.state), PAPER.text("page_title"), words)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -22,28 +21,20 @@ from coeflab.core.types import Array
 from coeflab.law.rigid_body import axes_in_earth, kinematics
 from coeflab.law.transforms import rotation
 from coeflab.motion.dynamics import from_euler, rotations
+from coeflab.published.publication import Row, publication
 from coeflab.published.urv import model
 from coeflab.published.urv.model import DENSITY, dry, wet
-from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.report.acceptance import ComparedTable
+
+PAPER = publication("urv")
 
 # The state that the reference numbers are for: joints, and speeds along frame 0 (x forward, y left, z up).
 Q = np.array([0.3, -0.7, 0.5])
 SPEEDS = np.array([0.5, -0.2, 0.1, 0.05, -0.1, 0.2, 0.4, -0.3, 0.6])
 RATES = np.array([0.3, 0.1, -0.2, 0.15, -0.05, 0.25, -0.4, 0.7, 0.2])
-EXACT, SECOND = 1e-11, 1e-7
-FINEST, PLACES = 0.1, 12  # of the tolerance, and decimals: no finer than that, so that every machine says the same
+SECOND = 1e-7
 STEP = 1e-4
 SWING = {"radius": 0.05, "length": 0.8, "rate": 1.3}
-
-
-def same(case: str, quantity: str, unit: str, expected: float, found: float, within: float = EXACT) -> Compared:
-    """Theory, or a second way."""
-    return Compared(case, quantity, unit, round(expected, PLACES), round(found, PLACES), within, Basis.CONSISTENCY)
-
-
-def none(case: str, quantity: str, unit: str, found: Any, within: float = EXACT) -> Compared:
-    """Zero by theory; of arrays the largest."""
-    return same(case, quantity, unit, 0.0, max(float(np.max(np.abs(found))), FINEST * within), within)
 
 
 # ---- theory --------------------------------------------------------------------------------------------------------
@@ -80,39 +71,27 @@ def principles() -> ComparedTable:
         speeds = in_frame_0(chain, SPEEDS)
         bias = kane.bias(chain, Q, speeds)
         rows.append(
-            none(words, "C apart from Hamel's equations", "N, N m", bias - hamel_bias(chain, Q, speeds), SECOND)
+            Row.none(words, "C apart from Hamel's equations", "N, N m", bias - hamel_bias(chain, Q, speeds), SECOND)
         )
-        rows.append(none(words, "power from nothing", "W", from_nothing(chain, Q, speeds, bias), SECOND))
+        rows.append(Row.none(words, "power from nothing", "W", from_nothing(chain, Q, speeds, bias), SECOND))
         found, step = kane.partial_velocities(chain, kane.pose(chain, Q)), 1e-6
-        rows.append(
-            none(
-                words,
-                "partial velocities apart from slopes of p",
-                "1, m",
-                _position_slopes(chain, step) - found[:, :3, 6:],
-                1e-8,
-            )
-        )
+        apart = _position_slopes(chain, step) - found[:, :3, 6:]
+        rows.append(Row.none(words, "partial velocities apart from slopes of p", "1, m", apart, 1e-8))
     water = wet()
     down = FLU @ np.array([0.3, -0.4, np.sqrt(0.75)])
     lifted = kane.weight(water, Q, down) + kane.buoyancy(water, Q, down)
-    rows.append(none("buoyancy equal to the weight", "force left", "N, N m", lifted, 1e-9))
+    rows.append(Row.none("buoyancy equal to the weight", "force left", "N, N m", lifted, 1e-9))
     pulled, step = kane.weight(water, Q, down), 1e-6
     slopes = [
         (_height(water, Q + step * np.eye(3)[k], down) - _height(water, Q - step * np.eye(3)[k], down)) / (2.0 * step)
         for k in range(3)
     ]
     rows.append(
-        none("weight of the joints", "apart from the slope of its energy", "N m", pulled[6:] - np.array(slopes), 1e-6)
+        Row.none(
+            "weight of the joints", "apart from the slope of its energy", "N m", pulled[6:] - np.array(slopes), 1e-6
+        )
     )
-    return ComparedTable(
-        "theory", "The same equations by other principles", tuple(rows), "Equations 3, 4, 10 to 19",
-        (
-            "Hamel's equations need M alone, by slopes of it; Kane's need accelerations of every body.",
-            "Kinetic energy changes by no power of the inertia forces: 1/2 s M' s = s C.",
-            "Sliding: joint 2 as a prismatic one, which the paper leaves out.",
-        ),
-    )  # fmt: skip
+    return PAPER.table("theory", rows)
 
 
 def _sliding() -> Chain:
@@ -144,32 +123,20 @@ def flow() -> ComparedTable:
     mass, w = kane.mass_matrix(chain, Q), speeds[3:6]
     alongside = np.concatenate([speeds[:3] - current, speeds[3:]])
     carried = kane.bias(chain, Q, alongside) + mass[:, :3] @ np.cross(w, current)
+    apart = kane.bias(chain, Q, speeds, current) - carried
+    adrift = kane.drag(chain, Q, np.concatenate([current, np.zeros(6)]), current)
     rows = [
-        none(
-            "steady current",
-            "C apart from that seen by one who drifts",
-            "N, N m",
-            kane.bias(chain, Q, speeds, current) - carried,
-            1e-9,
-        ),
-        none(
-            "adrift with the current",
-            "drag",
-            "N, N m",
-            kane.drag(chain, Q, np.concatenate([current, np.zeros(6)]), current),
-        ),
+        Row.none("steady current", "C apart from that seen by one who drifts", "N, N m", apart, 1e-9),
+        Row.none("adrift with the current", "drag", "N, N m", adrift),
     ]
     gust = FLU @ np.array([0.4, -0.3, 0.2])
     still = np.zeros(9)
     pushed = kane.fluid_acceleration(chain, Q, gust) - kane.bias(chain, Q, still, acceleration=gust)
     rows.append(
-        none("neutral, in water that accelerates", "acceleration apart from the water's", "m/s^2, rad/s^2",
+        Row.none("neutral, in water that accelerates", "acceleration apart from the water's", "m/s^2, rad/s^2",
               np.linalg.solve(mass, pushed) - np.concatenate([gust, np.zeros(6)]), 1e-9)
     )  # fmt: skip
-    return ComparedTable(
-        "flow", "Current, and water that accelerates", tuple(rows), "Equations 17, 20 and 21",
-        ("A steady current is a change of observer; neutral bodies at rest in water that accelerates go with it.",),
-    )  # fmt: skip
+    return PAPER.table("flow", rows)
 
 
 def drag() -> ComparedTable:
@@ -181,11 +148,11 @@ def drag() -> ComparedTable:
     push = kane.drag(chain, np.zeros(1), speeds)
     unit = 0.5 * DENSITY * model.BASIC * 2.0 * SWING["radius"]
     rows = [
-        same("swung about its end", "power lost", "W", unit * rate**3 * length**4 / 4.0, -float(push @ speeds), 1e-9),
-        same(
+        Row("swung about its end", "power lost", "W", unit * rate**3 * length**4 / 4.0, -float(push @ speeds), 1e-9),
+        Row(
             "swung about its end", "moment at the joint", "N m", -unit * rate**2 * length**4 / 4.0, float(push[6]), 1e-9
         ),
-        same(
+        Row(
             "swung about its end",
             "force on the vehicle",
             "N",
@@ -194,18 +161,15 @@ def drag() -> ComparedTable:
             1e-9,
         ),
     ]
-    rows.append(none("link, towed along its axis", "drag", "N", towed(chain, np.array([0.7, 0.0, 0.0]))))
+    rows.append(Row.none("link, towed along its axis", "drag", "N", towed(chain, np.array([0.7, 0.0, 0.0]))))
     alone = replace(wet(), links=())
     astern = np.array([-0.6, 0.3, 0.2, 0.0, 0.0, 0.0])
     whole = float(np.linalg.norm(astern[:3]))
     rows.append(
-        none("vehicle, astern", "drag apart from -1/2 C_D rho S |v| v", "N",
+        Row.none("vehicle, astern", "drag apart from -1/2 C_D rho S |v| v", "N",
               kane.drag(alone, np.zeros(0), astern)[:3] + 0.5 * DENSITY * model.AREA * whole * astern[:3], 1e-9)
     )  # fmt: skip
-    return ComparedTable(
-        "drag", "Drag in closed form", tuple(rows), "Equations 21 and 22 as corrected, section 4.5",
-        (f"Cylinder of {SWING['radius']:g} m radius and {length:g} m at {rate:g} rad/s, C_D {model.BASIC:g}: power 1/2 rho C_D d w^3 L^4/4.",),
-    )  # fmt: skip
+    return PAPER.table("drag", rows, radius=SWING["radius"], length=length, rate=rate, drag=model.BASIC)
 
 
 def propulsion() -> ComparedTable:
@@ -216,8 +180,8 @@ def propulsion() -> ComparedTable:
     turning = _spun(one, torque, after)
     expected = fastest * np.tanh(np.sqrt(one.alpha * one.beta * torque) * after)
     rows = [
-        same(f"torque model, {torque:g} N m for {after:g} s", "speed", "rad/s", float(expected), float(turning[0]), 1e-6),
-        same(f"torque model, {torque:g} N m", "thrust where it turns steadily", "N", float(one.thrust * one.beta * torque / one.alpha),
+        Row(f"torque model, {torque:g} N m for {after:g} s", "speed", "rad/s", float(expected), float(turning[0]), 1e-6),
+        Row(f"torque model, {torque:g} N m", "thrust where it turns steadily", "N", float(one.thrust * one.beta * torque / one.alpha),
               one.force(np.array([fastest]), DENSITY), 1e-9),
     ]  # fmt: skip
     volts, state = two.steady(30.0, DENSITY)
@@ -229,49 +193,39 @@ def propulsion() -> ComparedTable:
     resisting = BLADE * two.radius * (lift * np.sin(theta) + dragged * np.cos(theta))
     settled = _spun(two, volts, 60.0)
     rows += [
-        same("voltage model, 30 N", "thrust of its blades", "N", 30.0, float(lift * np.cos(theta) - dragged * np.sin(theta)), 1e-6),
-        same("voltage model, 30 N", "momentum of its jet, rho A delta v_p^2", "N", 30.0, float(DENSITY * area * two.momentum * state[1] ** 2), 1e-6),
-        none("voltage model, 30 N", "torque left: drive, friction, blades", "rad/s^2",
+        Row("voltage model, 30 N", "thrust of its blades", "N", 30.0, float(lift * np.cos(theta) - dragged * np.sin(theta)), 1e-6),
+        Row("voltage model, 30 N", "momentum of its jet, rho A delta v_p^2", "N", 30.0, float(DENSITY * area * two.momentum * state[1] ** 2), 1e-6),
+        Row.none("voltage model, 30 N", "torque left: drive, friction, blades", "rad/s^2",
               two.drive * volts - two.damping * state[0] - two.load * resisting, 1e-6),
-        same("voltage model, after 60 s", "speed", "rad/s", float(state[0]), float(settled[0]), 1e-4),
-        same("voltage model, after 60 s", "thrust", "N", 30.0, two.force(settled, DENSITY), 1e-4),
-        same("voltage model, astern", "thrust", "N", -30.0, two.force(-state, DENSITY), 1e-6),
-        same("voltage model, started at rest", "rate of speed by 1 V", "rad/s^2", model.VOLTAGE_DRIVE, float(two.rates(np.zeros(2), 1.0, DENSITY)[0]), EXACT),
-        same("voltage model, jet at 1 m/s, blades still", "rate of the jet", "m/s^2", *_slowing(two), 1e-9),
+        Row("voltage model, after 60 s", "speed", "rad/s", float(state[0]), float(settled[0]), 1e-4),
+        Row("voltage model, after 60 s", "thrust", "N", 30.0, two.force(settled, DENSITY), 1e-4),
+        Row("voltage model, astern", "thrust", "N", -30.0, two.force(-state, DENSITY), 1e-6),
+        Row("voltage model, started at rest", "rate of speed by 1 V", "rad/s^2", model.VOLTAGE_DRIVE, float(two.rates(np.zeros(2), 1.0, DENSITY)[0])),
+        Row("voltage model, jet at 1 m/s, blades still", "rate of the jet", "m/s^2", *_slowing(two), 1e-9),
     ]  # fmt: skip
     first, bound = (Thruster("thruster", np.zeros(3), np.eye(3)[0], kind) for kind in (one, two))
     power = demand(first, gain_of(first, DENSITY), 30.0, one.steady(30.0, DENSITY)[1], 10.0, DENSITY)
     starting = demand(first, gain_of(first, DENSITY), 1.0, np.zeros(1), 10.0, DENSITY)
     rows += [
-        same("torque model, controller at 30 N", "torque that holds it", "N m", one.steady(30.0, DENSITY)[0], power, 1e-3),
-        same("torque model, controller from rest to 1 N", "torque at 10 1/s", "N m", float(10.0 * np.sqrt(1.0 / one.thrust) / one.beta), starting, 2e-3),
-        same("torque model, 5 N m", "largest thrust", "N", 100.0, most_thrust(first, gain_of(first, DENSITY), DENSITY), 1e-9),
-        same("voltage model, 48 V", "voltage of the largest thrust", "V", two.strongest,
+        Row("torque model, controller at 30 N", "torque that holds it", "N m", one.steady(30.0, DENSITY)[0], power, 1e-3),
+        Row("torque model, controller from rest to 1 N", "torque at 10 1/s", "N m", float(10.0 * np.sqrt(1.0 / one.thrust) / one.beta), starting, 2e-3),
+        Row("torque model, 5 N m", "largest thrust", "N", 100.0, most_thrust(first, gain_of(first, DENSITY), DENSITY), 1e-9),
+        Row("voltage model, 48 V", "voltage of the largest thrust", "V", two.strongest,
              two.steady(most_thrust(bound, gain_of(bound, DENSITY), DENSITY), DENSITY)[0], 1e-6),
-        same("voltage model, controller at 30 N", "voltage that holds it", "V", volts, demand(bound, gain_of(bound, DENSITY), 30.0, state, 10.0, DENSITY), 1e-3),
+        Row("voltage model, controller at 30 N", "voltage that holds it", "V", volts, demand(bound, gain_of(bound, DENSITY), 30.0, state, 10.0, DENSITY), 1e-3),
     ]  # fmt: skip
     thrusters = wet().thrusters
     thrusts = np.arange(1.0, len(thrusters) + 1.0)
     pushes = [t * one_.axis for t, one_ in zip(thrusts, thrusters, strict=True)]
     summed = np.concatenate([sum(pushes), sum(np.cross(t.place, f) for t, f in zip(thrusters, pushes, strict=True))])
-    rows.append(
-        none(
-            "thruster matrix",
-            "force and moment apart from the sum",
-            "N, N m",
-            thruster_matrix(thrusters) @ thrusts - summed,
-        )
-    )
+    apart = thruster_matrix(thrusters) @ thrusts - summed
+    rows.append(Row.none("thruster matrix", "force and moment apart from the sum", "N, N m", apart))
     wanted = np.array([5.0, -3.0, 2.0, 1.0, -4.0, 6.0])
     given = thruster_matrix(thrusters) @ (require_all_directions(thrusters) @ wanted)
-    rows.append(none("pseudo-inverse", "force and moment apart from what is wanted", "N, N m", given - wanted, 1e-9))
-    return ComparedTable(
-        "thrusters", "Thruster models and their matrix", tuple(rows), "Section 3.6",
-        (
-            "Torque model: Omega = Omega_end tanh(t sqrt(alpha beta tau)) from rest. Constants are chosen; the paper prints none.",
-            "Of the voltage model the paper prints the form alone. Blades, motor and water are after Healey and others (1994) from memory: no copy of theirs was read.",
-        ),
-    )  # fmt: skip
+    rows.append(
+        Row.none("pseudo-inverse", "force and moment apart from what is wanted", "N, N m", given - wanted, 1e-9)
+    )
+    return PAPER.table("thrusters", rows)
 
 
 def _spun(thruster: TorqueThruster | VoltageThruster, command: float, lasts: float) -> Array:
@@ -303,27 +257,15 @@ def earth() -> ComparedTable:
     quaternion = from_euler(*angles)
     moved_ = np.array(kinematics(axes_in_earth(*quaternion), *quaternion, *np.zeros(3), *w)[3:7])
     by_angles = (from_euler(*(angles + step * rates)) - from_euler(*(angles - step * rates))) / (2.0 * step)
+    turn = model.turn_by_paper(angles) - rotations(quaternion[None])[0]
+    end = _end_by_matrices(angles) - _end(angles)
     rows = (
-        none(
-            "equation 28",
-            "apart from the turn of the equations",
-            "1",
-            model.turn_by_paper(angles) - rotations(quaternion[None])[0],
-        ),
-        none("equation 29", "w apart from the slope of the turn", "rad/s", turned - w, 1e-8),
-        none(
-            "equations 26 and 27",
-            "end effector apart from 4 x 4 matrices",
-            "m",
-            _end_by_matrices(angles) - _end(angles),
-            1e-9,
-        ),
-        none("quaternion", "rate apart from that of the angles", "1/s", moved_ - by_angles, 1e-8),
+        Row.none("equation 28", "apart from the turn of the equations", "1", turn),
+        Row.none("equation 29", "w apart from the slope of the turn", "rad/s", turned - w, 1e-8),
+        Row.none("equations 26 and 27", "end effector apart from 4 x 4 matrices", "m", end, 1e-9),
+        Row.none("quaternion", "rate apart from that of the angles", "1/s", moved_ - by_angles, 1e-8),
     )
-    return ComparedTable(
-        "earth", "From frame 0 to north, east, down", rows, "Equations 28 and 29 as corrected",
-        ("Angles 0.4, -0.5 and 1.1 rad. Motions are integrated with a quaternion, as the paper advises.",),
-    )  # fmt: skip
+    return PAPER.table("earth", rows)
 
 
 def _end(angles: Array) -> Array:

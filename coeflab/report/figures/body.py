@@ -25,16 +25,7 @@ from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import OTHER, Part, Parts
 from coeflab.core.types import Array, brief
 from coeflab.report.document import Figure
-from coeflab.report.figures.body_scene import (
-    COLOUR_OF,
-    POOR,
-    form_name,
-    is_convex,
-    is_poor,
-    normals,
-    part_facets,
-    picture_surface,
-)
+from coeflab.report.figures import body_scene
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
@@ -103,7 +94,12 @@ class Sheet:
         depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
         for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
             part = shape.parts[i]
-            self.part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part), is_convex(part.form))
+            self.part(
+                body_scene.part_facets(part),
+                body_scene.COLOUR_OF[body_scene.form_name(part.form)],
+                body_scene.is_poor(part),
+                body_scene.is_convex(part.form),
+            )
         if outline is not None:
             self._fill(outline, "band", FILM)
             self._line(outline, "ink", 0.9)
@@ -117,7 +113,7 @@ class Sheet:
         if convex:
             whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
         else:
-            toward = normals(facets) @ self.view.axes[2] > 1e-9
+            toward = body_scene.normals(facets) @ self.view.axes[2] > 1e-9
             whole = silhouette.facets_outline(facets[toward] @ self.frame.T)
         if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:
             ends = self.on_paper(facets.reshape(-1, 3))
@@ -133,7 +129,7 @@ class Sheet:
             self._line(whole, "ink", 1.6)
             return
         self._fill(whole, colour, 1.0)
-        outward = normals(facets) @ self.view.axes.T
+        outward = body_scene.normals(facets) @ self.view.axes.T
         dark = 1.0 - np.clip(outward @ LIGHT, 0.0, 1.0)
         for level in SHADES:
             seen = facets[(outward[:, 2] > 1e-9) & (dark > level)]
@@ -282,8 +278,8 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
     anchor : str
         Unique in the document.
     """
-    of_parts = [part_facets(p).reshape(-1, 3) for p in shape.parts]
-    drawn = None if mesh is None else picture_surface(mesh)
+    of_parts = [body_scene.part_facets(p).reshape(-1, 3) for p in shape.parts]
+    drawn = None if mesh is None else body_scene.picture_surface(mesh)
     points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
     size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
     scale = _scale(size)
@@ -342,8 +338,10 @@ def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], 
 
 def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
     """Names of the poor stand-ins and of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
-    size = [float(np.prod(np.sort(np.ptp(part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
-    chosen = sorted(sorted(range(len(size)), key=lambda i: (not is_poor(shape.parts[i]), -size[i], i))[:LABELLED])
+    size = [float(np.prod(np.sort(np.ptp(body_scene.part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
+    chosen = sorted(
+        sorted(range(len(size)), key=lambda i: (not body_scene.is_poor(shape.parts[i]), -size[i], i))[:LABELLED]
+    )
     names = {i: _marked(shape.parts[i]) for i in chosen}
     at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
     middle = sum(between) / 2.0
@@ -404,11 +402,11 @@ class _Stripes(HandlerBase):
 
 
 def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
-    forms = {form_name(p.form) for p in shape.parts}
+    forms = {body_scene.form_name(p.form) for p in shape.parts}
     handles: list[Any] = [
-        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in COLOUR_OF.items() if f in forms
+        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in body_scene.COLOUR_OF.items() if f in forms
     ]
-    if any(is_poor(p) for p in shape.parts):
+    if any(body_scene.is_poor(p) for p in shape.parts):
         handles.append(_Poor(edgecolor=COLOURS["ink"], facecolor="none", linewidth=1.2, label="poor stand-in"))
     if with_mesh:
         handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
@@ -429,7 +427,7 @@ def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
 
 
 def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
-    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(is_poor, shape.parts)) else ""
+    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(body_scene.is_poor, shape.parts)) else ""
     if mesh is None:
         return (
             "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
@@ -443,5 +441,8 @@ def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
 
 
 def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
-    parts = ", ".join(f"{p.name} ({form_name(p.form)}{POOR if is_poor(p) else ''})" for p in shape.parts)
+    parts = ", ".join(
+        f"{p.name} ({body_scene.form_name(p.form)}{body_scene.POOR if body_scene.is_poor(p) else ''})"
+        for p in shape.parts
+    )
     return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

@@ -17,26 +17,16 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures import series
 from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
-from coeflab.report.figures.series import (
-    Style,
-    family_key,
-    family_name,
-    is_in_degrees,
-    numbers,
-    on_axis,
-    points,
-    styles,
-    tagged,
-)
 from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.vehicle.reference import Comparison
 
 SIDESTEP = 0.011
 PLUS_MINUS = "±"
-ENDED = Style(COLOURS["ink"], "-", "o")
+ENDED = series.Style(COLOURS["ink"], "-", "o")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +35,7 @@ class _Drawn:
 
     key: str
     name: str
-    style: Style
+    style: series.Style
     recommended: bool
     window: Array
     value: Array
@@ -69,8 +59,8 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
     name = primed(sweep.symbol)
     drawn = _drawn(sweep)
     largest = max((float(d.window.max()) for d in drawn), default=0.0) or 1.0
-    reach = float(on_axis(sweep, np.array([largest]))[0])
-    across = "largest angle used  [deg]" if is_in_degrees(sweep) else f"largest |{sweep.variable}'| used  [-]"
+    reach = float(series.on_axis(sweep, np.array([largest]))[0])
+    across = "largest angle used  [deg]" if series.is_in_degrees(sweep) else f"largest |{sweep.variable}'| used  [-]"
     title, description = f"{name}, {sweep.campaign}: what other forms would have said", _description(sweep, published)
     with settings():
         figure = drawing()
@@ -80,7 +70,7 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
         )  # fmt: skip
         at = draw_forms(axes, sweep, published, factor)
         found = [_inside(sweep, d, x, frame) for d, x in zip(drawn, at, strict=True)]
-        panels = (numbers(axes, found, across, name, factor, "window"),)
+        panels = (series.numbers(axes, found, across, name, factor, "window"),)
         legend(figure, _handles(sweep, drawn, published))
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, _caption(sweep, published, frame), description, panels)
@@ -108,11 +98,11 @@ def draw_forms(
     """
     drawn = _drawn(sweep)
     largest = max((float(d.window.max()) for d in drawn), default=0.0) or 1.0
-    reach = float(on_axis(sweep, np.array([largest]))[0])
+    reach = float(series.on_axis(sweep, np.array([largest]))[0])
     _recommended(axes, sweep, published, factor, palette)
     at = []
     for i, d in enumerate(drawn):
-        x = on_axis(sweep, d.window) + (0.0 if d.recommended else (i - 1.5) * reach * SIDESTEP)
+        x = series.on_axis(sweep, d.window) + (0.0 if d.recommended else (i - 1.5) * reach * SIDESTEP)
         _mark(axes, d, x, factor, palette)
         at.append(x)
     return at
@@ -125,12 +115,12 @@ def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[floa
 
 def _drawn(sweep: Sweep) -> list[_Drawn]:
     out = []
-    for family, style in styles(sweep).items():
+    for family, style in series.styles(sweep).items():
         mine = [e for e in sweep.forms if e.family.name == family]
         halves = [_half(e) for e in mine]
         notes = tuple(f"± {coefficient(h)}, {len(e.rows)} points" for e, h in zip(mine, halves, strict=True))
         window, value = (np.array([getattr(e, which) for e in mine]) for which in ("window", "value"))
-        key, name = family_key(sweep, mine[0]), family_name(sweep, mine[0])
+        key, name = series.family_key(sweep, mine[0]), series.family_name(sweep, mine[0])
         out.append(_Drawn(key, name, style, False, window, value, np.array(halves), notes))
     ended = [(s.cap, s.value, s.u95) for s in sweep.sensitivity if s.value is not None and s.u95 is not None]
     if ended:
@@ -143,9 +133,9 @@ def _drawn(sweep: Sweep) -> list[_Drawn]:
 def _inside(sweep: Sweep, d: _Drawn, x: Array, frame: tuple[float, float]) -> Series:
     """The points inside the frame, in groups of one window."""
     selected = (d.value >= frame[0]) & (d.value <= frame[1])
-    groups = [f"{w:.3g}" for w in on_axis(sweep, d.window[selected])]
+    groups = [f"{w:.3g}" for w in series.on_axis(sweep, d.window[selected])]
     notes = [note for note, k in zip(d.notes, selected, strict=True) if k]
-    return points(d.key, d.name, x[selected], d.value[selected], notes, groups)
+    return series.points(d.key, d.name, x[selected], d.value[selected], notes, groups)
 
 
 def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, float]:
@@ -182,10 +172,10 @@ def _mark(axes: Axes, d: _Drawn, x: Array, factor: float, palette: Mapping[str, 
     seen, inside = (y - half <= high) & (y + half >= low), (y >= low) & (y <= high)
     if np.any(seen):
         ends = np.clip(y - half, low, high)[seen], np.clip(y + half, low, high)[seen]
-        tagged(strokes(axes, (x[seen], x[seen]), ends, color=d.style.colour, linewidth=_thick(d)), d.key)
+        series.tagged(strokes(axes, (x[seen], x[seen]), ends, color=d.style.colour, linewidth=_thick(d)), d.key)
     if np.any(inside):
         markers = axes.plot(x[inside], y[inside], linestyle="none", zorder=4 if d.recommended else 3, **_marker(d))
-        tagged(markers, d.key)
+        series.tagged(markers, d.key)
 
 
 def _thick(d: _Drawn) -> float:
@@ -203,7 +193,7 @@ def _handles(sweep: Sweep, drawn: list[_Drawn], published: tuple[Comparison, ...
     handles: list[Any] = []
     for d in drawn:
         handles.append(Line2D([], [], color=d.style.colour, linewidth=_thick(d), label=d.name, **_marker(d)))
-        tagged(handles[-1], d.key)
+        series.tagged(handles[-1], d.key)
     if sweep.value is not None:
         handles.append(Patch(facecolor=COLOURS["band"], alpha=0.35, edgecolor="none", label="recommended ± U95"))
     if published:

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locking
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.palette import COLOURS, recoloured
 from coeflab.report.figures.panel import BOTTOM, GAP, LEFT, LEGEND_ROW, RIGHT, WIDTH, drawing, legend, limits, panel
@@ -24,6 +24,7 @@ PLAIN = Style(COLOURS["ink"], "-", "o")
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("x y")
 class Trace:
     """A curve, or points.
 
@@ -47,10 +48,6 @@ class Trace:
     style: int
     form: str = "curve"
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", locked(self.x))
-        object.__setattr__(self, "y", locked(self.y))
 
     @property
     def look(self) -> dict[str, Any]:

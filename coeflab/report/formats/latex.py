@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from importlib.resources import files
 from typing import NamedTuple
 
 from coeflab.core.table import ABSENT, Table, percent, plus_minus, with_u95
+from coeflab.core.text.bounded import own_text
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Section
@@ -44,26 +46,6 @@ IN_MATH = {
     "\u00b3": "^{3}", "\u202f": r"\,",
 } | {letter: rf"\{name}" for name, letter in GREEK.items()}  # fmt: skip
 PLAIN = re.compile(r"\u2212?(?<![\w.])\d[\d.]*(?:\u202f×\u202f10)?|.", re.DOTALL)
-HEAD = r"""% Tables of {title}
-% by coeflab {version}, --to latex{digest}. Equal inputs give equal bytes.
-% By itself: pdflatex {file}, twice.
-% In a document of your own: \usepackage{{array,booktabs,graphicx,longtable,siunitx,docmute}}; docmute skips the
-% preamble here, take its \sisetup along; then \input{{report}}; or copy single tables from \begin{{table}} to \end{{table}}.
-\documentclass[a4paper]{{article}}
-\usepackage[utf8]{{inputenc}}
-\usepackage[T1]{{fontenc}}
-\usepackage{{textcomp}}
-\usepackage[margin=20mm]{{geometry}}
-\usepackage{{array}}
-\usepackage{{booktabs}}
-\usepackage{{graphicx}}
-\usepackage{{longtable}}
-\usepackage{{siunitx}}
-\sisetup{{separate-uncertainty=true,retain-explicit-plus=true,group-minimum-digits=12}}
-\providecommand{{\unit}}[1]{{\si{{#1}}}}
-\ifdefined\extrafloats\extrafloats{{500}}\fi
-\begin{{document}}
-"""
 END = "\\end{document}\n"
 
 
@@ -89,7 +71,10 @@ def render(document: Document) -> Mapping[str, bytes]:
     with keeping(document.verbatim):
         title = shortened(visible(document.title), LONGEST_TITLE)
         digest = f", inputs {document.digest}" if document.digest else ""
-        result = [HEAD.format(title=_comment(title), version=VERSION, digest=digest, file=FILE)]
+        head = own_text(files("coeflab.report.formats") / "_latex" / "head.tex")
+        for name, value in (("version", VERSION), ("digest", digest), ("file", FILE), ("title", _comment(title))):
+            head = head.replace(f"@{name}@", value)
+        result = [head]
         result.append(f"\\section*{{{tex(title)}}}\n")
         tables = [*_first(document.answer), *(part for s in document.sections for part in _section(s, 0))]
         result += tables or ["This report has no tables.\n"]

@@ -10,13 +10,13 @@ import numpy as np
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
 from coeflab.fits.rows.sweeps import FEWEST_SETTINGS
+from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import factorise, solve
 from coeflab.fits.statistics.linear_model import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
-from coeflab.study.fitting import FEW_ROWS
 from coeflab.tables.evidence import trend
 from coeflab.tables.force_table import AT_REST
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import complete, show
+from coeflab.cli import complete, options, show
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -41,53 +41,21 @@ INTERRUPTED = 130  # exit code after Ctrl-C, as of every program
 RESERVED = 12  # lines of a terminal that are not for rows
 
 
+@options.worded
 def command(
-    body: str = typer.Argument(
-        "",
-        metavar="BODY",
-        autocompletion=complete.bodies,
-        help="A body.toml, its folder or a shipped body; or the folder of a tow.",
-        show_default=False,
-    ),
-    matrix: Path = typer.Option(
-        None,
-        "--matrix",
-        metavar="TANK.toml",
-        help="Conditions, grids, studies, options; default: what six derivatives need.",
-    ),
-    solver: str = typer.Option(
-        "",
-        metavar="NAME",
-        autocompletion=solvers,
-        help="openfoam, external, estimate ... (coeflab formats); default openfoam.",
-        show_default=False,
-    ),
-    out: Path = typer.Option(
-        None, "--out", metavar="FOLDER", help="Folder of the tow; default runs/BODY.", show_default=False
-    ),
-    dry_run: bool = typer.Option(False, "--dry-run", help="Write the cases; print cells, memory and hours expected."),
-    go_on: bool = typer.Option(False, "--continue", help="Go on with a tow that ended, was stopped or killed."),
-    finished: str = typer.Option(
-        "",
-        "--finished",
-        metavar="CAMPAIGN",
-        autocompletion=complete.campaigns,
-        help="Take over its finished conditions (same case and mesh).",
-        show_default=False,
-    ),
-    status: bool = typer.Option(False, "--status", help="Print how far a tow is, from any terminal."),
-    collect: bool = typer.Option(False, "--collect", help="Make campaign, fits and report of what is finished."),
-    runner: str = typer.Option(
-        "",
-        metavar="NAME",
-        autocompletion=runners,
-        help="local, slurm ... (coeflab formats); default local.",
-        show_default=False,
-    ),
-    cores: int = typer.Option(
-        0, metavar="COUNT", min=0, help="That all runs together may take; 0: what the runner takes.", show_default=False
-    ),
-    json: bool = typer.Option(False, "--json", help="Print one JSON object at the end."),
+    *,
+    body: str = "",
+    matrix: Path | None = None,
+    solver: str = "",
+    out: Path | None = None,
+    dry_run: bool = False,
+    go_on: bool = False,
+    finished: str = "",
+    status: bool = False,
+    collect: bool = False,
+    runner: str = "",
+    cores: int = 0,
+    json: bool = False,
 ) -> None:
     """Tow a body through a virtual tank (CFD).
 
@@ -307,7 +275,7 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
     result = tank_room.collected(tow)
     if tow.solver.table is not None and not json and not tank_room.filled(tow):
         show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
-        show.text(f"Run list: {folder / 'external' / 'run_list.csv'}")
+        show.text(f"Run list: {folder / tow.tank.solver / 'run_list.csv'}")
         show.text("Next:")
         show.sentence(f"  {_next(tow, result, folder)}")
         return
@@ -436,7 +404,7 @@ def _status(folder: Path, json: bool) -> None:
         if json:
             show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
             return
-        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        where = tow.tank.options.get("table") or folder / tow.tank.solver / "forces.csv"
         show.sentence(f"{plan['name']}: {plan['solver']} needs no runs; {done} of {many} rows of {where} are filled.")
         show.sentence(f"Next: coeflab tow {shlex.quote(str(folder))} --collect")
         return
@@ -528,7 +496,7 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
     place = shlex.quote(str(folder))
     states = {r.state for r in made.runs if not r.counts}
     if tow.solver.table is not None and states:
-        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        where = tow.tank.options.get("table") or folder / tow.tank.solver / "forces.csv"
         return f"fill in {where}, then coeflab tow {place} --collect"
     if states - {JobState.UNCONVERGED, JobState.DIVERGED, JobState.FINISHED}:
         return f"coeflab tow {place} --continue"

@@ -15,7 +15,7 @@ import numpy as np
 
 from coeflab.core.declarations import ABOVE_ZERO, TABLE, Declaration, Pure, Within
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, locking
 from coeflab.law.scaling import Conditions
 from coeflab.tank.openfoam.features import foils, is_appended
 from coeflab.tank.openfoam.layers import Layers, Wall, layers
@@ -37,6 +37,10 @@ Countable = Annotated[
 FAR_CELL = 0.082  # edge of the cells far away, over the distance from the body to the sides of the domain
 CELLS_IN_RADIUS, FINER_AT_ENDS, END_DEPTH = 4.0, 2, 0.01
 SHORT = 0.5  # of the body's length: a part of the hull by its extent
+# How far boxes of finer cells reach behind, ahead of and beside the hull and its ends, in lengths of the body, and how much of the hull
+# those at its ends hold: chosen, and alike on all grids of a family.
+MID, NEAR, NOSE, TAIL = (0.72, 0.23, 0.17), (0.15, 0.054, 0.038), (0.0, 0.011, 0.006), (0.06, 0.0, 0.017)
+NOSE_HOLDS, TAIL_HOLDS = 0.06, 0.17
 NEAR_WAKE, FAR_WAKE = (
     2.0,
     0.07,
@@ -87,6 +91,7 @@ class MeshKeys(Declaration):
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high")
 class Region:
     """A box in which cells have at least a level.
 
@@ -104,13 +109,10 @@ class Region:
     high: Array
     level: int
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "low", locked(self.low))
-        object.__setattr__(self, "high", locked(self.high))
-
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+@locking("low high inside")
 class MeshSizes:
     """What the dictionaries of a mesh are written from.
 
@@ -138,8 +140,6 @@ class MeshSizes:
     inside: Array
 
     def __post_init__(self) -> None:
-        for name in ("low", "high", "inside"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
         object.__setattr__(self, "counts", locked(self.counts, int))
         for name in ("levels", "layers"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
@@ -242,11 +242,11 @@ def _level(
 def _hull_regions(body: TowedBody, hull: Array, edge: float, below: int) -> Iterator[Region]:
     """About the hull and its ends, in lengths of the body; a blunt end has cells of a quarter of its radius."""
     length, low, high = body.length, hull.min(0), hull.max(0)
-    yield Region("mid", *_grown(body.vertices, length, 0.72, 0.23, 0.17), max(below - 2, 0))
-    yield Region("near", *_grown(hull, length, 0.15, 0.054, 0.038), max(below - 1, 0))
-    nose, tail = _grown(hull, length, 0.0, 0.011, 0.006), _grown(hull, length, 0.06, 0.0, 0.017)
-    yield Region("nose", np.array([high[0] - 0.06 * length, *nose[0][1:]]), nose[1], below)
-    yield Region("tail", tail[0], np.array([low[0] + 0.17 * length, *tail[1][1:]]), below)
+    yield Region("mid", *_grown(body.vertices, length, *MID), max(below - 2, 0))
+    yield Region("near", *_grown(hull, length, *NEAR), max(below - 1, 0))
+    nose, tail = _grown(hull, length, *NOSE), _grown(hull, length, *TAIL)
+    yield Region("nose", np.array([high[0] - NOSE_HOLDS * length, *nose[0][1:]]), nose[1], below)
+    yield Region("tail", tail[0], np.array([low[0] + TAIL_HOLDS * length, *tail[1][1:]]), below)
     for name, way in (("nose_tip", 1.0), ("tail_tip", -1.0)):
         radius, tip = _end(hull, way, END_DEPTH * length)
         finer = min(round(float(np.log2(max(edge * CELLS_IN_RADIUS / radius, 1.0)))), FINER_AT_ENDS)

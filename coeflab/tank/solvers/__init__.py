@@ -46,7 +46,8 @@ class TowSolver(Plugin, Protocol):
         The keys of ``[solver.NAME]`` in tank.toml.
     jobs : callable or None
         ``jobs(tank, body, folder)``: writes the meshes and cases below the folder, each once, and gives their jobs in an order
-        in which they can be carried out. Files that are there and equal are left alone.
+        in which they can be carried out. Files that are there and equal are left alone; what is of no condition and no mesh
+        stands in a folder of the solver's name.
     history : callable or None
         ``history(folder)``: the run so far, also while the solver writes; in SI, whole body (halves are doubled), FRD.
     stop : callable or None
