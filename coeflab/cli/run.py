@@ -176,6 +176,7 @@ def _tows(study: Study) -> None:
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
     from coeflab.report.acceptance import headline_of_study
+    from coeflab.report.tables import comparisons
     from coeflab.report.tables import model_file as law_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
@@ -183,10 +184,10 @@ def _every_table(study: Study) -> None:
 
     show.sentence(tables.headline(study))
     show.text()
-    show.table(tables.side_by_side(study))
+    show.table(comparisons.side_by_side(study))
     _tows(study)
-    show.table(tables.verdicts(study))
-    show.table(tables.by_campaign(study))
+    show.table(comparisons.verdicts(study))
+    show.table(comparisons.by_campaign(study))
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
