@@ -113,7 +113,7 @@ def _moved(study: Study) -> None:
     from coeflab.core.finding import Severity
     from coeflab.core.table import Table
     from coeflab.core.wording import listed
-    from coeflab.report.sections.parameter_file import without_u95
+    from coeflab.report.sections.manoeuvres import without_u95
     from coeflab.report.tables.motion import figure_table
 
     rows = []

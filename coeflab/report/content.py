@@ -34,8 +34,10 @@ from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.estimates import estimates_sections
-from coeflab.report.sections.parameter_file import export_sections, manoeuvre_sections, stability_sections
+from coeflab.report.sections.exports import export_sections
+from coeflab.report.sections.manoeuvres import manoeuvre_sections
 from coeflab.report.sections.review import review_sections
+from coeflab.report.sections.stability import stability_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
 from coeflab.report.tables import comparisons
 from coeflab.report.tables import models as model_tables

@@ -34,7 +34,7 @@ from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
-from coeflab.report.sections.parameter_file import from_literature
+from coeflab.report.sections.stability import from_literature
 from coeflab.report.tables.models import quality
 from coeflab.report.tables.own_cfd import NO_RESULT
 from coeflab.study.lines import MEANING as MEANING_OF_LINE

@@ -12,7 +12,7 @@ from coeflab.report.acceptance import on_predictions
 from coeflab.report.document import Section, Topic
 from coeflab.report.figures.first_page import share_text
 from coeflab.report.sections.estimates import verdict_of_shape
-from coeflab.report.sections.parameter_file import in_words
+from coeflab.report.sections.stability import in_words
 from coeflab.report.tables import comparisons
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
