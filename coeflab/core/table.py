@@ -6,7 +6,8 @@ What a check found.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from html import escape
 from math import isfinite, isnan
 from textwrap import wrap
@@ -51,6 +52,12 @@ class Table:
 
     def __str__(self) -> str:
         return "\n".join(line.text for line in set_lines(self, 80))
+
+    def only(self, columns: Sequence[int]) -> Table:
+        """Some of its columns."""
+        rows = tuple(tuple(row[i] for i in columns) for row in self.rows)
+        left = frozenset(k for k, i in enumerate(columns) if i in self.left)
+        return replace(self, headers=tuple(self.headers[i] for i in columns), rows=rows, left=left)
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""

@@ -448,11 +448,10 @@ def _held(found: Acceptance) -> tuple[int, int, int, int]:
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
     """Some columns and the first rows of a table; no notes of its own."""
-    at = [whole.headers.index(n) for n in names]
-    rows = tuple(tuple(row[i] for i in at) for row in whole.rows)
-    more = (f"{len(rows) - MOST_MODELS} more in the report.",) if len(rows) > MOST_MODELS else ()
-    left = frozenset(k for k, i in enumerate(at) if i in whole.left)
-    return Table(whole.title, tuple(names), rows[:MOST_MODELS], more, left)
+    count = len(whole.rows)
+    more = (f"{count - MOST_MODELS} more in the report.",) if count > MOST_MODELS else ()
+    selected = whole.only([whole.headers.index(n) for n in names])
+    return replace(selected, rows=selected.rows[:MOST_MODELS], notes=more, spare=())
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
@@ -503,10 +502,8 @@ def _on_a_terminal(table: Table, notes: tuple[str, ...]) -> Table:
         return replace(table, rows=rows, notes=(*table.notes, *notes))
     i = table.headers.index(MEANING)
     meant = tuple(f"{row[0]}: {row[i]}" for row in table.rows)
-    rows = tuple((*row[:i], *row[i + 1 :]) for row in table.rows)
-    left = frozenset(k - (k > i) for k in table.left if k != i)
-    headers = (*table.headers[:i], *table.headers[i + 1 :])
-    return replace(table, headers=headers, rows=rows, left=left, notes=(*meant, *table.notes, *notes))
+    others = table.only([k for k in range(len(table.headers)) if k != i])
+    return replace(others, notes=(*meant, *table.notes, *notes))
 
 
 def _cut(text: str) -> str:

@@ -14,8 +14,8 @@ from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, tagged
 from coeflab.report.figures.svg import settings, svg_text
-from coeflab.report.sections.stability import IN_PLANE
 
+IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
 UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
 
 

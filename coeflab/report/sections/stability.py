@@ -13,16 +13,13 @@ from coeflab.core.wording import grouped, in_sentences, listed
 from coeflab.law.symbols import primed
 from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section
-from coeflab.report.figures.root_locus import root_locus_figure
+from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
 from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
-
-IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
-
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
 

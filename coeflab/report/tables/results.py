@@ -95,10 +95,8 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
     notes += [f"No table of the campaign varies the motion of {', '.join(absent)}."] if absent else []
     notes += [f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else []
     of = f" of {campaigns[0]}" if len(campaigns) == 1 and "campaign" in gone and campaigns[0] != ABSENT else ""
-    selected = tuple(tuple(row[i] for i in chosen) for row in rows)
-    left = frozenset(chosen.index(i) for i in whole.left if i in chosen)
     title = whole.title.replace("Coefficients", f"Coefficients{of}", 1)
-    return Table(title, tuple(whole.headers[i] for i in chosen), selected, tuple(notes), left)
+    return replace(whole, title=title, rows=tuple(rows), notes=tuple(notes)).only(chosen)
 
 
 def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:
@@ -272,8 +270,6 @@ def sources_of_numbers(study: Study) -> frozenset[str]:
 
 def without(table: Table, *names: str) -> Table:
     """The table without some columns, and without the notes on them."""
-    selected = [i for i, header in enumerate(table.headers) if header not in names]
-    rows = tuple(tuple(row[i] for i in selected) for row in table.rows)
+    selected = table.only([i for i, header in enumerate(table.headers) if header not in names])
     notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
-    left = frozenset(selected.index(i) for i in table.left if i in selected)
-    return Table(table.title, tuple(table.headers[i] for i in selected), rows, notes, left)
+    return replace(selected, notes=notes, spare=())
