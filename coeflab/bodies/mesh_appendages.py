@@ -22,11 +22,7 @@ from coeflab.bodies.outline import Bluff, Foil, Sections
 from coeflab.core.types import Array
 
 SMALL, THICK = 0.1, 0.5  # span over the hull's radius; thickness over chord: more is bluff
-
-
 LEVELS, FEWEST = 12, 3
-
-
 LOOSE = 0.35  # area of the straight trapezoid over the planform, less one
 
 

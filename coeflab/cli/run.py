@@ -147,7 +147,7 @@ def _why(made: Simulation) -> str:
 
 def answered(found: Answer) -> None:
     """What a reader wants first: the sentence, the wanted coefficients, and how it stands."""
-    from coeflab.report.first_page import answer_table
+    from coeflab.report.answer_table import answer_table
 
     show.sentence(found.sentence)
     show.text()

@@ -17,8 +17,6 @@ from coeflab.report.figures.svg import settings, svg_text
 
 IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
 UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
-
-
 ACROSS = "speed  [m/s]"
 
 

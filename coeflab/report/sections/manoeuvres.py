@@ -12,8 +12,6 @@ from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SIMULATED = ("Extrapolated: the motion leaves the range of the data.",)
-
-
 WITHOUT_U95 = (
     "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
 )

@@ -22,8 +22,6 @@ from coeflab.vehicle.reference import Relation
 from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
-
-
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
     "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
@@ -64,8 +62,6 @@ def in_words(study: Study) -> list[str]:
 
 
 PLACES = 170  # letters of the parameter files that one sentence names beside its verdict
-
-
 SOURCES = {"experiment": "test", "cfd": "CFD"}
 
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-
-
 WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"
 
 
