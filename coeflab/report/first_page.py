@@ -438,8 +438,7 @@ def _held(found: Acceptance) -> tuple[int, int, int, int]:
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
     """Some columns and the first rows of a table; no notes of its own."""
-    count = len(whole.rows)
-    more = (f"{count - MOST_MODELS} more in the report.",) if count > MOST_MODELS else ()
+    more = (f"{len(whole.rows) - MOST_MODELS} more in the report.",) if len(whole.rows) > MOST_MODELS else ()
     selected = whole.only([whole.headers.index(n) for n in names])
     return replace(selected, rows=selected.rows[:MOST_MODELS], notes=more, spare=())
 
