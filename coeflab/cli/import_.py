@@ -115,7 +115,7 @@ def _typed_so_far(
 def _written(out: Path, campaign: Campaign, by_default: bool) -> None:
     """What was written, which rows of the file were not, what of it no fit uses, and the body where nobody named it."""
     from coeflab.api.importing import without_a_setting
-    from coeflab.report.tables.results import unused
+    from coeflab.report.tables.force_tables import unused
 
     filled, tables = campaign.filled, campaign.tables
     several = len(tables) > 1
