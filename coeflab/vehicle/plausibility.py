@@ -263,7 +263,9 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
-                if 0.0 < (share := b.term.coefficient / usual) < SMALLEST[n]:
+                own_size, way = abs(b.term.coefficient), (b.term.coefficient > 0.0) == (usual > 0.0)
+                if way and 0.0 < own_size < SMALLEST[n] * abs(usual):
+                    share = b.term.coefficient / usual
                     out.append(_damping_check(
                         primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {share:.2g} of k^{n + 1} {a.term.symbol}",
                         f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
