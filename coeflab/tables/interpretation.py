@@ -33,7 +33,17 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import AREA, FEW_STRANGE, UNKNOWN, Proposal, named_as, proposals, taken_as
+from coeflab.tables.proposals import (
+    AREA,
+    FEW_STRANGE,
+    UNKNOWN,
+    Proposal,
+    coefficient_as_said,
+    lacks_sizes,
+    named_as,
+    proposals,
+    taken_as,
+)
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
@@ -127,16 +137,15 @@ def interpreted(
         Columns whose sign a person has settled, by default all of ``said``.
     """
     in_frame = frame_of(_with_frame(raw, settings))
-    offers = proposals(
-        raw, {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}, in_frame
-    )
     cut = _cut_of(settings)
-    offers = tuple(_of_half(one, cut, in_frame) for one in offers) if cut else offers
+    offers = _offers(raw, said, settings, in_frame, cut)
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()
     for column, offer in zip(raw.columns, offers, strict=True):
-        one = next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
+        one = _said_of(column, said)
+        if one is not None and lacks_sizes(column, one):
+            one = read_column_map(offer.text) if offer.whole else None
         if one is None and offer.whole and (offer.certain or accept):
             one = read_column_map(offer.text)
             accepted.add(column.name)
@@ -296,6 +305,30 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
         return offer
     return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
+
+
+def _said_of(column: RawColumn, said: Mapping[str, ColumnMap]) -> ColumnMap | None:
+    """What a person said of a column, or of the force whose error it is."""
+    return next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
+
+
+def _offers(
+    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, frame: Axes | None, cut: Cut | None
+) -> tuple[Proposal, ...]:
+    """What every column may be; where a person called one a coefficient without its area, that by the area that all share."""
+    known = {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}
+    out = []
+    for column, offer in zip(raw.columns, proposals(raw, known, frame), strict=True):
+        one = _said_of(column, said)
+        lacks = one is not None and lacks_sizes(column, one)
+        out.append(
+            coefficient_as_said(one, known)
+            if one is not None and lacks
+            else _of_half(offer, cut, frame)
+            if cut
+            else offer
+        )
+    return tuple(out)
 
 
 def _in_vain(

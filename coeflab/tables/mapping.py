@@ -16,7 +16,7 @@ from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
+from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import RawColumn, RawTable
@@ -198,6 +198,8 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
                 f'Leave the unit out to take the file\'s: "{replace(said, unit="-")}".',
             )  # fmt: skip
         return Assigned(column, said, sign * (declared or counted or 1.0))
+    if said.unit == OPEN_SIZES:
+        raise fault(raw, f"{said}, without an area", f"{said.plain} [{PER[said.dimension]}]", column)
     own = _factor(column.unit, said.dimension)
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):

@@ -17,6 +17,7 @@ from coeflab.tables.column_map import (
     ACROSS,
     EXAMPLES,
     FORCES,
+    OPEN_SIZES,
     ROLES,
     SETTINGS,
     WIND,
@@ -318,6 +319,27 @@ def _with_symbol(own: str) -> str:
     return name if symbol.strip("()[], ") in same else ""
 
 
+def _by_sizes(name: str, moment: bool, by: tuple[object, object]) -> str:
+    """A coefficient by an area, and of a moment a length; ? for what nobody said."""
+    sizes = zip(by, ("area", "length"), strict=True)
+    area, length = (f"{quantity(x, d)!r} {SI[d]}" if x is not None else OPEN for x, d in sizes)
+    return f"{name} [coefficient A={area}" + (f" L={length}]" if moment else "]")
+
+
+def lacks_sizes(column: RawColumn, said: ColumnMap) -> bool:
+    """Whether a force is called a coefficient, by its column's unit or in words, without area and length."""
+    return said.unit == OPEN_SIZES or (said.role == "force" and not said.unit and column.unit.strip() in ("-", "1"))
+
+
+def coefficient_as_said(said: ColumnMap, known: Mapping[str, object]) -> Proposal:
+    """A column that a person called a coefficient, by the area and the length that all coefficients share, or as a prime."""
+    area, length = known.get(AREA), known.get(LENGTH_OF, known.get("scaling.length"))
+    name, why = f"{'-' * said.negative}{said.plain}", "as said"
+    if area == "prime":
+        return Proposal(f"{name}' [-]", why, certain=True)
+    return Proposal(_by_sizes(name, said.name in MOMENTS, (area, length)), why, certain=True)
+
+
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
     if said.role == "propeller":
@@ -339,10 +361,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if is_coefficient and by[0] == "prime":
         return Proposal(f"{name}' [{unit if counted else '-'}]", f"{why}; a prime, as said")
     if is_coefficient:
-        area, length = (
-            f"{float(str(x))!r} m{u}" if x is not None else OPEN for x, u in zip(by, ("^2", ""), strict=True)
-        )
-        text = f"{name} [coefficient A={area}" + (f" L={length}]" if moment else "]")
+        text = _by_sizes(name, moment, by)
         pure = f"counted in {unit}" if counted else "no unit"
         return Proposal(text, f"{why}, {pure}: by 1/2 rho U^2 A{' L' * moment}, or {name}' for primes", certain)
     try:
@@ -582,7 +601,7 @@ def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
         return one
     length = known.get(LENGTH_OF, known.get("scaling.length"))
     moment = given.name in MOMENTS
-    sizes = f"A={float(str(area))!r} m^2" + (
+    sizes = f"A={quantity(area, 'area')!r} m^2" + (
         f" L={OPEN if length is None else repr(quantity(length, 'length'))} m" if moment else ""
     )
     counted = re.search(r"\[([^\]]*)\]", one.text)

@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml, typed_value
 from coeflab.core.units import quantity, with_unit
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Scaling, require_hull
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import HALF_MODEL
@@ -173,6 +173,11 @@ def _length(said: Any) -> float:
     return quantity(said, "length")
 
 
+def _hull(said: Any) -> Any:
+    require_hull(said)
+    return _measured("length")(said)
+
+
 READERS: dict[str, Callable[[Any], Any]] = {
     "coefficients.area": _area,
     "coefficients.length": _length,
@@ -185,7 +190,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "table.centre": _one_of(*campaign.CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
-    "scaling.length": _measured("length"),
+    "scaling.length": _hull,
     "conditions.density": _measured("density"),
     "conditions.speed": _measured("speed"),
     "table.contains_inertia": _flag,
