@@ -23,7 +23,7 @@ from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
 from coeflab.vehicle import imported_numbers
 from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
-from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
+from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spoken
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.sizes import size_findings
@@ -383,6 +383,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     law that is no longer the one whose misses the file states.
     """
     out = []
+    bent = spoken(parameters).beyond_slopes
     stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
         largest = f.largest or 1.0
@@ -408,10 +409,9 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
         elif f.missed:
             severity = Severity.FAIL
-            comment = (
-                f'It misses {", ".join(f.missed)}. Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"]), '
-                "or look for a coefficient or a sign that is not the fit's."
-            )
+            straight = 'Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"]), or look for '
+            first = "Look for a reading apart from its repeats, or " if f.component in bent else straight
+            comment = f"It misses {', '.join(f.missed)}. {first}a coefficient or a sign that is not the fit's."
         elif f.beyond:
             severity = Severity.WARN
             comment = (
