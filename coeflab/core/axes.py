@@ -26,11 +26,7 @@ DIRECTIONS = {
     "down": (0.0, 0.0, 1.0),
     "up": (0.0, 0.0, -1.0),
 }
-FRAMES = {
-    "FRD": ("forward", "starboard", "down"),
-    "FLU": ("forward", "port", "up"),
-    "CFD": ("aft", "starboard", "up"),
-}
+FRAMES = {"FRD": ("forward", "starboard", "down"), "FLU": ("forward", "port", "up"), "CFD": ("aft", "starboard", "up")}
 FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like "forward, port, up"'
 ANGLE_SIGNS = {
     "beta": {"v = +U sin(beta)": 1.0, "v = -U sin(beta)": -1.0},
@@ -204,6 +200,7 @@ SHIPPED = {
     "centre of the spheroid": ("centre", "of the spheroid"),
     "origin of the paper's body axes": ("paper_axes", "origin of the paper's body axes"),
     "the elevator's axis of rotation": ("elevator_axis", "the elevator's axis of rotation"),
+    "anywhere": ("anywhere", "forces alone, without rotation: the same about every point"),
 }
 
 
@@ -241,6 +238,9 @@ class Datum:
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id
+
+
+ANYWHERE = Datum.named("anywhere")
 
 
 def point_in_words(point: Sequence[float] | NDArray[np.float64], datum: Datum) -> str:

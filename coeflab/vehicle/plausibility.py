@@ -27,6 +27,7 @@ from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spo
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.sizes import size_findings
+from coeflab.vehicle.sources import acts_in
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -409,9 +410,15 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
         elif f.missed:
             severity = Severity.FAIL
-            straight = 'Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"]), or look for '
-            first = "Look for a reading apart from its repeats, or " if f.component in bent else straight
-            comment = f"It misses {', '.join(f.missed)}. {first}a coefficient or a sign that is not the fit's."
+            tables = [m.response for m in parameters.models if f.component in acts_in(m)]
+            longer = (
+                f"Its law is the table of {', '.join(tables)}: give that fit another degree or form (coeflab formats surface)" if tables
+                else "Look for a reading apart from its repeats" if f.component in bent
+                else 'Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"])'
+            )  # fmt: skip
+            comment = (
+                f"It misses {', '.join(f.missed)}. {longer}, or look for a coefficient or a sign that is not the fit's."
+            )
         elif f.beyond:
             severity = Severity.WARN
             comment = (

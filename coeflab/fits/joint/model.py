@@ -73,10 +73,7 @@ def predicted(
 
 
 def equations_in_words(
-    parts: Sequence[Component],
-    equations: Sequence[Equation],
-    constraint: Constraint,
-    n_runs: int,
+    parts: Sequence[Component], equations: Sequence[Equation], constraint: Constraint, n_runs: int
 ) -> list[list[str]]:
     """Per component: whether the data stand the equations, how components are weighed, what comes from equations alone."""
     found = freed(
@@ -391,5 +388,9 @@ def _short(
             what = "free terms and intercepts" if any(p.own for p in parts) else what
             out[names] = TooFewRowsError.for_terms(", ".join(names), labels, free, "terms", what)
     if len(out) == len(groups):
+        for names in groups:  # a term that no row excites is why, where there is one
+            parts = [components[c] for c in names]
+            own = [e for e in equations if e.weights[0][0][0] in names]
+            _excited(parts, constraint_of(own, parts, "constraints"))
         raise next(iter(out.values()))
     return out

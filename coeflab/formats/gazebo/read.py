@@ -272,6 +272,11 @@ def _links(root: Element, link: GzLink, path: Path) -> list[Check]:
                 names=tuple(map(one_line, held.elements))[:MOST],
             )
         )
+    for j in held.joints:
+        if j.low > j.high:
+            out.append(
+                Finding.of("model.limits", f"joint {one_line(j.name)}"[:100], Severity.WARN, low=j.low, high=j.high)
+            )
     for name in held.links:
         inertial = held.elements[name].find("inertial") if name in held.elements else None
         matrix = None if inertial is None else own_inertia(inertial, path)

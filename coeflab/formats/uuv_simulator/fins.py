@@ -68,13 +68,7 @@ def _fin(plugin: Element, found: Assembly | None, x: Xacro, path: Path) -> tuple
 
     kind = (plugin.findtext("liftdrag/type") or "").strip()
     if kind == "TwoLines":
-        own = {
-            "cla": of("cla"),
-            "area": of("area"),
-            "air_density": of("fluid_density"),
-            "a0": -of("a0"),
-            "alpha_stall": of("alpha_stall"),
-        }
+        own = {t: of(t) for t in ("cla", "area", "alpha_stall")} | {"air_density": of("fluid_density"), "a0": -of("a0")}
     elif kind == "Quadratic":
         own = {"cla": of("lift_constant"), "area": 1.0, "air_density": 2.0}
     else:
