@@ -264,9 +264,10 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
-                if 0.0 < (share := b.term.coefficient / usual) < SMALLEST[n]:
+                same_way = b.term.coefficient * float(np.sign(usual))
+                if 0.0 < same_way < SMALLEST[n] * abs(usual):
                     out.append(_damping_check(
-                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {share:.2g} of k^{n + 1} {a.term.symbol}",
+                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
                         f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
                         "Is it per degree and second? Rates are in rad/s.",
                     ))  # fmt: skip
