@@ -66,7 +66,7 @@ def test_without_out_nothing_is_written(fresh: Run, tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (("no_such_glider",), "no file or folder"),
-        (("suboff_roddy_1",), '"glider": found nothing'),
+        (("suboff_roddy_1",), "found a campaign, with [campaign]; expected a file with [glider]"),
         (("slocum", "--record", "0"), "glider.step"),
         (("slocum", "--cycles", "0"), "cycles"),
     ],
