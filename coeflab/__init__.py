@@ -41,7 +41,9 @@ def __getattr__(name: str) -> Any:
         return __dir__()
     if name in _homes():
         return getattr(import_module(_homes()[name]), name)
-    raise AttributeError(f"module 'coeflab' has no attribute {name!r}")
+    near = "" if name.startswith("_") else import_module("coeflab.core.missed").nearest(name, __dir__(), verbs=True)
+    meant = f". Did you mean coeflab.{near}?" if near else ""
+    raise AttributeError(f"module 'coeflab' has no attribute {name!r}{meant}")
 
 
 def __dir__() -> list[str]:

@@ -18,6 +18,8 @@ from coeflab.bodies.simplify.source import mesh_body, subject
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
+from coeflab.core.keywords import all_spoken
+from coeflab.core.missed import suggesting
 from coeflab.law import added_mass as law
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.water import FRESH_DENSITY
@@ -32,6 +34,7 @@ NOSE = "nose"
 MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class AddedMass(law.AddedMass):
     """The added-mass matrix of a body; see `Body.added_mass`.
@@ -88,6 +91,7 @@ class AddedMass(law.AddedMass):
         return plot_added_mass(self, ax)
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Body(plain.Body):
     """A body: shape, particulars, configurations; see `coeflab.read_body`.
@@ -173,7 +177,8 @@ class Body(plain.Body):
         if method != "all" and method not in methods():
             raise InputError(f"the method {shown(method)}", f"all, or one of {', '.join(methods())}", column="method")
         rho = si(density, "density", "density")
-        found = replace(added_masses(self, rho, method, options or None).recommended, density=rho)
+        found = added_masses(self, rho, method, options or None).recommended
+        found = replace(found, density=rho, statements=all_spoken(found.statements))
         return AddedMass(**{f.name: getattr(found, f.name) for f in fields(law.AddedMass)})
 
     def plot(self, view: str = "side", ax: Axes | None = None) -> Axes:

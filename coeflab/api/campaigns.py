@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from coeflab.core.errors import InputError
+from coeflab.core.units import positive_typed
 from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.rows.too_few import FEW_ROWS
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
@@ -23,6 +24,27 @@ __all__ = ["FirstFit", "Study", "Sweep", "first_fit", "fit_campaigns", "suited_f
 USUAL, MODEL = Importer.fit, "manoeuvring_model"
 MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 Progress = Callable[[str], None]
+
+
+def typed_scaling(length: str, name: str) -> Scaling | None:
+    """The length of the primes as a shell has it; None without one.
+
+    Parameters
+    ----------
+    length, name : str
+        ``--length`` and ``--length-name``.
+
+    Raises
+    ------
+    InputError
+        One without the other, no length, or a bare number that is that of no hull.
+    """
+    if bool(length) != bool(name):
+        raise InputError("--length without its name", "--length and --length-name together")
+    if not length:
+        return None
+    require_hull(length, "--length")
+    return Scaling(positive_typed(length, "length", "--length"), name)
 
 
 def fit_campaigns(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,8 @@ import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.api.questions import above_zero
+from coeflab.core.keywords import all_spoken
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Table as Shown
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["ROUNDING", "Behaviour", "Comparison", "Verdict", "behaviour", "compare"]
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, repr=False)
 class Comparison(plain.Comparison):
     """Two vehicles; ``rows`` has a coefficient each, ``models`` the fitted tables, ``disagrees`` the verdict.
@@ -129,6 +132,7 @@ def compare(
         else None
     )
     found = plain.compare(a, b, names)
+    found = replace(found, statements=all_spoken(found.statements))
     return Comparison(**{f.name: getattr(found, f.name) for f in fields(plain.Comparison)})
 
 

@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, typed
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import one_thread
+from coeflab.core.missed import suggesting
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.motion.uncertainty.tests import Kind
@@ -41,6 +42,7 @@ MATRIX, ANGLES = {"v": "drift", "w": "attack", "r": "yaw", "q": "pitch"}, ("drif
 SHORT = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")  # without `wanted`: the one of these whose U95 is largest beside its value
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, repr=False, eq=False)
 class NextTests(plain_tests.NextTests):
     """Tests by what they take off; ``tests`` has a `ProposedTest` each, ``best`` U95 after all of them.

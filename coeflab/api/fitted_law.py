@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.api.questions import si
 from coeflab.core.errors import InputError, shown
+from coeflab.core.missed import suggesting
 from coeflab.core.types import in_angles
 from coeflab.fits.results.fitted_model import Extrapolation
 from coeflab.law.symbols import CONTROLS
@@ -39,6 +40,7 @@ class Evaluated(NamedTuple):
     u95: Array | float
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedLaw:
     """A law that a fit found, ``result.laws["C_D"]``.

@@ -16,7 +16,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
 from coeflab.fits import FITS
 from coeflab.fits.joint.rows import one_length
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import Importer
@@ -106,6 +106,7 @@ def fit(
             "length without its name" if length else "length_name alone", "length and length_name", column="length"
         )
     if length is not None:
+        require_hull(length, "length")
         scaling = Scaling(above_zero(length, "length", "length"), str(length_name))
     with one_thread():
         if FITS.load(by).joins_campaigns:

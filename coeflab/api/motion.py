@@ -11,6 +11,8 @@ import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.api.questions import three
+from coeflab.core.keywords import all_spoken
+from coeflab.core.missed import suggesting
 from coeflab.core.options import described
 from coeflab.core.table import Table as Shown
 from coeflab.core.types import in_angles
@@ -32,6 +34,7 @@ NAMES = ("time [s]", "north [m]", "east [m]", "down [m]", "roll [rad]", "pitch [
          "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]", "speed [m/s]")  # fmt: skip
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion(Mapping[str, Figure]):
     """A motion and the figures read off it: ``run["first overshoot"].value``.
@@ -79,7 +82,7 @@ class Motion(Mapping[str, Figure]):
     @property
     def statements(self) -> tuple[str, ...]:
         """What was assumed, and where the motion leaves what the coefficients cover."""
-        return self.simulation.statements
+        return all_spoken(self.simulation.statements)
 
     @property
     def undetermined(self) -> str:

@@ -13,6 +13,7 @@ from coeflab.api.questions import KEYS, in_keywords, open_questions, settings_of
 from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
+from coeflab.core.keywords import all_spoken
 from coeflab.core.wording import identifier
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
@@ -257,7 +258,7 @@ def table_of(read: ForceTable) -> Table:
     if isinstance(read, Table):
         return read
     kind = OscillatingTable if isinstance(read, PlanarMotionTable) else Table
-    return kind(**{f.name: getattr(read, f.name) for f in fields(read)})
+    return kind(**{f.name: getattr(read, f.name) for f in fields(read)} | {"notes": all_spoken(read.notes)})
 
 
 def _called(source: Any) -> str:

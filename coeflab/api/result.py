@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
 from coeflab.core.texts import remark
@@ -54,6 +56,7 @@ class Points(NamedTuple):
     labels: tuple[str, ...]
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Result(Mapping[str, Coefficient]):
     """Coefficients by symbol: ``result["Yv'"].value``, ``.u95``, ``.status``.
@@ -89,7 +92,21 @@ class Result(Mapping[str, Coefficient]):
         return "".join(html_by("fit", f) for f in self.fits)
 
     def _all(self) -> list[Coefficient]:
-        return [c for f in self.fits for c in f.coefficients.coefficients]
+        every = [c for f in self.fits for c in f.coefficients.coefficients]
+        return [every[i] for i in self._rows()]
+
+    def _rows(self) -> list[int]:
+        """Places among all coefficients of those that stand in the result: without a value none that another campaign gives."""
+        every = [c for f in self.fits for c in f.coefficients.coefficients]
+        valued = {c.symbol for c in every if c.value is not None}
+        return [i for i, c in enumerate(every) if c.value is not None or c.symbol not in valued]
+
+    def _given_elsewhere(self) -> Iterator[Finding]:
+        """Which campaign has no value of what another one gives."""
+        shown_here = {id(c) for c in self._all()}
+        for f in self.fits:
+            if lacks := [primed(c.symbol) for c in f.coefficients.coefficients if id(c) not in shown_here]:
+                yield Finding.of("sweep.given_elsewhere", f.campaign, Severity.NOTE, symbols=lacks)
 
     def __getitem__(self, symbol: str) -> Coefficient:
         """A coefficient by its symbol, with or without prime.
@@ -181,7 +198,8 @@ class Result(Mapping[str, Coefficient]):
         >>> round(float(2.0 * result.covariance[i, i] ** 0.5 / result["Yv'"].u95), 6)
         1.0
         """
-        return covariance_of(self.fits)
+        rows = self._rows()
+        return np.asarray(covariance_of(self.fits)[np.ix_(rows, rows)])
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value, u95, status, points, window, campaign; primed, NaN without a value. Of laws alone a row a term.
@@ -215,7 +233,7 @@ class Result(Mapping[str, Coefficient]):
         >>> print(cf.fit("suboff_roddy_2").summary())  # doctest: +ELLIPSIS
         suboff_roddy_2, primed by ...
         """
-        rows = [
+        rows: list[tuple[str, ...]] = [
             (
                 primed(c.symbol),
                 *with_u95(c.value, c.u95),
@@ -232,11 +250,17 @@ class Result(Mapping[str, Coefficient]):
                 for s, v, u in zip(law.model.symbols, law.frame()["value"], law.frame()["u95"], strict=True)
             ]
         names = ", ".join(dict.fromkeys(f.campaign for f in self.fits))
+        headers: tuple[str, ...] = ("", "value", "U95", "U95 %", "points", "status")
+        if len(set(self.symbols)) < len(self.symbols):
+            headers, rows = (
+                (*headers, "campaign"),
+                [(*row, c.campaign or "") for row, c in zip(rows, self._all(), strict=True)],
+            )
         by = self.fits[0].coefficients.scaling
         return Shown(
-            f"{names}, primed by {by.length_name} {by.length:.5g} m", ("", "value", "U95", "U95 %", "points", "status"), tuple(rows),
-            tuple(remark(f) for f in dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING)),
-            left=frozenset({0, 5}),
+            f"{names}, primed by {by.length_name} {by.length:.5g} m", headers, tuple(rows),
+            tuple(map(remark, [*dict.fromkeys(f for fit in self.fits for f in fit.findings if f.code in LACKING), *self._given_elsewhere()])),
+            left=frozenset({0, 5, 6}),
         )  # fmt: skip
 
     def samples(self, n: int, seed: int = 1) -> pd.DataFrame:
@@ -292,7 +316,7 @@ class Result(Mapping[str, Coefficient]):
                 comparisons=(), parameter_files={}, inputs=(),
             )  # fmt: skip
             self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
-        return self._found[0]
+        return tuple(c.spoken() for c in self._found[0])
 
     def _straight(self, symbol: str) -> StraightRuns | None:
         """Runs at several speeds that give X0', where no sweep does."""
@@ -313,6 +337,28 @@ class Result(Mapping[str, Coefficient]):
             f"no sweep of {shown(symbol)}", f"one of {', '.join(known)}" if known else "a fit of slopes, such as slope_at_origin",
             column="symbol",
         )  # fmt: skip
+
+    def _plot_tied(self, symbol: str, ax: Axes | None) -> Axes | None:
+        """The law of a term that is tied to a slope, over the points of that slope; None of any other coefficient."""
+        from coeflab.law.terms import read_term
+        from coeflab.report.plots.slope import plot_tied
+
+        c = self[symbol]
+        tied = next((f for f in self.fits if f.tied is not None and c in f.coefficients.coefficients), None)
+        variables = set() if tied is None else {v for v, _, _ in read_term(c.symbol, "symbol").term.factors}
+        if tied is None or tied.tied is None or c.value is None or c.window is None or len(variables) != 1:
+            return None
+        (variable,) = variables
+        slopes = next(f for f in self.fits if f.fit == tied.tied.fit and f.campaign == c.campaign)
+        sweep = next(s for s in slopes.sweeps if s.component == c.symbol[0] and s.variable == variable)
+        every = (*slopes.coefficients.coefficients, *tied.coefficients.coefficients)
+        law = {
+            x.symbol: x.value for x in every
+            if x.value is not None and x.symbol[0] == c.symbol[0] and {v for v, _, _ in read_term(x.symbol, "symbol").term.factors} == variables
+        }  # fmt: skip
+        low, high = np.sin(c.window) if variable in ("v", "w") else c.window
+        rest = [v for table, term, v in tied.tied.set_up if table == sweep.table and term == f"{c.symbol[0]}0"]
+        return plot_tied(sweep, c.symbol, law, (float(low), float(high)), sum(rest), ax)
 
     def points(self, symbol: str) -> Points:
         """What a slope was fitted to, primed.
@@ -339,7 +385,8 @@ class Result(Mapping[str, Coefficient]):
         Parameters
         ----------
         symbol : str or sequence of str, optional
-            One symbol: the points, the curve and the slope with U95; of `laws` that law. None or several: a forest, or the one law.
+            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to; of `laws` that law.
+            None or several: a forest, or the one law.
         ax : Axes, optional
             To draw into, in the style that is set; by default that of a new figure. A colour of your own:
             ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.
@@ -374,6 +421,8 @@ class Result(Mapping[str, Coefficient]):
 
                 self[symbol]
                 return plot_model([m for f in self.fits for m in f.models], symbol, ax)
+            if (drawn := self._plot_tied(symbol, ax)) is not None:
+                return drawn
             from coeflab.report.plots.slope import plot_forms, plot_slope
 
             return (plot_forms if kind else plot_slope)(self._sweep(symbol), ax)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from coeflab.api.result import Result
 from coeflab.api.vehicle import Vehicle
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
+from coeflab.core.missed import suggesting
 from coeflab.study import study as plain
 from coeflab.study.run import run as carried_out
 from coeflab.study.study import Plan
@@ -26,6 +27,7 @@ __all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
 FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Study(plain.Study):
     """Everything that a plan gives: tables, fits, comparisons, parameter files, checks; see `coeflab.run`.
@@ -89,6 +91,33 @@ class Study(plain.Study):
         own = next(name for name in result if name.endswith(file.suffix))
         write_all(file.parent, {file.name if name == own else name: content for name, content in result.items()})
         return file
+
+    def figures(self, folder: str | Path, *, full: bool = False, style: str | Path | None = None) -> tuple[Path, ...]:
+        """Write every figure of the report as SVG, PDF and PNG, and its numbers as CSV.
+
+        Parameters
+        ----------
+        folder : str or Path
+            To write into; made where it is not there.
+        full : bool
+            Those of the appendix too.
+        style : str or Path, optional
+            A style of Matplotlib, or its name.
+
+        Returns
+        -------
+        tuple of Path
+            Of the files, sorted.
+
+        Raises
+        ------
+        InputError
+            No such style.
+        """
+        _, drawn, _ = report_files(self, ["figures"], full=full, style=style)
+        content = {Path(name).name: file for name, file in drawn.items()}
+        write_all(Path(folder), content)
+        return tuple(Path(folder) / name for name in sorted(content))
 
     def plot(self, symbol: str | None = None, ax: Axes | None = None) -> Axes:
         """A slope, or without a symbol every coefficient; see `Result.plot`."""
@@ -186,4 +215,5 @@ def run(plan: Plan | str | Path, progress: Callable[[str], None] = lambda _: Non
     True
     """
     found = carried_out(plan, progress)
+    found = replace(found, checks=tuple(c.spoken() for c in found.checks))
     return Study(**{f.name: getattr(found, f.name) for f in fields(plain.Study)})

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coeflab.core.missed import suggesting
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Table(ForceTable):
     """Forces that the fluid exerts on a body in steady motion, SI, FRD, about one point; see `coeflab.read_table`.

@@ -20,9 +20,12 @@ from coeflab.api.questions import above_zero, si, three
 from coeflab.api.result import Result
 from coeflab.api.trimming import LinearModel, LinearSchedule, Trim, linear_model, trim
 from coeflab.bodies import body as plain
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
+from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import fits_about
@@ -44,6 +47,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Vehicle:
     """What a simulator needs of a vehicle: coefficients with covariance, mass, added mass, thrusters, controls.
@@ -94,7 +98,7 @@ class Vehicle:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader has to know, in words."""
-        return self.file.remarks
+        return all_spoken(self.file.remarks)
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value and u95 primed, value_si with its unit, status, origin.
@@ -232,7 +236,7 @@ class Vehicle:
         >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
         True
         """
-        return tuple(plausibility(self.file))
+        return tuple(c.spoken() for c in plausibility(self.file))
 
     def simulate(self, manoeuvre: str, **options: Any) -> Motion:
         """A manoeuvre; see `coeflab.simulate`."""
@@ -396,7 +400,7 @@ def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:
 
 def _of_datum(hull: Body, result: Result) -> Body:
     """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
-    datum = result.fits[0].coefficients.datum.id
+    datum = next((f.coefficients.datum.id for f in result.fits if f.coefficients.datum != ANYWHERE), hull.datum.id)
     bare = hull.datum.id.startswith("origin of ") and hull.datum.id != datum
     return hull.counted_from(datum) if bare else hull
 
@@ -404,9 +408,13 @@ def _of_datum(hull: Body, result: Result) -> Body:
 def _fitted_file(result: Result, base: ParameterFile, hull: Body) -> ParameterFile:
     """The parameter file of fits alone, primed and about the point of the vehicle, to which each helps the others."""
     point = np.array(base.reference_point.point)
-    fits = [replace(f, coefficients=replace(f.coefficients, body=hull.name), body=hull.name) for f in result.fits]
+    at = (hull.datum, point)
+    fits = [
+        replace(f, coefficients=replace(f.coefficients, body=hull.name).counted_from(*at), body=hull.name)
+        for f in result.fits
+    ]
     fits = list(fits_about(fits, point, base.scaling))
-    tables = [replace(t, body=hull.name).about(point) for t in result.tables]
+    tables = [replace(t, body=hull.name).counted_from(*at).about(point) for t in result.tables]
     inputs = tuple(dict.fromkeys(f for t in result.tables for f in t.files))
     group = PlannedParameterFile(stem(hull.name), hull.name, tuple(f.campaign for f in fits), ())
     return assemble(group, base.name, fits, tables, [], (), None, base.conditions, inputs)

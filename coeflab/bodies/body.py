@@ -184,8 +184,10 @@ class Body:
         return with_propellers(seen, self.thrusters)
 
     def configuration(self, name: str) -> Configuration | None:
-        """The configuration of that name, if the body has it."""
-        return next((c for c in self.configurations if c.name == name), None)
+        """The configuration of that name, if the body has it; of the body's own name the one that its [[mass]] parts weigh."""
+        weighed = self.configurations[:1] if name == self.name and self.mass_model is not None else ()
+        named = next((c for c in self.configurations if c.name == name), None)
+        return named or next(iter(weighed), None)
 
     def require_shape(self) -> Shape:
         """The shape.

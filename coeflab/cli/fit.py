@@ -59,8 +59,7 @@ def command(
 
         explain("fits", fit or DEFAULT)
         return
-    import coeflab as cf
-    from coeflab.api.campaigns import fit_campaigns, suited_fit
+    from coeflab.api.campaigns import fit_campaigns, suited_fit, typed_scaling
 
     if next_runs is not None:  # goes in 0.4
         raise InputError(f"fit --next {shown(next_runs)}", "coeflab next TABLE", column="--next")
@@ -71,10 +70,8 @@ def command(
         raise InputError(shown(figure.name), "a file name that ends in .svg, .pdf or .png", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
     fit = fit or suited_fit(paths[0])
-    if bool(length) != bool(length_name):
-        raise InputError("--length without its name", "--length and --length-name together")
     at = positive_typed(speed, "speed", "--speed") if speed else None
-    scaling = cf.Scaling(positive_typed(length, "length", "--length"), length_name) if length else None
+    scaling = typed_scaling(length, length_name)
     with show.progress(json) as say:
         study = fit_campaigns(
             paths, fit, of_fit, speed=at, scaling=scaling, include_uncertain=include_uncertain, progress=say

@@ -62,7 +62,7 @@ def command(
     motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
     lags = named_numbers(lag, "--lag")
     vehicle = cf.read_vehicle(file)
-    if not json:
+    if several and not json:  # of one speed its table says it
         show.not_used(vehicle.file, tables)
     each = [
         trim(

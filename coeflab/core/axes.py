@@ -200,6 +200,7 @@ SHIPPED = {
     "centre of the spheroid": ("centre", "of the spheroid"),
     "origin of the paper's body axes": ("paper_axes", "origin of the paper's body axes"),
     "the elevator's axis of rotation": ("elevator_axis", "the elevator's axis of rotation"),
+    "anywhere": ("anywhere", "forces alone, without rotation: the same about every point"),
 }
 
 
@@ -237,6 +238,9 @@ class Datum:
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id
+
+
+ANYWHERE = Datum.named("anywhere")
 
 
 def point_in_words(point: Sequence[float] | NDArray[np.float64], datum: Datum) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 CALLED = {
@@ -53,6 +53,11 @@ def spoken(text: str) -> str:
         out += [_OPTION.sub(_keyword, text[end : command.start()]), command[0]]
         end = command.end()
     return "".join((*out, _OPTION.sub(_keyword, text[end:])))
+
+
+def all_spoken(texts: Iterable[str]) -> tuple[str, ...]:
+    """Messages as `spoken`."""
+    return tuple(map(spoken, texts))
 
 
 def option(keyword: str) -> str:

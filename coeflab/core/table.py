@@ -16,6 +16,8 @@ from typing import NamedTuple
 from coeflab.core.cards import html_by
 from coeflab.core.errors import PluginError
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.keywords import all_spoken, spoken
+from coeflab.core.missed import suggesting
 from coeflab.core.texts import Wording, remark, words
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import Verbatim
@@ -51,7 +53,12 @@ class Table:
             object.__setattr__(self, "rows", tuple(tuple(map(_unsigned, row)) for row in self.rows))
 
     def __str__(self) -> str:
-        return "\n".join(line.text for line in set_lines(self, 80))
+        return "\n".join(line.text for line in set_lines(self.spoken(), 80))
+
+    def spoken(self) -> Table:
+        """The table in the words of whoever reads it: options in a shell, else keywords."""
+        rows = tuple(tuple(spoken(cell) if "--" in cell else cell for cell in row) for row in self.rows)
+        return replace(self, rows=rows, notes=all_spoken(self.notes))
 
     def only(self, columns: Sequence[int]) -> Table:
         """Some of its columns."""
@@ -61,6 +68,9 @@ class Table:
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""
+        return self.spoken()._html()
+
+    def _html(self) -> str:
         sides = ["left" if i in self.left else "right" for i in range(len(self.headers))]
         heads, *rows = (
             "".join(f'<{tag} style="text-align: {side}">{escape(cell)}</{tag}>' for side, cell in zip(sides, row))
@@ -317,6 +327,7 @@ def probability(value: float) -> str:
     return ABSENT if isnan(value) else "<0.001" if value < 1e-3 else f"{value:.3f}"
 
 
+@suggesting
 @dataclass(frozen=True, slots=True)
 class Check:
     """One finding.
@@ -345,6 +356,11 @@ class Check:
 
     def __repr__(self) -> str:
         return in_angles(self, f"{self.severity}, {self.name}: {self.subject}: {self.statistic}")
+
+    def spoken(self) -> Check:
+        """The finding in the words of whoever reads it: options in a shell, else keywords."""
+        statistic, rule, comment = all_spoken((self.statistic, self.rule, self.comment))
+        return replace(self, statistic=statistic, rule=rule, comment=comment)
 
     def _repr_html_(self) -> str:
         """What was found and what it means, for notebooks."""

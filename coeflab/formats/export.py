@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.missed import suggesting
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.wording import file_stem
 from coeflab.law.force_law import ForceLaw, ForceTerm
@@ -532,6 +533,7 @@ def unheld(
     return (*terms, *(() if ideal else products), *controls)
 
 
+@suggesting
 @brief
 @dataclass(frozen=True, slots=True)
 class Export:

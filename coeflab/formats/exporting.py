@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -95,7 +96,7 @@ def _remarks(
     """What files have to say of their numbers, beside those of a format that has no place for it."""
 
     def letters(text: str) -> str:
-        return "".join(c for c in text if c.isalnum())
+        return re.sub(r"[\W_]+", "", text)
 
     written = letters("\n".join(content.decode(errors="ignore") for content in files.values()))
     found = [words for words in due if letters(words) not in written]

@@ -42,6 +42,10 @@ class Ordered:
         N m/(m/s rad/s).
     holds_munk : bool
         Whether the polar's moment holds the Munk moment, as one from CFD or a tank does.
+    damping_is_estimate : bool
+        Whether the pitch damping is that of the shape.
+    depth : float or None
+        At which the dive ends, m; the climb then ends at the surface.
     """
 
     engine: float
@@ -53,6 +57,8 @@ class Ordered:
     lasts: float
     pitch_damping: float
     holds_munk: bool
+    damping_is_estimate: bool = False
+    depth: float | None = None
 
 
 def polar_of(table: ForceTable, body: Body, ordered: Ordered) -> StatedPolar:
@@ -129,8 +135,11 @@ def glider_of(name: str, table: ForceTable, body: Body, added: AddedMass, ordere
     water = added.about(middle).matrix
     place = 0.0 if slides is None else float(slides.centre[0] - middle[0])
     phases = tuple(
-        GliderPhase(called, way * ordered.net_mass, place + way * ordered.shift, lasts=ordered.lasts)
-        for called, way in (("dive", 1.0), ("climb", -1.0))
+        GliderPhase(called, way * ordered.net_mass, place + way * ordered.shift, lasts=ordered.lasts, until_depth=until)
+        for called, way, until in (
+            ("dive", 1.0, ordered.depth),
+            ("climb", -1.0, None if ordered.depth is None else 0.0),
+        )
     )
     engine_at = 0.0 if ordered.engine_at is None else ordered.engine_at - float(middle[0])
     return Glider(
@@ -150,12 +159,13 @@ def _sliding(part: MassPart | None, place: float, middle: np.ndarray, travel: fl
 
 
 def _basis(table: ForceTable, body: Body, added: AddedMass, ordered: Ordered) -> tuple[tuple[str, str], ...]:
+    damping = "the estimate of Mq' from the shape" if ordered.damping_is_estimate else "as asked for"
     parts = f"[[mass]] of {body.name} about its centre of buoyancy"
     return (
         ("mass", f"derived: {parts}, added mass by {added.method}"),
         ("sliding_mass", f"derived: {ordered.sliding} of {body.name}; assumed: {SECONDS:g} s from end to end"),
         ("engine", f"assumed: as asked for, {SECONDS:g} s from end to end"),
         ("polar", f"derived: fit glide_polar of {table.campaign}"),
-        ("polar.pitch_damping", "assumed: as asked for, else the estimate of Mq' from the shape"),
+        ("polar.pitch_damping", f"assumed: {damping}"),
         ("phase", "assumed: as asked for"),
     )

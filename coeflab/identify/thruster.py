@@ -164,6 +164,9 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
             column="--window", advice="Hold each command longer, or give a shorter --window.",
         )  # fmt: skip
     table = np.array(means)
+    table[np.abs(table[:, 0]) <= STEADY * np.max(np.abs(table[:, 0])), :2] = (
+        0.0  # at rest; a tachometer's noise turns no rotor astern
+    )
     command, squares = table[:, 0], table[:, 1]
     laws = []
     for k, load in enumerate(LOADS, 2):

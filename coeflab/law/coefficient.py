@@ -10,9 +10,10 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Datum
+from coeflab.core.axes import ANYWHERE, Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.missed import suggesting
 from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, RefusedError, stored
 from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import Array, in_angles, locking
@@ -92,6 +93,7 @@ class Parts:
 WITHOUT_VALUE = (Status.NO_TABLE, Status.TOO_FEW_POINTS, Status.NOT_DETERMINED)
 
 
+@suggesting
 @stored(
     "symbol value u95 unit value_si unit_si status origin parts table? campaign? estimator? window? n_points? citation? law? "
     "potential?"
@@ -277,6 +279,10 @@ class CoefficientSet:
     def _repr_html_(self) -> str:
         """Values and intervals, for notebooks."""
         return html_by("coefficients", self)
+
+    def counted_from(self, datum: Datum, point: Array) -> CoefficientSet:
+        """The set about a point, where its numbers hold about every point; else as it is."""
+        return replace(self, datum=datum, reference_point=point) if self.datum == ANYWHERE else self
 
     def __getitem__(self, symbol: str) -> Coefficient:
         name = symbol.removesuffix("'")

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Annotated, ClassVar, overload
+from dataclasses import dataclass, replace
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, overload
 
 import numpy as np
 
 from coeflab.core import declarations as takes
+from coeflab.core.declarations import number_in
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.stored import Means
@@ -86,6 +89,41 @@ def doubtful_size(key: str, number: float, in_air: bool = False) -> str:
     if key == "conditions.speed" and number > FASTEST and not in_air:
         return f'{number:g} m/s is no speed in water: is it in mm/s? Then write "{number:g} mm/s"'
     return ""
+
+
+def require_hull(value: Any, key: str | None = None) -> None:
+    """Refuse a bare number that is the length of no hull or model in m, such as mm without their unit; with its unit it counts.
+
+    Parameters
+    ----------
+    value : object
+        As it was written.
+    key : str, optional
+        For the error.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return  # with its unit, or none that is read
+    if isfinite(number) and (doubt := doubtful_size("scaling.length", number)):
+        raise InputError(
+            f"{number:g}, a length without a unit", f"{LENGTHS[0]:g} to {LENGTHS[1]:g} m, or a length with its unit", column=key,
+            advice=f'{doubt}; if not, "{number:g} m".',
+        )  # fmt: skip
+
+
+def _of_a_hull(value: Any, file: Path) -> float:
+    found: float = number_in("length").read(value, file)
+    if file.suffix != ".json":  # JSON is written by programs, in SI
+        require_hull(value)
+    return found
+
+
+HullLength = Annotated[float, replace(number_in("length"), read=_of_a_hull)]
 
 
 def doubtful_viscosity(viscosity: float, density: float) -> str:
@@ -192,7 +230,7 @@ class Scaling(takes.Declaration):
     """
 
     __stored__: ClassVar = ("length", "length_name")
-    length: Annotated[takes.Length, takes.ABOVE_ZERO, Means("length L of the primes", "m")]
+    length: Annotated[HullLength, takes.ABOVE_ZERO, Means("length L of the primes", "m")]
     length_name: Annotated[takes.Text, Means("which length it is, for example LBP or LOA")]
 
     def __post_init__(self) -> None:

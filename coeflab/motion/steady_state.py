@@ -41,7 +41,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.symbols import ANGULAR, MOTIONS
 from coeflab.motion.approach import along
-from coeflab.motion.dynamics import from_euler, linearised, modes
+from coeflab.motion.dynamics import STEP, from_euler, modes
 from coeflab.motion.vehicle import PLANES, Vehicle, vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -508,15 +508,17 @@ def roots_at(body: Vehicle, index: str, speed: float, has_angle: bool) -> NDArra
     at = [MOTIONS.index(m) for m in PLANE_OF[index]]
     nu, still = along(body, speed), np.zeros(6)
 
-    def rates(state: Array) -> Array:
-        moved = nu.copy()
-        moved[at] = state[: len(at)]
-        attitude = from_euler(0.0, float(state[-1]), 0.0) if has_angle else from_euler(0.0, 0.0, 0.0)
-        turned = body.acceleration(moved[None, :], attitude[None, :], np.zeros((1, 3)), still)[0, at]
-        return np.append(turned, state[len(at) - 1]) if has_angle else turned
-
-    scale = [speed / body.length if MOTIONS[i] in ANGULAR else speed for i in at] + [1.0] * has_angle
-    return modes(linearised(rates, np.zeros(len(scale)), np.array(scale)))
+    scale = np.array([speed / body.length if MOTIONS[i] in ANGULAR else speed for i in at] + [1.0] * has_angle)
+    states = np.vstack([np.diag(STEP * scale), -np.diag(STEP * scale)])  # central differences, all at once
+    moved = np.tile(nu, (len(states), 1))
+    moved[:, at] = states[:, : len(at)]
+    pitch = states[:, -1] if has_angle else np.zeros(len(states))
+    attitude = np.array([from_euler(0.0, float(angle), 0.0) for angle in pitch])
+    rates = body.acceleration(moved, attitude, np.zeros((len(states), 3)), still)[:, at]
+    if has_angle:
+        rates = np.column_stack([rates, states[:, len(at) - 1]])
+    ahead, back = np.split(rates, 2)
+    return modes(((ahead - back) / (2.0 * STEP * scale)[:, None]).T)
 
 
 def _critical(body: Vehicle, index: str, has_angle: bool, speed: Array, growth: Array) -> float | None:

@@ -30,7 +30,7 @@ from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.formats.export import PlannedExport
 from coeflab.formats.exporting import exports_of
 from coeflab.law.added_mass import NearWall
-from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.scaling import Conditions, Scaling, require_hull
 from coeflab.law.symbols import CONTROLS
 from coeflab.law.water import FRESH_WATER
 from coeflab.motion.approach import along, mirrored, yaw_acceleration
@@ -423,6 +423,7 @@ def asked(
             positive_typed(speed, "speed", "--speed") if speed else FRESH_WATER.speed,
             FRESH_WATER.viscosity,
         )
+    require_hull(length, "--length")
     scaling = Scaling(positive_typed(length, "length", "--length"), "length") if length else None
     exports = tuple(PlannedExport(target, accept_loss) for target in dict.fromkeys(to))
     title = body.title if body.title and not body.datum.id.endswith(body.title) else body.name

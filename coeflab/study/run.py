@@ -45,6 +45,8 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
         table = table.with_uncertain_cells()
     if plan.reference_point is None:
         return table
+    if plan.datum:
+        table = table.counted_from(plan.datum, plan.reference_point)
     if plan.datum and plan.datum != table.datum:
         raise ScalingMismatchError(
             f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "

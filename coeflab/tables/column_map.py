@@ -56,6 +56,7 @@ _PER_SPEED = re.compile(
 )
 _LONGEST = 120
 ACROSS = {"drag": "along", "lift": "across", "side": "across"}
+OPEN_SIZES = "coefficient"  # of a column whose area, and length, are said for all of them
 PER = {"force": "coefficient A=1.2 m^2", "moment": "coefficient A=1.2 m^2 L=4.26 m"}
 
 
@@ -222,6 +223,8 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
 def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
     match = _COEFFICIENT.fullmatch(said.unit)
     moment = said.dimension == "moment"
+    if said.unit == OPEN_SIZES and said.name in FORCES:
+        return said
     if match is None or not match["area"] or said.name not in FORCES or moment != bool(match["length"]):
         expected = f"{said.plain} [{PER['moment' if moment else 'force']}]"
         raise InputError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Datum
+from coeflab.core.axes import ANYWHERE, Datum
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding
 from coeflab.core.provenance import InputFile, Source
@@ -340,6 +340,10 @@ class ForceTable:
         for c, values in self.forces.items():
             columns[f"{c} [{'N*m' if c in 'KMN' else 'N'}]"] = np.where(self.usable[c], values, np.nan)
         return pd.DataFrame(columns, index=pd.Index(self.labels, name="point"))
+
+    def counted_from(self, datum: Datum, point: Array) -> ForceTable:
+        """The table about a point, where its numbers hold about every point; else as it is."""
+        return replace(self, datum=datum, reference_point=point) if self.datum == ANYWHERE else self
 
     def about(self, point: Array) -> ForceTable:
         """The same runs with velocities and moments about another point (m, FRD, from the same datum).

@@ -16,7 +16,7 @@ from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
+from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import RawColumn, RawTable
@@ -198,6 +198,8 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
                 f'Leave the unit out to take the file\'s: "{replace(said, unit="-")}".',
             )  # fmt: skip
         return Assigned(column, said, sign * (declared or counted or 1.0))
+    if said.unit == OPEN_SIZES:
+        raise fault(raw, f"{said}, without an area", f"{said.plain} [{PER[said.dimension]}]", column)
     own = _factor(column.unit, said.dimension)
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):
@@ -230,7 +232,7 @@ def _factor(unit: str, dimension: str) -> float | None:
 
 def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
     """Rows with a number in every setting."""
-    blank = [np.isnan(one.values) for one in columns if one.said.role in SETTINGS]
+    blank = [_lacking(one) for one in columns if one.said.role in SETTINGS]
     return np.flatnonzero(~np.logical_or.reduce([np.zeros(rows, dtype=bool), *blank]))
 
 
@@ -239,9 +241,16 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
     for one in columns:
         if one.said.role not in SETTINGS:
             continue
-        blank = np.flatnonzero(np.isnan(one.values))
+        blank = np.flatnonzero(_lacking(one))
         if blank.size:
-            yield f"left out, no {one.column.name}: {places(raw, blank)}"
+            above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
+            yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
+
+
+def _lacking(one: Assigned) -> NDArray[np.bool_]:
+    """Rows without a number in a setting, or at rest where others move: of those nothing can be primed."""
+    moving = np.nan_to_num(one.values) != 0.0
+    return np.asarray(~moving if one.said.role == "speed" and np.any(moving) else np.isnan(one.values))
 
 
 def places(raw: RawTable, rows: Sequence[int] | NDArray[np.int64]) -> str:

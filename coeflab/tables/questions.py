@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, parse_axes
+from coeflab.core.axes import ANGLE_SIGNS, ANYWHERE, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
-from coeflab.law.symbols import ANGULAR
+from coeflab.law.symbols import ANGULAR, MOMENTS
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
-from coeflab.tables.column_map import ROLES, read_column_map
+from coeflab.tables.column_map import ROLES
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import Assigned
@@ -31,6 +31,7 @@ PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
 ONCE = "once its unit is said"
+NO_POINT = "forces alone: no point matters"
 SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {
     1: ("FRD", "FLU"),
@@ -107,7 +108,7 @@ def questions(
     """
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
-        *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
+        *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings, _holds_anywhere(columns, likely)),
         *_of_halves(raw, settings, shows), *_of_sizes(columns, settings, likely), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
@@ -117,7 +118,7 @@ def without_unit(offer: Proposal) -> bool:
     """Whether a column states no unit, so that one for all such columns may give it; angles are asked one by one."""
     if offer.unread or not offer.text.endswith(f"[{OPEN}]"):
         return False
-    return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
+    return offer.said is not None and offer.said.dimension not in ("angle", "none")
 
 
 def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:
@@ -200,7 +201,7 @@ def _of_axes(
     )  # fmt: skip
     angles = [c.said.name for c in columns if c.said.role == "angle"]
     follows = {e.key: e for e in shows if e.key}
-    for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
+    for name in dict.fromkeys((*angles, *(name for name in likely if ROLES[name] == "angle"))):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
@@ -232,7 +233,13 @@ def _signs(columns: Sequence[Assigned], angle: str, reading: Any) -> str:
     return next((e.value for e in evidence(columns, parse_axes(reading)) if e.key == f"axes.{angle}"), "")
 
 
-def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
+def _holds_anywhere(columns: Sequence[Assigned], likely: Sequence[str]) -> bool:
+    """Whether the numbers are the same about every point: forces without moments, of a body that does not turn."""
+    names = {*(c.said.component for c in columns), *(c.said.role for c in columns), *likely}
+    return "force" in names and not names & {*MOMENTS, *ANGULAR, "R", "radius"}
+
+
+def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Question]:
     at, frame, datum = raw.stated.get(POINT_OF), frame_of(settings), settings.get("axes.datum")
     own = at.value if at and isinstance(at.value, tuple) and len(at.value) == 3 else None
     asks = f"Point that the moments are about: {PLACE_ASKED}; or a point by its name: midship, cg, nose"
@@ -262,6 +269,18 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         choices = f"{given.contradicted or given.place}; {choices}"
     elif datum is not None or given is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
+    elif anywhere and POINT_OF not in settings:
+        yield Question(POINT_OF, asks, "", "0, 0, 0", ANYWHERE.note, NO_POINT, harmless=True)
+        yield Question(
+            "axes.datum",
+            "Point of the body that places count from",
+            "",
+            ANYWHERE.id,
+            ANYWHERE.note,
+            NO_POINT,
+            harmless=True,
+        )
+        return
     unsaid = why == "the datum itself" or why.endswith(UNSAID_IN_WORDS)
     yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True, assumed=unsaid)
     asks = "Point of the body that places count from: nose, cg, midship ..."
@@ -322,7 +341,8 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
         not median["speed"]
         and (u := next((c for c in columns if c.said.name == "u" and not c.said.primed), None)) is not None
     ):
-        median["speed"] = f"{float(np.nanmedian(np.abs(u.values))):.12g}" if np.any(u.values) else ""
+        half = float(np.nanmedian(np.abs(u.values))) if np.any(u.values) else 0.0
+        median["speed"] = f"{half:.12g}" if half else ""  # most rows of one velocity at a time stand still along x
     for role, asks, choices, cancels in (
         ("density", "Density of the water, kg/m^3", "kg/m^3: 998.2 fresh, 1025 sea", "1000" if pure else ""),
         ("speed", "Speed, m/s", "m/s", "1" if pure and plain else ""),

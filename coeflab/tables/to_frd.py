@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Axes, angle_sign
+from coeflab.core.axes import ANYWHERE, Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
-from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.assumptions import assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
@@ -95,12 +95,7 @@ class Columns:
         if is_folder and row is not None and self.row_labels:
             found = f"{found} in {self.row_labels[row]}"
         return InputError(
-            found,
-            expected,
-            file=self.file,
-            line=line,
-            column=self.headers.get(name, name) or None,
-            advice=advice,
+            found, expected, file=self.file, line=line, column=self.headers.get(name, name) or None, advice=advice
         )
 
     @property
@@ -290,6 +285,11 @@ def _assumed(
         if section == "columns":
             value = columns.headers.get(plain, plain)
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
+    still = np.all([columns.velocity.get(c, 0.0) == np.zeros(len(columns)) for c in LINEAR], axis=0)
+    if "U" not in columns.headers and surge_column(campaign) in columns.velocity and np.any(still):
+        yield Finding.of(
+            "assumed.on_the_spot", name, Severity.NOTE, statistic=campaign.conditions.speed, rows=int(still.sum())
+        )
 
 
 def _place(point: Array) -> str:
@@ -307,6 +307,12 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             f"again with --option density={declared:g}.",
         )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
+    turns = [*(c for c in MOMENTS if c in columns.forces), *rates, *["R"] * (columns.radius is not None)]
+    if campaign.datum == ANYWHERE and turns:
+        yield InputError(
+            f"datum = {shown(ANYWHERE.id)} with {', '.join(turns)}", "the point of the body that places count from",
+            file=campaign.path, key="axes.datum", advice="Moments and rates are other numbers about every point.",
+        )  # fmt: skip
     if columns.radius is not None:
         if rates:
             yield columns.fail(
@@ -510,7 +516,7 @@ def speed_of_rows(
     n: int,
     has_angles: bool,
 ) -> Array:
-    """U of every row: its column, else the length of a full velocity vector, else the campaign's.
+    """U of every row: its column, else the length of a full velocity vector, the campaign's where that is zero; else the campaign's.
 
     Parameters
     ----------
@@ -533,7 +539,9 @@ def speed_of_rows(
     # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
     shares = [primes[c] ** 2 for c in LINEAR if c in primes]
     rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
-    return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
+    found = np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0))
+    on_the_spot = (found == 0.0) & (rest > 0.0) & np.any(found > 0.0)  # one velocity at a time, a rate without speed
+    return np.where(on_the_spot, campaign.conditions.speed, found)
 
 
 def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:

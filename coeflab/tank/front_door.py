@@ -12,6 +12,7 @@ from coeflab.api.body import Body
 from coeflab.bodies import body as plain
 from coeflab.core.errors import InputError
 from coeflab.core.files import located, typed
+from coeflab.core.missed import suggesting
 from coeflab.core.types import in_angles
 from coeflab.tank import tow as tank_room
 from coeflab.tank.tank import Tank
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from coeflab.tank.tow import Collected
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False)
 class Tow:
     """What is to be towed: conditions, solver, water; nothing is written or run before `run`.

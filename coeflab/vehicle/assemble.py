@@ -7,7 +7,7 @@ From fitted models to those of a parameter file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
@@ -295,6 +297,42 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
     return mass.moved(shift), [f"mass properties moved by {shift[0]:+.6g} m along x to the reference point"]
 
 
+def _from_one_datum(
+    chosen: list[FitResult], tables: Sequence[ForceTable], body: Body | None
+) -> tuple[CoefficientSet, list[FitResult], list[ForceTable]]:
+    """The set whose point counts, fits and tables, where what holds about every point is about that one."""
+    first = next((f.coefficients for f in chosen if f.coefficients.datum != ANYWHERE), chosen[0].coefficients)
+    if body is not None:
+        first = first.counted_from(body.datum, body.reference_point)
+    at = (first.datum, first.reference_point)
+    fits = [
+        f if f.coefficients.datum != ANYWHERE else replace(f, coefficients=f.coefficients.counted_from(*at))
+        for f in chosen
+    ]
+    return first, fits, [t.counted_from(*at) for t in tables]
+
+
+def _unequipped(body: Body | None, name: str) -> Iterator[Finding]:
+    """That masses, thrusters and controls of a body are left out, as the file is of none of its configurations."""
+    if body is None or body.configuration(name) is not None:
+        return
+    what = [
+        f"{len(found)} {word}{'s' * (len(found) > 1)}"
+        for word, found in (("thruster", body.thrusters), ("control", body.controls))
+        if found
+    ]
+    if what := ["mass"] * any(c.mass is not None for c in body.configurations) + what:
+        known = tuple(
+            dict.fromkeys(
+                (*([body.name] if body.mass_model is not None else []), *(c.name for c in body.configurations))
+            )
+        )
+        yield Finding.of(
+            "parameter_file.unequipped", name, Severity.WARN, advice=f'campaign.body = "{known[0]}"', body=body.name, lacks=tuple(what),
+            configurations=known,
+        )  # fmt: skip
+
+
 def assemble(
     group: PlannedParameterFile,
     study: str,
@@ -337,8 +375,8 @@ def assemble(
         raise InputError(
             "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
         )
+    first, chosen, tables = _from_one_datum(chosen, tables, body)
     sets = [f.coefficients for f in chosen]
-    first = sets[0]
     for s, f in zip(sets, chosen, strict=True):
         first.scaling.require(s.scaling)
         if f.body != group.body:
@@ -416,6 +454,7 @@ def assemble(
                     *(() if found is None else found.findings),
                     *(() if configuration is None or mass is None else configuration.findings),
                     *drag_elsewhere(coefficients, tables, conditions, first.scaling.length),
+                    *_unequipped(body, group.body),
                 ]
             )
         ),

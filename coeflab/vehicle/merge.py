@@ -108,6 +108,7 @@ def merged(
         Nothing to take.
     """
     ours, theirs = coefficient_set(base), _at_conditions(coefficient_set(other), other, base)
+    theirs = theirs.counted_from(ours.datum, ours.reference_point)
     if ours.datum != theirs.datum:
         raise ScalingMismatchError(
             f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "

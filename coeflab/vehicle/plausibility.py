@@ -27,6 +27,7 @@ from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.sizes import size_findings
+from coeflab.vehicle.sources import acts_in
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -263,9 +264,10 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
-                if 0.0 < (share := b.term.coefficient / usual) < SMALLEST[n]:
+                same_way = b.term.coefficient * float(np.sign(usual))
+                if 0.0 < same_way < SMALLEST[n] * abs(usual):
                     out.append(_damping_check(
-                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {share:.2g} of k^{n + 1} {a.term.symbol}",
+                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
                         f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
                         "Is it per degree and second? Rates are in rad/s.",
                     ))  # fmt: skip
@@ -408,9 +410,13 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
         elif f.missed:
             severity = Severity.FAIL
+            tables = [m.response for m in parameters.models if f.component in acts_in(m)]
+            longer = (
+                f"Its law is the table of {', '.join(tables)}: give that fit another degree or form (coeflab formats surface)" if tables
+                else 'Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"])'
+            )  # fmt: skip
             comment = (
-                f'It misses {", ".join(f.missed)}. Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"]), '
-                "or look for a coefficient or a sign that is not the fit's."
+                f"It misses {', '.join(f.missed)}. {longer}, or look for a coefficient or a sign that is not the fit's."
             )
         elif f.beyond:
             severity = Severity.WARN

@@ -94,3 +94,22 @@ def test_points_and_picture_of_the_resistance_of_straight_runs() -> None:
     assert axes.lines[1].get_ydata()[0] == pytest.approx(result["X0'"].value)
     low, high = np.sort(axes.collections[0].get_paths()[0].vertices[:, 1])[[0, -1]]
     assert (high - low) / 2.0 == pytest.approx(result["X0'"].u95)
+
+
+def test_what_one_campaign_alone_determines_stands_once() -> None:
+    """Drift, and an arm of three drift angles that does not determine Yv'."""
+    at = {"frame": "FRD", "length": 2.0, "density": 1000, "speed": 2.0, "about": "nose, 1 m aft", "beta": "+"}
+    beta, rate = np.radians(np.arange(-12.0, 13.0, 3.0)), np.repeat(np.linspace(-0.3, 0.3, 5), 3)
+    drift = cf.read_table({"beta [deg]": np.degrees(beta), "Y [N]": -480.0 * np.sin(beta)}, name="drift", **at)
+    across = np.tile(np.radians([-4.0, 0.0, 4.0]), 5)
+    arm = {"beta [deg]": np.degrees(across), "r [rad/s]": rate, "Y [N]": 20.0 * rate - 480.0 * np.sin(across)}
+    result = cf.fit([drift, cf.read_table(arm, name="arm", contains_inertia=False, arm_point="reference point", **at)])
+    assert result.symbols == ("Yv'", "Yr'")
+    assert result.frame().loc["Yv'", "value"] == pytest.approx(-480.0 / (0.5 * 1000 * 4 * 4))
+    assert result.covariance.shape == (2, 2)
+    np.testing.assert_allclose(2.0 * np.sqrt(np.diag(result.covariance)), [result[s].u95 for s in result.symbols])
+    assert [f["symbols"] for f in result._given_elsewhere()] == [("Yv'",)]
+    twice = cf.fit(
+        [drift, cf.read_table({"beta [deg]": np.degrees(beta), "Y [N]": -500.0 * np.sin(beta)}, name="again", **at)]
+    )
+    assert [row[-1] for row in twice.summary().rows] == ["drift", "again"]

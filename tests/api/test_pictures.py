@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 import coeflab as cf
+from coeflab.api import studies
+from coeflab.fits import tied_law
 from coeflab.report.document import AnswerRow
 from coeflab.report.figures import estimator, first_page, laws, model, motion, nouns, sweep, three_views
 from coeflab.report.figures.files import drawing, files_of, styled
@@ -239,3 +241,36 @@ def test_a_style_changes_colours_and_nothing_that_is_drawn(result: cf.Result, tm
     assert drawing(sweep.sweep_figure(s, "yv")).decode() == plain
     with pytest.raises(cf.InputError), styled(tmp_path / "none.mplstyle"):
         pass
+
+
+def test_a_term_beyond_the_slope_is_drawn_with_its_law(result: cf.Result) -> None:
+    """Yv|v|' of a law that is tied to Yv': the points of its sweep, and Yv' v' + Yv|v|' v'|v'| + ... over the range it was fitted to."""
+    slopes = result.fits[0]
+    tied = tied_law.complete(slopes, result.tables, slopes.coefficients.scaling, {})
+    both = cf.Result((slopes, tied), result.tables)
+    symbol = next(s for s in ("Yv|v|'", "Yvvv'") if s in both)
+    ax = both.plot(symbol, ax=new_axes())
+    law, points = (np.concatenate(lines(ax)[f"data-series={key}"]) for key in ("law", "points"))
+    v = np.sin(np.radians(law[:, 0]))
+    powers = {"Yv'": v, "Yv|v|'": v * np.abs(v), "Yvvv'": v**3}
+    rest = sum(x for table, term, x in tied.tied.set_up if term == "Y0" and table == slopes.sweep("Yv").table)
+    due = rest + sum(both[s].value * x for s, x in powers.items() if s in both)
+    np.testing.assert_allclose(law[:, 1], due, atol=1e-9)
+    np.testing.assert_allclose(points[:, 1], slopes.sweep("Yv").y)
+    assert np.max(np.abs(np.interp(points[:, 0], law[:, 0], law[:, 1]) - points[:, 1])) < 0.1 * np.max(
+        np.abs(points[:, 1])
+    )
+
+
+def test_figures_of_a_study_go_into_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def drawn(study: Any, formats: list[str], **more: Any) -> Any:
+        asked.append((formats, more))
+        return None, {"figures/yv.svg": b"<svg/>", "figures/yv.csv": b"x,y"}, False
+
+    monkeypatch.setattr(studies, "report_files", drawn)
+    found = studies.Study.figures(None, tmp_path / "out", style="ggplot")  # type: ignore[arg-type]
+    assert [p.name for p in found] == ["yv.csv", "yv.svg"]
+    assert (tmp_path / "out" / "yv.svg").read_bytes() == b"<svg/>"
+    assert asked == [(["figures"], {"full": False, "style": "ggplot"})]

@@ -188,11 +188,11 @@ def rate(s, u):
     return np.concatenate([[-0.5 * q[1:] @ w], 0.5 * (q[0] * w + np.cross(q[1:], w)), nu_dot])
 s = np.array([1.0, 0, 0, 0, speed, 0, 0, 0, 0, 0])
 out = [s[4:].tolist()]
-actual = None
+actual, turned = None, getattr(v, "turned", lambda before, order, seconds: order)  # of a class with a lag or a rate
 for row in rows:
     u = np.array([*row[:3], 0.0, *row[3:3 + v.dimU - 4]])
     actual = u if actual is None else np.array([*u[:4], *actual[4:]])  # thrusters alone are on their way
-    now, middle, after = (v.turned(actual, u, t) for t in (0.0, h/2, h))
+    now, middle, after = (turned(actual, u, t) for t in (0.0, h/2, h))
     a = rate(s, now); b = rate(s + h/2*a, middle); c = rate(s + h/2*b, middle)
     s = s + h/6 * (a + 2*b + 2*c + rate(s + h*c, after))
     actual = after

@@ -64,7 +64,12 @@ def test_the_centre_of_gravity_of_stonefish_is_in_the_body_and_turns_its_moments
 def test_a_thruster_of_stonefish_with_two_sides_or_a_turned_sign_is_left_out_by_name(
     tmp_path: Path, specs: str, right: str
 ) -> None:
-    assert [t.name for t in stonefish(tmp_path).thrusters] == ["t"]
+    (t,) = stonefish(tmp_path, ' torque_coeff="0.05"').thrusters
+    unit = 1000.0 * 0.2**4 * 5.0 * abs(5.0)  # rho D^4 n|n| at 300 rpm
+    assert t.torque_curve is not None
+    found = t.curve.at(300.0) * t.direction[0], t.torque_curve.at(300.0) * t.handedness * t.direction[0]
+    assert found == pytest.approx((0.48 * unit, -0.05 * 0.2 * unit))
+    assert {f["kind"] for f in stonefish(tmp_path).findings if f.code == "model.left_out"} >= {"rotors"}
     file = stonefish(tmp_path, specs, right)
     assert file.thrusters == ()
     assert any("thruster t" in note for note in file.remarks)

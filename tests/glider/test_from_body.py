@@ -92,7 +92,7 @@ file = "table.csv"
 contains_inertia = false
 """
 ASKED = (
-    "--engine", "0.5 kg", "--net-mass", "300 g", "--sliding", "battery", "--travel", "8 cm", "--shift", "0.07", "--pitch-damping", "7",
+    "--engine", "0.5 kg", "--net-mass", "300 g", "--sliding", "battery", "--travel", "8 cm", "--shift", "0.07", "--pitch-damping", "7", "--depth", "40",
     "--method", "strip", "--out", "mine",
 )  # fmt: skip
 
@@ -166,6 +166,10 @@ def test_masses_are_those_of_the_parts_and_the_glide_that_of_the_equations(
         ]  # fmt: skip
 
     told = json.loads(coeflab("glide", tmp_path / "mine" / "soar.glider.toml", "--json").stdout)["gliders"][0]
+    assert [(p["met_depth"], p["depth"]) for p in told["phases"]] == [
+        (True, pytest.approx(40.0)),
+        (True, pytest.approx(0.0, abs=1e-6)),
+    ]
     assert [s["phase"] for s in told["steady_glides"]] == ["dive", "climb"]
     for glide, way in zip(told["steady_glides"], (1.0, -1.0), strict=True):
         due = fsolve(left, [0.5, way * 0.05, -way * 0.5], args=(way,), xtol=1e-12)

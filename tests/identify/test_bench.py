@@ -115,3 +115,17 @@ def test_each_side_of_zero_has_its_own_thrust(tmp_path: Path) -> None:
 def test_torque_astern_has_the_sign_of_the_command(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="sign of its command"):
         both_ways(tmp_path, torque_astern=1.0)
+
+
+def test_a_tachometer_at_rest_turns_no_rotor_astern(tmp_path: Path, air: ParameterFile) -> None:
+    """A stretch at rest that reads -0.4 rpm: the curve is that of the stretches ahead, and begins at zero."""
+    path = series(tmp_path)
+    head, *rows = path.read_text().splitlines()
+    still = [f"{-3.0 + 0.05 * i:.3f},-0.4,0.001,-0.0000001" for i in range(60)]
+    path.write_text("\n".join([head, *still, *rows]) + "\n")
+    found = bench_test([path], air, "rotor1")
+    assert found.command == pytest.approx((0.0, *LEVELS), abs=1e-6)
+    curve = next(t for t in with_curves(air, found).thrusters if t.name == "rotor1").curve
+    assert [(s.low, *s.coefficients) for s in curve.segments] == [
+        pytest.approx((0.0, 0.0, *THRUST), rel=1e-3, abs=1e-9)
+    ]

@@ -13,10 +13,10 @@ SPEED = 1.5
 HORIZONTAL = ("Yv'=-.05 +- .004", "Nv'=-.01 +- .002", "Yr'=.01 +- .001", "Nr'=-.006 +- .001")
 
 
-def file(*numbers: str, about: str = "cg") -> ParameterFile:
+def file(*numbers: str, about: str = "cg", mass: str = "46 kg") -> ParameterFile:
     at = {"cg": "0,0,0"} if about != "cg" else {}
     return typed_file(
-        "auv", numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, mass="46 kg",
+        "auv", numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1025", about=about, mass=mass,
         inertia="1,10,10", **at,
     )  # fmt: skip
 
@@ -41,7 +41,8 @@ def test_no_u95_where_a_coefficient_without_one_moves_the_force() -> None:
 
 
 def test_indices_about_points_of_other_datums_have_no_difference() -> None:
-    a, b = file(*HORIZONTAL), file(*HORIZONTAL, about="nose")
+    """Nor has the centre of gravity of two masses, which may be two points."""
+    a, b = file(*HORIZONTAL), file(*HORIZONTAL, about="nose", mass="60 kg")
     found = figures(a, b)["G_h"]
     assert found.a is not None
     assert found.b is not None

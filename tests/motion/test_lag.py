@@ -124,3 +124,12 @@ def test_the_linear_model_moves_as_simulate() -> None:
     assert due[0] > 0.0
     assert moved.velocity[-1, 0] - 1.5 == pytest.approx(due[0], rel=2e-3)
     assert moved.controls["main"][-1] - steady == pytest.approx(due[-1], rel=1e-6)
+    # What the thruster does already, and not its command: a column of A. Every state is an output, no command is.
+    plan = Manoeuvre("spun down", (Phase("off", {"main": steady}, 1.0),), start, orders={"main": steady + step})
+    moved = march_by_tolerance(v, plan).trajectory()
+    later = scipy.linalg.expm(model.A)[:, -1] * step
+    assert moved.velocity[-1, 0] - 1.5 == pytest.approx(later[0], rel=2e-3)
+    assert moved.controls["main"][-1] - steady == pytest.approx(later[-1], rel=1e-6)
+    assert np.array_equal(model.C, np.eye(len(states)))
+    assert not model.D.any()
+    assert model.D.shape == model.B.shape

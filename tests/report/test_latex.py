@@ -123,6 +123,7 @@ def test_numbers_and_units_are_those_of_siunitx() -> None:
         ("a 1", "-0.0147 +- 0.0019", "N*m/(rad/s)", "1.2e-05"),
         ("012", "+3", "deg", "-"),
         ("x", "3 of 5", "%", "1,2"),
+        ("y", "-0.8e-05 +- 1.5e-05", "-", "-0.8e-05 +- 0.1"),
     )
     text = of_one(Table("T", ("", "ours", "unit", "n"), rows, (), frozenset({0, 2})))
     balanced(text)
@@ -130,6 +131,7 @@ def test_numbers_and_units_are_those_of_siunitx() -> None:
     assert r"a 1 & \num{-0.0147 \pm 0.0019} & \unit{N.m/(rad/s)} & \num{1.2e-05} \\" in text
     assert r"012 & \num{+3} & \unit{deg} & " in text
     assert r"$x$ & 3 of 5 & \% & 1,2 \\" in text
+    assert r"$y$ & \num{-0.8 \pm 1.5e-05} & - & \num{-0.8e-05} $\pm$ \num{0.1} \\" in text  # one power, behind both
 
 
 def test_works_are_bibtex_whatever_their_key() -> None:

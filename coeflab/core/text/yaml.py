@@ -24,29 +24,13 @@ def parse_yaml(text: str, file: Path | str | None = None) -> dict[str, Any]:
     """
     import yaml
 
-    stack: list[list[Any]] = []  # of every open collection: its keys so far, None for a list; whether a key comes next
     try:
-        for count, event in enumerate(yaml.parse(text, Loader=yaml.SafeLoader)):
-            line = event.start_mark.line + 1
-            if count > YAML_NODES:
-                raise InputError(f"more than {YAML_NODES} keys and values", "a model file", file=file, line=line)
-            if isinstance(event, yaml.AliasEvent):
-                raise InputError("an alias", "YAML without aliases", file=file, line=line)
-            if getattr(event, "tag", None) is not None:
-                raise InputError(f"the tag {shown(event.tag)}", "YAML without tags", file=file, line=line)
-            if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and _is_long_number(event.value):
-                found = f"a number of {len(event.value)} letters"
-                raise InputError(found, f"at most {YAML_NUMBER_LETTERS}", file=file, line=line)
-            if isinstance(event, yaml.CollectionEndEvent):
-                stack.pop()
-                continue
-            if isinstance(event, yaml.NodeEvent) and stack and stack[-1][0] is not None:
-                _count_key(stack[-1], event, file, line)
-            if isinstance(event, yaml.CollectionStartEvent):
-                if len(stack) == YAML_DEEPEST:
-                    raise InputError("deep nesting", f"at most {YAML_DEEPEST} levels", file=file, line=line)
-                stack.append([set() if isinstance(event, yaml.MappingStartEvent) else None, True])
-        content = yaml.load(text, Loader=yaml.SafeLoader)
+        try:
+            content = _content(
+                text, file, getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+            )  # libyaml, where PyYAML has it
+        except yaml.YAMLError:
+            content = _content(text, file, yaml.SafeLoader)  # whose words and lines are the same everywhere
     except yaml.YAMLError as why:
         mark = getattr(why, "problem_mark", None)
         what = str(getattr(why, "problem", None) or getattr(why, "reason", None) or "no YAML")
@@ -56,6 +40,33 @@ def parse_yaml(text: str, file: Path | str | None = None) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError("no mapping at the top", "keys and values", file=file)
     return content
+
+
+def _content(text: str, file: Path | str | None, loader: Any) -> Any:
+    import yaml
+
+    stack: list[list[Any]] = []  # of every open collection: its keys so far, None for a list; whether a key comes next
+    for count, event in enumerate(yaml.parse(text, Loader=loader)):
+        line = event.start_mark.line + 1
+        if count > YAML_NODES:
+            raise InputError(f"more than {YAML_NODES} keys and values", "a model file", file=file, line=line)
+        if isinstance(event, yaml.AliasEvent):
+            raise InputError("an alias", "YAML without aliases", file=file, line=line)
+        if getattr(event, "tag", None) is not None:
+            raise InputError(f"the tag {shown(event.tag)}", "YAML without tags", file=file, line=line)
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and _is_long_number(event.value):
+            found = f"a number of {len(event.value)} letters"
+            raise InputError(found, f"at most {YAML_NUMBER_LETTERS}", file=file, line=line)
+        if isinstance(event, yaml.CollectionEndEvent):
+            stack.pop()
+            continue
+        if isinstance(event, yaml.NodeEvent) and stack and stack[-1][0] is not None:
+            _count_key(stack[-1], event, file, line)
+        if isinstance(event, yaml.CollectionStartEvent):
+            if len(stack) == YAML_DEEPEST:
+                raise InputError("deep nesting", f"at most {YAML_DEEPEST} levels", file=file, line=line)
+            stack.append([set() if isinstance(event, yaml.MappingStartEvent) else None, True])
+    return yaml.load(text, Loader=loader)
 
 
 def _is_long_number(text: str) -> bool:

@@ -388,5 +388,9 @@ def _short(
             what = "free terms and intercepts" if any(p.own for p in parts) else what
             out[names] = TooFewRowsError.for_terms(", ".join(names), labels, free, "terms", what)
     if len(out) == len(groups):
+        for names in groups:  # a term that no row excites is why, where there is one
+            parts = [components[c] for c in names]
+            own = [e for e in equations if e.weights[0][0][0] in names]
+            _excited(parts, constraint_of(own, parts, "constraints"))
         raise next(iter(out.values()))
     return out

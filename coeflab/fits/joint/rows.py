@@ -14,6 +14,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fitted_model import SetAside, joined
@@ -196,7 +197,8 @@ def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
     ScalingMismatchError
         Reference points from different datums.
     """
-    first = tables[0]
+    first = next((t for t in tables if t.datum != ANYWHERE), tables[0])
+    tables = [t.counted_from(first.datum, first.reference_point) for t in tables]
     for t in tables:
         if t.datum != first.datum:
             raise ScalingMismatchError(

@@ -45,13 +45,6 @@ def actuator_checks(root: Element, path: Path) -> list[Check]:
             found = None if density is None else water("gazebo", density, f"<{tag}> of {subject}")
             out += [] if found is None or found.severity is Severity.PASS else [found]
         out += [as_check("gazebo", f) for f in _twice(plugins, kind)]
-    for joint in root.iter("joint"):
-        limit = joint.find("axis/limit")
-        if limit is not None:
-            out += [
-                as_check("gazebo", f)
-                for f in _order(limit, ("lower", "upper"), f"joint {one_line(joint.get('name', ''))}", path)
-            ]
     return out
 
 
@@ -61,15 +54,9 @@ def _usual(plugin: Element, kind: str, subject: str, path: Path) -> Iterator[Fin
             yield Finding.of(
                 "model.coefficient", subject, Severity.WARN, statistic=value, threshold=most, least=least, what=tag
             )
-    if kind in ENDS:
-        yield from _order(plugin, ENDS[kind], subject, path)
-
-
-def _order(parent: Element, tags: tuple[str, str], subject: str, path: Path) -> Iterator[Finding]:
-    if all(parent.find(t) is not None for t in tags):
-        low, high = (_value(parent, t, path) for t in tags)
-        if low > high:
-            yield Finding.of("model.limits", subject, Severity.WARN, low=low, high=high)
+    ends = [_value(plugin, t, path) for t in ENDS.get(kind, ()) if plugin.find(t) is not None]
+    if len(ends) == 2 and ends[0] > ends[1]:
+        yield Finding.of("model.limits", subject, Severity.WARN, low=ends[0], high=ends[1])
 
 
 def _twice(plugins: list[Element], kind: str) -> Iterator[Finding]:

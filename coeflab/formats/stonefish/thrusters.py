@@ -1,7 +1,8 @@
 """Thrusters of a Stonefish scenario, as their rotor comes to its speed and as thrust follows from that.
 
 Thruster.cpp, ActuatorDynamics.h and ScenarioParser.cpp, commit b21eb8e: a setpoint of at most <max_setpoint>, rad/s, goes through
-<rotor_dynamics>, then through <thrust_model>. Before 2024: <specs thrust_coeff max_rpm>, K_T rho D^4 n|n| along +x, n in 1/s.
+<rotor_dynamics>, then through <thrust_model>. Before 2024: <specs thrust_coeff torque_coeff max_rpm>, at rest K_T rho D^4 n|n| along +x and
+K_Q rho D^5 n|n| against it, n in 1/s, under a speed controller.
 """
 
 from __future__ import annotations
@@ -100,9 +101,13 @@ def _thruster(
     if actuator.find("thrust_model") is None:
         if not right or specs.get("inverted", "false").strip().lower() == "true" or specs.get("thrust_coeff_backward"):
             raise _Unknown
-        per = _number(specs, "thrust_coeff", path) * density * diameter**4 / 3600.0
-        most = abs(_number(specs, "max_rpm", path))
-        return rotor(name, at, along, held(squares(per, per), -most, most), unit="rpm")
+        value, most = _number(specs, "thrust_coeff", path), abs(_number(specs, "max_rpm", path))
+        per = density * diameter**4 / 3600.0
+        turning = -per * diameter * (_number(specs, "torque_coeff", path) if specs.get("torque_coeff") else 0.0)
+        rotors.append(f"speed controller of {name}")
+        watered.setdefault(value, []).append(name)
+        thrust, torque = (held(squares(k, k), -most, most) for k in (value * per, turning))
+        return rotor(name, at, along, thrust, torque if turning else (), unit="rpm")
     lag = _lag(actuator, name, rotors, path)
     thrust, torque = _model(actuator, density, diameter, right, path)
     if torque:

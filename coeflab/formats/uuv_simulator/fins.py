@@ -46,12 +46,12 @@ def fins_of(
         try:
             name = text_of(name, x)
             foil, joint = _fin(plugin, found, x, path)
+            lag = value_of(plugin, "dynamics/timeConstant", 0.0, x, path)
         except UnknownLawError:
             unread.append(f"Fin {name}")
             continue
         read.append((foil, joint))
-        if (lag := value_of(plugin, "dynamics/timeConstant", 0.0, x, path)) > 0.0:
-            late.append(f"{lag:g} s of {name}")
+        late += [f"{lag:g} s of {name}"] if lag > 0.0 else []
     out = Fins({}, (), np.zeros((6, 6)), []) if found is None else fins_by_slopes(read, found, subject)
     words = [*left_out(subject, "actuators", unread), *out.findings, *left_out(subject, "late_fins", late)]
     return out._replace(findings=words), plugins
@@ -68,13 +68,7 @@ def _fin(plugin: Element, found: Assembly | None, x: Xacro, path: Path) -> tuple
 
     kind = (plugin.findtext("liftdrag/type") or "").strip()
     if kind == "TwoLines":
-        own = {
-            "cla": of("cla"),
-            "area": of("area"),
-            "air_density": of("fluid_density"),
-            "a0": -of("a0"),
-            "alpha_stall": of("alpha_stall"),
-        }
+        own = {t: of(t) for t in ("cla", "area", "alpha_stall")} | {"air_density": of("fluid_density"), "a0": -of("a0")}
     elif kind == "Quadratic":
         own = {"cla": of("lift_constant"), "area": 1.0, "air_density": 2.0}
     else:

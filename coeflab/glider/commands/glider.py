@@ -21,6 +21,7 @@ def command(
     travel: str = "0",
     shift: str = "0",
     lasts: str = "600",
+    depth: str = "",
     pitch_damping: str = "",
     method: str = "all",
     munk: bool = False,
@@ -56,6 +57,7 @@ def command(
         for option, text, dimension in (
             ("--engine", engine, "mass"), ("--net-mass", net_mass, "mass"), ("--travel", travel, "length"), ("--shift", shift, "length"),
             ("--lasts", lasts, "time"), ("--engine-at", engine_at or "0", "length"), ("--pitch-damping", pitch_damping or "0", "none"),
+            ("--depth", depth or "0", "length"),
         )
     }  # fmt: skip
     hull = cf.read_body(body)
@@ -63,6 +65,7 @@ def command(
     ordered = Ordered(
         numbers["--engine"], numbers["--engine-at"] if engine_at else None, sliding, numbers["--travel"], numbers["--net-mass"],
         numbers["--shift"], numbers["--lasts"], numbers["--pitch-damping"] if pitch_damping else _estimated(hull, density), not munk,
+        not pitch_damping, numbers["--depth"] if depth else None,
     )  # fmt: skip
     made = glider_of(stem(hull.name), cf.read_table(campaign), hull, hull.added_mass(method, density), ordered)
     written = {} if out is None else write_all(out, {f"{made.name}.glider.toml": made.file()})

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
+from coeflab.core.missed import suggesting
 from coeflab.core.types import Array, brief
 from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
@@ -73,6 +74,7 @@ class Mode:
         return 2.0 * math.pi / abs(self.eigenvalue.imag) if self.eigenvalue.imag else None
 
 
+@suggesting
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearModel:
@@ -163,6 +165,7 @@ class LinearModel:
         return _saved((self,), Path(path))
 
 
+@suggesting
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearSchedule:

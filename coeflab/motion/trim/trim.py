@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from coeflab.core import limits
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding
+from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
+from coeflab.core.missed import suggesting
 from coeflab.core.table import Table, number
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief, in_angles
@@ -277,6 +279,7 @@ def _equations(vehicle: Vehicle, speed: float) -> tuple[Equation, ...]:
 STRAIGHT = 1e-9
 
 
+@suggesting
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Trim:
     """A steady motion with the commands that keep it.
@@ -318,7 +321,7 @@ class Trim:
     @property
     def statements(self) -> tuple[str, ...]:
         """What was assumed, and what no data cover."""
-        return self.point.statements
+        return all_spoken(self.point.statements)
 
     @property
     def commands(self) -> dict[str, float]:

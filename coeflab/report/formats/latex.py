@@ -225,7 +225,10 @@ def _columns(table: Table, folds: Collection[int]) -> list[str]:
 def _cell(text: str, unit: bool, left: bool) -> str:
     """A number of a column of numbers, with its U95, and a unit by siunitx; all else as text."""
     if not left and (value := VALUE.fullmatch(text)):
-        return r"\num{" + value[1] + (rf" \pm {value[2]}" if value[2] else "") + "}"
+        digits, _, power = value[1].partition("e")
+        if value[2] and power == value[2].partition("e")[2]:  # siunitx takes one power of ten, behind both
+            return rf"\num{{{digits} \pm {value[2]}}}"
+        return rf"\num{{{value[1]}}}" + (rf" $\pm$ \num{{{value[2]}}}" if value[2] else "")
     if unit and LITERAL.fullmatch(text):
         return r"\unit{" + text.replace("*", ".") + "}"
     return _set(unit_runs(text) if unit else cell_runs(text, kept()))
