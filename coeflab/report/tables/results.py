@@ -19,6 +19,7 @@ from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
+from coeflab.study.checks import CHECKS
 from coeflab.tables.assumptions import CODE, depends
 
 if TYPE_CHECKING:
@@ -214,9 +215,8 @@ def lost_by_move(study: Study) -> tuple[str, ...]:
 
 def answers(study: Study) -> tuple[str, ...]:
     """Which rows are for a grid study only, whether a finer grid is needed, the rate of self-propulsion; a sentence each."""
-    found = [
-        c for c in study.checks if c.name in ("grids", "propeller") and c.severity in (Severity.NOTE, Severity.PASS)
-    ]
+    found = [c for c in study.checks if c.severity in (Severity.NOTE, Severity.PASS) and c.name in CHECKS.names()]
+    found = [c for c in found if CHECKS.load(c.name).answers]
     several = len({c.subject for c in found}) > 1
     return tuple(f"{f'{c.subject}: ' * several}{c.statistic}." for c in found)
 

@@ -15,7 +15,15 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Checker(Plugin, Protocol):
-    """Looks at a whole study and says what stands out."""
+    """Looks at a whole study and says what stands out.
+
+    Attributes
+    ----------
+    answers : bool
+        Whether what passes or is noted answers a question of its own, such as how fine a grid has to be: terminals show it.
+    """
+
+    answers: bool = False
 
     def check(self, study: Study) -> Sequence[Check]:
         """Findings, those that pass among them.

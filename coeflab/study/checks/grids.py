@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 summary = "grid that a table is fitted on, and whether its grid studies ask for a finer one"
 citations = ("celik2008", "eca2014")
+answers = True
 WIDE = 0.05  # of the force: a 95 % half-width of the grid above it is worth a finer one
 ANGLES = {"v": "drift", "w": "attack"}
 

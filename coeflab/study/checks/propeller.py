@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 summary = "rows in which a propeller runs, and the rate of self-propulsion by X of straight runs"
 citations = ("sname1950",)
+answers = True
 TURN = 2.0 * np.pi  # rad/s of a turn in a second
 
 
