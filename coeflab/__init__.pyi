@@ -29,24 +29,12 @@ from coeflab.api.validations import validation as validation
 from coeflab.api.vehicle import Vehicle as Vehicle
 from coeflab.api.vehicle import read_vehicle as read_vehicle
 from coeflab.api.vehicle import vehicle as vehicle
-from coeflab.core.errors import (
-    AxesError as AxesError,
-)
-from coeflab.core.errors import (
-    CoeflabError as CoeflabError,
-)
-from coeflab.core.errors import (
-    InputError as InputError,
-)
-from coeflab.core.errors import (
-    PluginError as PluginError,
-)
-from coeflab.core.errors import (
-    ScalingMismatchError as ScalingMismatchError,
-)
-from coeflab.core.errors import (
-    UnitsError as UnitsError,
-)
+from coeflab.core.errors import AxesError as AxesError
+from coeflab.core.errors import CoeflabError as CoeflabError
+from coeflab.core.errors import InputError as InputError
+from coeflab.core.errors import PluginError as PluginError
+from coeflab.core.errors import ScalingMismatchError as ScalingMismatchError
+from coeflab.core.errors import UnitsError as UnitsError
 from coeflab.core.files import shipped as shipped
 from coeflab.core.table import Check as Check
 from coeflab.fits.results.fit_result import FitResult as FitResult

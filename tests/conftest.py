@@ -110,6 +110,11 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(5_000, 20, 50)
 
 
+def pytest_sessionfinish() -> None:
+    """Compiled modules complain of what is not collected at the end."""
+    gc.unfreeze()
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Whatever opens a browser is slow."""
     for item in items:

@@ -240,8 +240,7 @@ class PropellerKeys(takes.Declaration):
 
     diameter: takes.Length
     blades: Annotated[
-        int,
-        takes.Takes("a number of blades", _blades, {"type": "integer", "minimum": BLADES[0], "maximum": BLADES[1]}),
+        int, takes.Takes("a number of blades", _blades, {"type": "integer", "minimum": BLADES[0], "maximum": BLADES[1]})
     ]
     pitch_ratio: takes.Pure
     area_ratio: takes.Pure

@@ -195,6 +195,7 @@ def _diagnose(study: Study) -> None:
 
 
 def _print(study: Study, symbols: list[str]) -> None:
+    from coeflab.report.tables import force_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
@@ -209,7 +210,7 @@ def _print(study: Study, symbols: list[str]) -> None:
     if symbols:
         _of_symbols(study, symbols)
     else:
-        show.sentence(tables.unused(study.tables))
+        show.sentence(force_tables.unused(study.tables))
         show.text()
         show.table(tables.coefficients(study) if show.whole() else tables.coefficients_in(study, show.width()))
         models = tuple(m for f in study.fits for m in f.models)
@@ -229,7 +230,7 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
     """One coefficient after the other: what its interval is made of, by largest setting, by other forms."""
     from coeflab.core.table import percent
     from coeflab.report.tables import nouns as noun_tables
-    from coeflab.report.tables import results as tables
+    from coeflab.report.tables import sweeps as sweep_tables
 
     known = {s.symbol: (f, s) for f in study.fits for s in f.sweeps}
     for symbol in symbols:
@@ -241,15 +242,15 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
             show.sentence(f"{points}; U95: {result}." if result else f"{points}.")
         show.text()
-        for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
+        for content in (sweep_tables.sensitivity(sweep), sweep_tables.left_out(sweep), _forms(sweep)):
             show.table(content)
 
 
 def _forms(sweep: Sweep) -> Table:
     """Other forms, each in the widest window where its points do not contradict it; every window with ``--wide``."""
-    from coeflab.report.tables import results as tables
+    from coeflab.report.tables import sweeps as sweep_tables
 
-    every = tables.estimators(sweep)
+    every = sweep_tables.estimators(sweep)
     if show.whole():
         return every
     tested = any(math.isfinite(e.lack_of_fit) for e in sweep.forms)

@@ -73,7 +73,7 @@ def command(
     if not sys.stdin.isatty():
         print_list("Check", draft.warned())
     print_list("Not taken", draft.left)  # travels with what was written: the form may not have been shown
-    _written(out, campaign)
+    _written(out, campaign, "campaign.body" not in stated.settings)
     failed = _first_slopes(out)
     if failed:
         raise typer.Exit(1)
@@ -112,10 +112,10 @@ def _typed_so_far(
     return [*typed, *["--force"] * force, f"--out {quoted(str(out))}"]
 
 
-def _written(out: Path, campaign: Campaign) -> None:
-    """What was written, which rows of the file were not, and what of it no fit uses."""
+def _written(out: Path, campaign: Campaign, by_default: bool) -> None:
+    """What was written, which rows of the file were not, what of it no fit uses, and the body where nobody named it."""
     from coeflab.api.importing import without_a_setting
-    from coeflab.report.tables.results import unused
+    from coeflab.report.tables.force_tables import unused
 
     filled, tables = campaign.filled, campaign.tables
     several = len(tables) > 1
@@ -131,16 +131,13 @@ def _written(out: Path, campaign: Campaign) -> None:
         for words in without_a_setting(t.raw, t.columns):
             show.sentence(f"{f'{t.file}: ' * several}Rows {words}.")
     show.sentence(unused(tables))
+    if body := campaign.tables[0].body if by_default else "":
+        show.sentence(f"Body: {body}. Another campaign of the same hull says so: --set campaign.body={body}")
     show.text()
 
 
 def _speed_alone(table: ForceTable) -> str:
     return "the speed alone" if len(set(table.speed.tolist())) > 1 else "nothing"
-
-
-def _brief(note: str) -> str:
-    """What U95 covers, without what its parts are."""
-    return note.partition(". random:")[0] + "." * (". random:" in note)
 
 
 def _first_slopes(folder: Path) -> bool:
@@ -166,7 +163,7 @@ def _first_slopes(folder: Path) -> bool:
         open_ones = {f"{c.symbol}'" for f in study.fits for c in f.coefficients.coefficients if c.value is None}
         lacking = [row[0] for row in found.rows if row[0] in open_ones] if first.by == MODEL else []
         notes = [
-            _brief(note)
+            note.partition(". random:")[0] + "." * (". random:" in note)  # what U95 covers, without what its parts are
             for note in found.notes
             if not note.startswith(("Not shown", *([f"{tables.NO_VALUE}:"] if lacking else [])))
         ]

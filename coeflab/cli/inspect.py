@@ -219,11 +219,10 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
 
 def _print(read: Sequence[ForceTable], rows: int) -> None:
     from coeflab.core.provenance import work
-    from coeflab.report.tables import data_quality
-    from coeflab.report.tables import results as tables
+    from coeflab.report.tables import data_quality, force_tables
 
     for t in read:
-        show.table(tables.inspected(t, rows))
+        show.table(force_tables.inspected(t, rows))
         point = ", ".join(f"{x:g}" for x in t.reference_point)
         show.text(f"  {t.title}; body {t.body}; {t.source.kind}; {work(t.source.citation)}")
         show.text(f"  varies: {', '.join(t.varies) or 'nothing'}; moments about ({point}) m from: {t.datum}")

@@ -113,7 +113,7 @@ def _moved(study: Study) -> None:
     from coeflab.core.finding import Severity
     from coeflab.core.table import Table
     from coeflab.core.wording import listed
-    from coeflab.report.sections.parameter_file import without_u95
+    from coeflab.report.sections.manoeuvres import without_u95
     from coeflab.report.tables.motion import figure_table
 
     rows = []
@@ -147,7 +147,7 @@ def _why(made: Simulation) -> str:
 
 def answered(found: Answer) -> None:
     """What a reader wants first: the sentence, the wanted coefficients, and how it stands."""
-    from coeflab.report.first_page import answer_table
+    from coeflab.report.answer_table import answer_table
 
     show.sentence(found.sentence)
     show.text()
@@ -176,6 +176,7 @@ def _tows(study: Study) -> None:
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
     from coeflab.report.acceptance import headline_of_study
+    from coeflab.report.tables import comparisons
     from coeflab.report.tables import model_file as law_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
@@ -183,10 +184,10 @@ def _every_table(study: Study) -> None:
 
     show.sentence(tables.headline(study))
     show.text()
-    show.table(tables.side_by_side(study))
+    show.table(comparisons.side_by_side(study))
     _tows(study)
-    show.table(tables.verdicts(study))
-    show.table(tables.by_campaign(study))
+    show.table(comparisons.verdicts(study))
+    show.table(comparisons.by_campaign(study))
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:

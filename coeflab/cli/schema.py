@@ -19,10 +19,7 @@ def kinds(incomplete: str) -> list[str]:
 def command(
     *,
     kind: str = typer.Argument(
-        ...,
-        metavar="KIND",
-        autocompletion=kinds,
-        help=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}.",
+        ..., metavar="KIND", autocompletion=kinds, help=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}."
     ),
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""

@@ -26,11 +26,7 @@ DIRECTIONS = {
     "down": (0.0, 0.0, 1.0),
     "up": (0.0, 0.0, -1.0),
 }
-FRAMES = {
-    "FRD": ("forward", "starboard", "down"),
-    "FLU": ("forward", "port", "up"),
-    "CFD": ("aft", "starboard", "up"),
-}
+FRAMES = {"FRD": ("forward", "starboard", "down"), "FLU": ("forward", "port", "up"), "CFD": ("aft", "starboard", "up")}
 FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like "forward, port, up"'
 ANGLE_SIGNS = {
     "beta": {"v = +U sin(beta)": 1.0, "v = -U sin(beta)": -1.0},

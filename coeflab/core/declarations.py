@@ -334,6 +334,13 @@ def _adapter(kind: Any) -> Any:
     return TypeAdapter(kind)
 
 
+HEADS = {  # of kinds of files that people take for each other, and where they go
+    "tank": ("a tow", "coeflab tow"),
+    "study": ("a plan", "coeflab run"), "campaign": ("a campaign", "coeflab fit"), "matrix": ("a matrix of runs", "coeflab tow BODY --matrix"),
+    "configuration": ("a body", "coeflab vehicle"),
+}  # fmt: skip
+
+
 def declared(kind: type[Kind], file: TomlFile) -> Kind:
     """What a file declares.
 
@@ -346,8 +353,15 @@ def declared(kind: type[Kind], file: TomlFile) -> Kind:
     Raises
     ------
     InputError
-        One message with everything that is wrong, by line and key.
+        A file of another kind; else one message with everything that is wrong, by line and key.
     """
+    known = {f.name: f for f in dataclasses.fields(cast(Any, kind))}
+    for head, (what, command) in HEADS.items():
+        if head in file.content and head not in known:
+            raise InputError(
+                f"{what}, with [{head}]", f"a file with [{next(iter(known))}]", file=file.path, line=file.line((head,)),
+                advice=f"It goes to {command}.",
+            )  # fmt: skip
     return validated(kind, file.content, file.path, file.line)
 
 

@@ -6,6 +6,7 @@ What a check found.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from math import isfinite, isnan
@@ -58,6 +59,12 @@ class Table:
         """The table in the words of whoever reads it: options in a shell, else keywords."""
         rows = tuple(tuple(spoken(cell) if "--" in cell else cell for cell in row) for row in self.rows)
         return replace(self, rows=rows, notes=all_spoken(self.notes))
+
+    def only(self, columns: Sequence[int]) -> Table:
+        """Some of its columns."""
+        rows = tuple(tuple(row[i] for i in columns) for row in self.rows)
+        left = frozenset(k for k, i in enumerate(columns) if i in self.left)
+        return replace(self, headers=tuple(self.headers[i] for i in columns), rows=rows, left=left)
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""

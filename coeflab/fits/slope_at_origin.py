@@ -21,16 +21,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
-from coeflab.fits.rows.sweeps import INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
+from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows, images
 from coeflab.law.coefficient import Coefficient, Parts, Status
-from coeflab.law.symbols import ANGULAR
+from coeflab.law.symbols import ANGULAR, primed
 from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
 from coeflab.tables.force_table import AT_REST
 
@@ -52,6 +53,7 @@ EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
 MOST_NAMED = 12  # rows that do not fit their neighbours
+WIDER = 2.0  # U95 by a declared symmetry over that without it, above which it is withdrawn
 NODES = 41  # of the recommended curve, odd: one is at rest
 
 
@@ -149,9 +151,8 @@ def _sweep(
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
-    plane, (x, y, se, labels, far), bias = _on_one_side(
-        rows, variable, parity, _within(limit, collect_points(rows, component, length, taken_out))
-    )
+    every = _within(limit, collect_points(rows, component, length, taken_out))
+    plane, (x, y, se, labels, far), bias, withdrawn = _by_symmetry(rows, variable, parity, every)
     odd = bool(plane) and parity == "odd"
     if (
         last is not None
@@ -239,6 +240,7 @@ def _sweep(
         offset=offset,
         one_size=bool(single),
         symmetry=plane,
+        withdrawn=withdrawn,
         by_symmetry=rows.table.by_symmetry,
         bias=bias,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
@@ -246,11 +248,39 @@ def _sweep(
     return made, origin
 
 
+def _by_symmetry(
+    rows: SweepRows, variable: str, parity: str, every: _Points
+) -> tuple[str, _Points, float, tuple[float, float] | None]:
+    """What `_on_one_side` gives, unless the points rule the declared symmetry out; then what it would have given, with its U95.
+
+    They do where that slope and the one with a constant are farther apart than both U95, where its U95 is over twice the other's, as the
+    misfit widens what the fewer parameters of a true declaration narrow, or where the curve with a constant leaves zero out at rest and
+    no row at rest has brought that into U95 as a bias.
+    """
+    plane, points, bias = _on_one_side(rows, variable, parity, every)
+    if plane and parity == "odd" and len(np.unique(levels(points[0]))) >= FEWEST_SETTINGS:
+        declared, free = origin_slope.estimate(*points[:3], odd=True), origin_slope.estimate(*every[:3])
+        apart = abs(declared.value - free.value) > np.hypot(declared.u95, free.u95)
+        at_rest, half = origin_slope.curve(free, np.zeros(1))
+        unseen = not np.any(np.abs(every[0]) <= AT_REST) and abs(at_rest[0]) > half[0]
+        if apart or unseen or declared.u95 > WIDER * free.u95:
+            return "", every, 0.0, (declared.value, declared.u95)
+    return plane, points, bias, None
+
+
 def _one_size(rows: SweepRows, variable: str, target: str, x: Array, origin: OriginSlope) -> str:
     """Why the settings determine neither slope nor curvature; a force at rest needs no second size."""
     if target == "1" or (origin.design is None and variable not in ANGULAR):
         return ""
     return one_size(x, variable, rows.table.speed[rows.rows])
+
+
+def _no_symmetry(sweep: Sweep) -> Finding:
+    value, u95 = sweep.withdrawn or (float("nan"), float("nan"))
+    return Finding.of(
+        "symmetry.withdrawn", f"{sweep.campaign} {primed(sweep.symbol)}", Severity.WARN, statistic=value, u95=u95, value=sweep.value,
+        own=sweep.u95, table=sweep.table,
+    )  # fmt: skip
 
 
 def _moved(shift: float) -> dict[str, str]:
@@ -395,6 +425,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift),
-        sweeps=tuple(sweeps), straight=straight,
+        sweeps=tuple(sweeps), straight=straight, findings=tuple(_no_symmetry(s) for s in sweeps if s.withdrawn is not None),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

@@ -320,16 +320,10 @@ def headline(numbers: Held) -> tuple[str, ...]:
     first = f"{every[0]} of the {every[1]} compared numbers lie within their tolerance{f': {by_basis}' if by_basis else ''}."
     good, count = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
     if not count:
-        return (
-            first,
-            "Nothing here is validation: nothing is compared with a measurement that was not used.",
-        )
+        return (first, "Nothing here is validation: nothing is compared with a measurement that was not used.")
     if count == every[1]:
         return (first,)
-    return (
-        first,
-        f"Only measurements that were not used validate: {good} of {count} lie within.",
-    )
+    return (first, f"Only measurements that were not used validate: {good} of {count} lie within.")
 
 
 def tables(acceptance: Acceptance) -> tuple[Table, ...]:
@@ -382,13 +376,7 @@ WORST_NOTE = f"{WORST}: the largest difference in % of its tolerance; of a limit
 def overview(found: Acceptance) -> Table:
     """One row a table of the publication."""
     rows = tuple(
-        (
-            t.title,
-            t.source,
-            f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
-            _closest(t.rows),
-            _verdict(t.rows),
-        )
+        (t.title, t.source, f"{sum(r.holds for r in t.rows)} of {len(t.rows)}", _closest(t.rows), _verdict(t.rows))
         for t in found.tables
     )
     notes = (WORST_NOTE,)
@@ -424,10 +412,7 @@ def errata(acceptance: Acceptance) -> Table:
     """Errors of the publication and what stands in their place."""
     rows = tuple((str(i), text) for i, text in enumerate(acceptance.errata, start=1))
     return Table(
-        "Errata of the publication",
-        ("no.", "what is wrong, and the correction"),
-        rows,
-        left=frozenset({0, 1}),
+        "Errata of the publication", ("no.", "what is wrong, and the correction"), rows, left=frozenset({0, 1})
     )
 
 

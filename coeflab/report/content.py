@@ -34,9 +34,12 @@ from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.estimates import estimates_sections
-from coeflab.report.sections.parameter_file import export_sections, manoeuvre_sections, stability_sections
+from coeflab.report.sections.exports import export_sections
+from coeflab.report.sections.manoeuvres import manoeuvre_sections
 from coeflab.report.sections.review import review_sections
+from coeflab.report.sections.stability import stability_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
+from coeflab.report.tables import comparisons
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
@@ -210,12 +213,7 @@ def _document(study: Study, full: bool) -> Document:
 
 
 def _appendix(study: Study) -> tuple[Section, ...]:
-    found = (
-        *budget_sections(study),
-        *body_sections(study),
-        *added_mass_sections(study),
-        *quality_sections(study),
-    )
+    found = (*budget_sections(study), *body_sections(study), *added_mass_sections(study), *quality_sections(study))
     return tuple(replace(s, appendix=True) for s in found)
 
 
@@ -323,11 +321,11 @@ def _comparison(study: Study) -> tuple[Section, ...]:
                 f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(
-        tables.campaigns(study),
+        comparisons.campaigns(study),
         budget_tables.predictions(validations(study, study.budgets)),
-        tables.without(tables.verdicts(study), "combined"),
+        tables.without(comparisons.verdicts(study), "combined"),
     )
-    apart = filled(tables.without(tables.side_by_side(study), "random", "form"), tables.differences(study))
+    apart = filled(tables.without(comparisons.side_by_side(study), "random", "form"), comparisons.differences(study))
     more = (
         (Section("distances", "Published columns and distances", tuple(lengths), tables=apart, appendix=True),)
         if apart
@@ -338,7 +336,7 @@ def _comparison(study: Study) -> tuple[Section, ...]:
 
 def _with_campaigns(study: Study, coefficients: Section) -> Section:
     """The section on coefficients; it begins with the campaigns where no comparison does."""
-    first = () if study.comparisons else filled(tables.campaigns(study))
+    first = () if study.comparisons else filled(comparisons.campaigns(study))
     return replace(coefficients, tables=(*first, *coefficients.tables))
 
 

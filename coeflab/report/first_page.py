@@ -11,30 +11,24 @@ from dataclasses import replace
 import numpy as np
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import ABSENT, Table, as_printed, in_digits_of, with_u95
+from coeflab.core.table import Table, as_printed, in_digits_of
 from coeflab.core.wording import listed, spelled_out
 from coeflab.fits.glide_polar import printed_inside
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.straight_runs import SYMBOL
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
-from coeflab.report.acceptance import MEANING, Acceptance, by_basis, held
+from coeflab.report.acceptance import Acceptance, by_basis, held
+from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
-from coeflab.report.figures.first_page import (
-    axes_figure,
-    forest_figure,
-    renamed,
-    share_text,
-    shares_figure,
-    slope_figure,
-)
+from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
 from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
-from coeflab.report.sections.parameter_file import from_literature
+from coeflab.report.sections.stability import from_literature
 from coeflab.report.tables.models import quality
 from coeflab.report.tables.own_cfd import NO_RESULT
 from coeflab.study.lines import MEANING as MEANING_OF_LINE
@@ -44,11 +38,7 @@ from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 from coeflab.vehicle.stability import ALONE, INDICES, Derived, sense, stability
 
-LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
-WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 PLACES = 4  # of a line, which has no U95 to say how many count
-BAR = 6  # letters of a difference that is as large as U95
-HALF_WIDTH = "U95: half-width of the 95 % interval."
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
@@ -448,11 +438,9 @@ def _held(found: Acceptance) -> tuple[int, int, int, int]:
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
     """Some columns and the first rows of a table; no notes of its own."""
-    at = [whole.headers.index(n) for n in names]
-    rows = tuple(tuple(row[i] for i in at) for row in whole.rows)
-    more = (f"{len(rows) - MOST_MODELS} more in the report.",) if len(rows) > MOST_MODELS else ()
-    left = frozenset(k for k, i in enumerate(at) if i in whole.left)
-    return Table(whole.title, tuple(names), rows[:MOST_MODELS], more, left)
+    more = (f"{len(whole.rows) - MOST_MODELS} more in the report.",) if len(whole.rows) > MOST_MODELS else ()
+    selected = whole.only([whole.headers.index(n) for n in names])
+    return replace(selected, rows=selected.rows[:MOST_MODELS], notes=more, spare=())
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
@@ -466,66 +454,6 @@ def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip
-
-
-def answer_table(found: Answer) -> Table:
-    """The rows as texts, 79 columns wide at most with three short published names.
-
-    Parameters
-    ----------
-    found : Answer
-
-    Returns
-    -------
-    Table
-        Symbol; ours with U95, also in per cent; each published column in the digits of its source; the difference to the
-        compared column over U95 as a number and a bar of `BAR` letters for one U95, ``!`` beyond. Of a publication, and of
-        models, the table that stands in the place of rows.
-    """
-    if found.table is not None:
-        return _on_a_terminal(found.table, found.notes)
-    short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
-    short = [n.replace("published ", "publ. ") for n in short]
-    names = short if len(set(short)) == len(short) else list(found.columns)
-    is_judged = any(r.share is not None for r in found.rows)
-    many = len(found.columns) > MOST_COLUMNS
-    rows = tuple((primed(r.symbol), *_cells(r, many), *((_bar(r),) if is_judged else ())) for r in found.rows)
-    headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
-    left = {0, *((len(headers) - 1,) if is_judged else ())}
-    defined = (HALF_WIDTH,) if any(r.u95 for r in found.rows) else ()
-    return Table("Answer", headers, rows, (*defined, *found.notes), frozenset(left))
-
-
-def _on_a_terminal(table: Table, notes: tuple[str, ...]) -> Table:
-    """Long cells are cut; what the numbers of a publication are compared with stands below."""
-    if MEANING not in table.headers:
-        rows = tuple(tuple(map(_cut, row)) for row in table.rows)
-        return replace(table, rows=rows, notes=(*table.notes, *notes))
-    i = table.headers.index(MEANING)
-    meant = tuple(f"{row[0]}: {row[i]}" for row in table.rows)
-    rows = tuple((*row[:i], *row[i + 1 :]) for row in table.rows)
-    left = frozenset(k - (k > i) for k in table.left if k != i)
-    headers = (*table.headers[:i], *table.headers[i + 1 :])
-    return replace(table, headers=headers, rows=rows, left=left, notes=(*meant, *table.notes, *notes))
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= WIDTH else f"{text[:WIDTH].rsplit(' ', 1)[0]} ..."
-
-
-def _cells(r: AnswerRow, many: bool = False) -> tuple[str, ...]:
-    """Ours, where there is room for it with U95 in per cent, and the published values with the digits of their sources."""
-    value, u95 = with_u95(r.value, r.u95)
-    share = "" if many else f" ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})" if r.u95 else ""
-    ours = f"{value} +- {u95}{share}" if r.u95 else f"{value} {r.status}".strip()
-    return (r.status if r.value is None else ours, *(text or ABSENT for text in r.shown))
-
-
-def _bar(r: AnswerRow) -> str:
-    if r.share is None:
-        return "-"
-    whole = min(round(BAR * abs(r.share)), BAR)
-    return f"{r.share:+.2f} {'#' * whole}{'!' if abs(r.share) > 1.0 else ''}".strip()
 
 
 def study_summary(study: Study) -> Document:

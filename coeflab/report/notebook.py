@@ -209,7 +209,7 @@ def answer(found: Answer) -> tuple[Part, ...]:
 
 def _answer(found: Answer) -> Part:
     """Pictures, then the rows of `answer_table` with the bars drawn, chips and notes."""
-    from coeflab.report.first_page import answer_table
+    from coeflab.report.answer_table import answer_table
 
     table = answer_table(found)
     if found.table is not None:

@@ -14,7 +14,7 @@ from coeflab.core.machine import stage
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.designs import FINAL, Response, designed, predicted_u95
-from coeflab.fits.statistics.origin_slope import OriginSlope, curve, estimate
+from coeflab.fits.statistics.origin_slope import OriginSlope, curve, curve_spread, estimate
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, CONTROLS, derivative, primed
 from coeflab.motion.uncertainty.tests import Kind, kind_of
@@ -370,7 +370,13 @@ def _response(
         present = _present(sweep)
         used = np.flatnonzero(present.used)
         return Response(
-            lambda x: curve(present, x)[0], present.noise, weight, sweep.x[used], sweep.y[used], bool(sweep.symmetry)
+            lambda x: curve(present, x)[0],
+            present.noise,
+            weight,
+            sweep.x[used],
+            sweep.y[used],
+            bool(sweep.symmetry),
+            *curve_spread(present),
         )
     slope = float(known[symbol].value or 0.0)
     bent = known.get(f"{symbol}|{variable}|")

@@ -466,10 +466,7 @@ def _of_campaign(path: Path) -> Plan:
     campaign, suited = read_campaign(path), suited_fit(path.parent)
     fits = DEFAULT_FITS if suited in DEFAULT_FITS else (suited,)
     return Plan(
-        stem(campaign.name),
-        campaign.title,
-        (table_at(path.parent, fits),),
-        file=InputFile(path.name, sha256_of(path)),
+        stem(campaign.name), campaign.title, (table_at(path.parent, fits),), file=InputFile(path.name, sha256_of(path))
     )
 
 

@@ -186,11 +186,9 @@ class Validation:
         """The same as clauses of a sentence, without the Reynolds numbers."""
         lacking = without_grid(self.lacking)
         state = lacking.removeprefix("grid study ").removesuffix(BOUND_ONLY)
-        grid = {
-            "": "",
-            "no grid study": "no grid study",
-            "divergent": "grid study diverged",
-        }.get(state, f"no error from the grid study: {state}")
+        grid = {"": "", "no grid study": "no grid study", "divergent": "grid study diverged"}.get(
+            state, f"no error from the grid study: {state}"
+        )
         clauses = (
             "zero by symmetry, and the test has a bias" if self.zero else "",
             f"the test used another method, {self.method}" if self.method else "",

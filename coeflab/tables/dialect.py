@@ -104,8 +104,8 @@ def numeric(cells: Sequence[str], marks: Marks) -> int:
 
 
 _ATOM = (
-    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|ft|ms|s|sec|min|h|deg\.?|degrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
-    r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|°C|%|‰)"
+    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|[Ff]t|[Ii]nch(?:es)?|(?:[Mm]illi)?[Mm]et(?:er|re)s?|ms|s|sec|min|h|[Dd]eg\.?|[Dd]egrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
+    r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|(?:°|[Dd]egr?\.?[ _]?)C|%|‰)"
 )
 _POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"
 _UNIT = re.compile(rf"{_ATOM}{_POWER}(?:\s*[*/·.\- ]\s*\(?{_ATOM}{_POWER}\)?)*")
@@ -123,7 +123,7 @@ _WORDS_BEHIND = re.compile(
 _SEPARATORS = " _-:/"
 
 
-_NO_UNIT = frozenset({"", "-", "–", "—"})
+_NO_UNIT = frozenset({"", "-", "–", "—", "/"})
 _BETWEEN_UNITS = re.compile(r"\s*[×•∙⋅‐‑_]\s*|\s+x\s+")  # as N×m, N_m and N x m in brackets
 
 
@@ -180,8 +180,18 @@ def _by_last_word(texts: Sequence[str], words: Sequence[tuple[str, str]]) -> lis
     return [p if e else (t, "") for t, p, e in zip(texts, parts, ends)]
 
 
+_NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?")
+
+
 def _bare(cell: str) -> str:
     return cell[1:-1].strip() if cell[:1] + cell[-1:] in ("[]", "()", "<>") else cell
+
+
+def _unit_of(cell: str) -> str:
+    """The unit of a cell of a row of units: a slash says that there is none, a number that it is something else."""
+    bare, _, other = _bare(cell).partition(" / ")
+    bare = bare if other in ("", bare) else f"{bare} / {other}"
+    return "-" if bare == "/" else bare if bare == "1" or share(bare) is not None or not _NUMBER.fullmatch(bare) else ""
 
 
 def numbered(rows: Sequence[Sequence[str]], marks: Marks) -> frozenset[int]:
@@ -215,14 +225,14 @@ def is_unit_row(cells: Sequence[str], numbers: Set[int], names: Sequence[str] = 
     units = [not c or is_unit(c) or share(c) is not None for c in bare]
     if not any(cells):
         return False
-    if not all(units):  # units that nobody knows between those of columns of numbers, as H:M:S
+    if not all(
+        units
+    ):  # units that nobody knows between those of columns of numbers, as H:M:S; places of taps as 100.00
         within = [k for k in numbers if k < len(bare)]
         known = [bare[k] for k in within if bare[k] not in (*_NO_UNIT, "1") and is_unit(bare[k])]
-        return (
-            len({*known}) > 1
-            and sum(units) >= MOSTLY * len(units)
-            and sum(units[k] for k in within) >= MOSTLY * len(within)
-        )
+        worded = [k for k, c in enumerate(bare) if units[k] or not _NUMBER.fullmatch(c)]
+        some = [k for k in within if k in worded]
+        return len({*known}) > 1 and all(sum(units[k] for k in ks) >= MOSTLY * len(ks) for ks in (worded, some))
     over = [bare[k] for k in numbers if k < len(bare)]
     if any(c and c != b for c, b in zip(cells, bare)) or any(
         c != "1" and c not in _NO_UNIT and is_unit(c) for c in over
@@ -233,11 +243,15 @@ def is_unit_row(cells: Sequence[str], numbers: Set[int], names: Sequence[str] = 
     return dashes and (shares or all(c in _NO_UNIT for c in bare))
 
 
-def is_name_row(cells: Sequence[str], marks: Marks) -> bool:
-    """Whether at least half of the cells hold a text, and three texts at least stand beside each number; Na and nan are texts."""
+def is_name_row(cells: Sequence[str], marks: Marks, numbers: Set[int] = frozenset()) -> bool:
+    """Whether at least half of the cells hold a text, and three texts at least stand beside each number; Na and nan are texts.
+
+    Cells behind the last column of ``numbers``, where these are known, count only as far as one holds a text.
+    """
     filled = [c for c in cells if c and c not in _DASHES]
-    numbers = sum(math.isfinite(x) for c in filled if (x := marks.number(c)) is not None)
-    return 2 * sum(map(bool, cells)) >= len(cells) and 4 * numbers <= len(filled)
+    below = sum(math.isfinite(x) for c in filled if (x := marks.number(c)) is not None)
+    reach = max([k for k, c in enumerate(cells) if c] + list(numbers or [len(cells) - 1]), default=-1) + 1
+    return 2 * sum(map(bool, cells)) >= reach and 4 * below <= len(filled)
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,7 +305,7 @@ def read_head(
         and united == 0
         and len(rows) > 1
         and _is_empty(rows[-1][1], numbers)
-        and is_name_row(rows[-2][1], marks)
+        and is_name_row(rows[-2][1], marks, numbers)
     ):
         remarks.append(f"line {rows[-1][0]}: left out, no number in it ({shown(' '.join(filter(None, rows[-1][1])))})")
         rows.pop()
@@ -300,7 +314,7 @@ def read_head(
         united == 0
         and len(rows) > 1
         and is_unit_row(rows[-1][1], numbers, rows[-2][1])
-        and is_name_row(rows[-2][1], marks)
+        and is_name_row(rows[-2][1], marks, numbers)
         and named != rows[-1][0]
     ):
         units = rows[-1]
@@ -310,10 +324,10 @@ def read_head(
             )
     rows = [r for r in rows if r is not units]
     names: Row | None = next((r for r in rows if r[0] == named), None)
-    if named == 0 and rows and is_name_row(rows[-1][1], marks):
+    if named == 0 and rows and is_name_row(rows[-1][1], marks, numbers):
         names = rows[-1]
     if names is None:
-        own = tuple(_bare(u) for u in units[1]) if units else ("",) * width
+        own = tuple(map(_unit_of, units[1])) if units else ("",) * width
         plain = tuple(f"column {k + 1}" for k in range(width))
         return Head(plain, own, unit_line=units[0] if units else 0, remarks=tuple(remarks))
     group = next((r for r in reversed(rows) if r[0] < names[0]), None)
@@ -352,9 +366,17 @@ def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:
 
 def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str]) -> Head:
     texts = [" ".join(t.split()) for t in names[1]]
+    over = [name_and_unit(" ".join(t.split())) for t in group[1]] if group else []
+    if (
+        group
+        and len({n for n, _ in over} - {""}) == len(texts) > 1
+        and not any(_NUMBER.fullmatch(g) or (is_unit(t) and t[1:]) for g, t in zip(group[1], texts))
+    ):
+        before = [*before, f"lines {group[0]} and {names[0]}: both name the columns"]
+        texts = [f"{n}: {t}".removesuffix(": ") + f" [{u}]" * bool(u) for (n, u), t in zip(over, texts)]
     stand = "none"
     if units:
-        split = [(t, _bare(u)) if _bare(u) else unit_in_words(t) for t, u in zip(texts, units[1])]
+        split = [(t, _unit_of(u)) if _bare(u) else unit_in_words(t) for t, u in zip(texts, units[1])]
         stand = f"row under the names (line {units[0]})"
     else:
         split = [name_and_unit(t) for t in texts]

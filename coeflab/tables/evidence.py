@@ -22,6 +22,7 @@ TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; 
 TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
          ("q", False): "lowers the bow", ("r", True): "turns the bow to starboard", ("r", False): "turns the bow to port"}  # fmt: skip
 OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment that a rate moves first
+GROUPS = (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR)
 PLANES = {"pitch": (("alpha", "w", "q"), "M"), "yaw": (("beta", "v", "r"), "N")}  # motions of the body, moment
 OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
@@ -69,7 +70,7 @@ def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evid
             pairs = [(own, c) for own, c in zip(OF_RATE[about], OF_RATE[other], strict=True) if own]
             if not found or any(_span(data, own, frame) > STILL * _span(data, c, frame) for own, c in pairs):
                 continue
-            instead = ANGULAR[int(np.argmax(np.abs(frame.rotation[ANGULAR.index(other)])))]
+            instead = _named(other, frame)
             axes = [("forward", "aft"), ("starboard", "port"), ("down", "up")][ANGULAR.index(about)]
             points = axes[float(frame.rotation[ANGULAR.index(about), ANGULAR.index(rate)]) < 0.0]
             named = {"p": "roll", "q": "pitch", "r": "yaw"}
@@ -95,7 +96,7 @@ def _moment_of_the_other_plane(data: Mapping[str, Array], frame: Axes) -> Iterat
             continue
         if not trend(values, data, _named(setting, frame)):
             continue
-        now, meant = (COMPONENTS[3 + int(np.argmax(np.abs(frame.rotation["KMN".index(c)])))] for c in (other, own))
+        now, meant = (_named(c, frame) for c in (other, own))
         about = f"{now} is about the {'xyz'['KMN'.index(now)]} axis of these axes: {other} of the body"
         yield Evidence(
             f"warning: {setting} varies, and {plane} has no moment: {about}, which no {setting} makes. If it is the moment of "
@@ -103,10 +104,10 @@ def _moment_of_the_other_plane(data: Mapping[str, Array], frame: Axes) -> Iterat
         )
 
 
-def _named(setting: str, frame: Axes) -> str:
-    """The name that a motion of the body has in the axes of the file; an angle keeps its own."""
-    group = next((g for g in (LINEAR, ANGULAR) if setting in g), "")
-    return group[int(np.argmax(np.abs(frame.rotation[group.index(setting)])))] if group else setting
+def _named(name: str, frame: Axes) -> str:
+    """The name that a force, moment or motion of the body has in the axes of the file; an angle keeps its own."""
+    group = next((g for g in GROUPS if name in g), ())
+    return group[int(np.argmax(np.abs(frame.rotation[group.index(name)])))] if group else name
 
 
 def _moves(data: Mapping[str, Array], setting: str, frame: Axes) -> bool:
@@ -217,9 +218,9 @@ def across_planes(
     data = {c.said.name: c.values for c in columns if c.said.role not in ("word", "error")}
     errors = {c.said.name: c.values for c in columns if c.said.role == "error"}
     if "side" in data and _frd(data, "Y", axes) is None:
-        data[_named_force("Y", axes)] = data["side"]
+        data[_named("Y", axes)] = data["side"]
     if "lift" in data and _frd(data, "Z", axes) is None:
-        data[_named_force("Z", axes)] = data["lift"]
+        data[_named("Z", axes)] = data["lift"]
     some = next(iter(data.values()), np.empty(0))
     speeds = [np.abs(data[m]) for m in ("U", *LINEAR) if m in data and m not in _primed(columns)]
     speed = float(np.nanmax(speeds, initial=0.0)) if speeds else 1.0
@@ -242,22 +243,14 @@ def _primed(columns: Sequence[Assigned]) -> set[str]:
     return {c.said.name for c in columns if c.said.primed}
 
 
-def _named_force(component: str, frame: Axes) -> str:
-    """The name that a force of the body has in the axes of the file."""
-    return COMPONENTS[int(np.argmax(np.abs(frame.rotation[COMPONENTS.index(component)])))]
-
-
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
-    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
-    row = frame.rotation[group.index(component)]
-    own = group[int(np.argmax(np.abs(row)))]
-    return data[own] * float(row[group.index(own)]) if own in data else None
+    group, own = next(g for g in GROUPS if component in g), _named(component, frame)
+    return data[own] * float(frame.rotation[group.index(component), group.index(own)]) if own in data else None
 
 
 def frd_column(columns: Sequence[Assigned], component: str, frame: Axes) -> Assigned | None:
     """The column that holds a force or velocity of the body, whatever its sign there; no standard error."""
-    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
-    own = group[int(np.argmax(np.abs(frame.rotation[group.index(component)])))]
+    own = _named(component, frame)
     return next((c for c in columns if c.said.name == own and not c.said.error), None)
 
 
@@ -268,7 +261,7 @@ def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:
     u = np.empty(0) if u is None else u[np.isfinite(u)]
     if not u.size or not np.all(u < 0.0):
         return None
-    own = LINEAR[int(np.argmax(np.abs(frame.rotation[0])))]
+    own = _named("u", frame)
     return next(one for one in columns if one.said.role == "velocity" and one.said.name == own)
 
 

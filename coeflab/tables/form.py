@@ -28,7 +28,6 @@ from coeflab.tables.settings import (
     require_one_datum,
     reynolds,
 )  # fmt: skip
-from coeflab.tables.settings_in_files import against_words
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
@@ -99,36 +98,6 @@ def quoted(text: str) -> str:
     return f'"{text}"' if plain else shlex.quote(text)
 
 
-def form(
-    raw: RawTable,
-    found: Interpretation,
-    settings: Settings,
-    read_by: Sequence[Line] = (),
-    numbers: dict[str, int] | None = None,
-) -> tuple[Line, ...]:
-    """All lines, open ones first.
-
-    Parameters
-    ----------
-    raw : RawTable
-    found : Understood
-    settings : mapping of str to Setting
-        What is known.
-    read_by : sequence of Line
-        What the file was read by and somebody may change, such as the sheet.
-    numbers : dict of str to int, optional
-        Those of the keys that were shown before; new ones are added.
-    """
-    out = [*read_by, *column_lines(raw, found), *map(question_line, found.questions)]
-    words = {key: place for key, _, place in against_words(raw, settings)}
-    for key, one in settings.items():
-        if is_shown(key):
-            out.append(with_reynolds(setting_line(key, one, found.about.get(key, key), words.get(key, "")), settings))
-    taken: dict[str, int] = {} if numbers is None else numbers
-    ordered = sorted(out, key=lambda line: line.group)
-    return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
-
-
 def is_shown(key: str) -> bool:
     """Whether the form has a line for a setting."""
     return key in SAID or not key.startswith(UNSHOWN)
@@ -170,6 +139,10 @@ def column_lines(raw: RawTable, found: Interpretation) -> Iterator[Line]:
             continue
         if name in doubts:
             yield _doubtful(doubts[name])
+        elif name in still and not offer.whole and (own := name.removeprefix("se_")) != name and own in still:
+            yield Line(
+                name, "", f"the standard error of {own}, whatever that is{span}", Group.COLUMN, f"Column {shown(name)}."
+            )
         elif name in still:
             missing = _covered(offer)
             group = Group.COLUMN if offer.whole or missing else Group.OPEN
@@ -357,13 +330,7 @@ def typed(text: str, lines: Sequence[Line], columns: Places, options: Collection
     return out
 
 
-def _take(
-    out: Typed,
-    part: str,
-    lines: Sequence[Line],
-    columns: Places,
-    options: Collection[str],
-) -> None:
+def _take(out: Typed, part: str, lines: Sequence[Line], columns: Places, options: Collection[str]) -> None:
     """One KEY=VALUE."""
     fits = [n for n in columns if part.startswith(f"{n}=")]
     name = max(fits, key=len) if fits else part.partition("=")[0].strip()

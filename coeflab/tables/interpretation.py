@@ -15,7 +15,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_map import FORCES, WIND, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -30,6 +30,7 @@ from coeflab.tables.mapping import (
     entry_of,
     error_of,
     fault,
+    header,
     known_as,
     with_unit,
 )
@@ -50,6 +51,7 @@ from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.to_frd import columns_of
+from coeflab.tables.vocabulary import vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
@@ -165,7 +167,7 @@ def interpreted(
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     if not any(e.instead for e in shows):  # a doubtful axis comes first
         shows += tuple(_across(columns, frame, settings))
-    names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
+    names = [o.said.name for _, o in still if o.said and not o.whole]
     shows += tuple(
         Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
     )
@@ -179,7 +181,7 @@ def interpreted(
         *slopes_by_idle_columns(raw, columns),
         *above_low_aspect(columns, frame, *known_sizes(raw, settings), settings),
     )
-    if all(offer.whole for _, offer in still):
+    if all(offer.whole or offer.role not in SETTINGS for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
     primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
@@ -197,7 +199,8 @@ def interpreted(
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
     doubts += _turned_by_words(raw, columns, frame, settled, doubts)
-    complaints += tuple(_in_vain(raw, mapping, still))
+    more, vain = _in_vain(raw, mapping, still)
+    shows, complaints = (*shows, *more), (*complaints, *vain)
     return Interpretation(
         offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about, frozenset(accepted)
     )
@@ -227,7 +230,7 @@ def _likely_map(offer: Proposal) -> ColumnMap:
     if offer.whole:
         return read_column_map(offer.text)
     name, _, unit = offer.text.partition(" [")
-    if name.lstrip("-") not in FORCES or offer.unread:
+    if name.lstrip("-") not in (*FORCES, *ANGLES) or offer.unread:
         return ColumnMap("ignore")
     pure = unit.startswith("coefficient")  # a sign shows in any unit
     return read_column_map(f"{name}' [-]" if pure else f"{name} [{SI[read_column_map(name).dimension]}]")
@@ -237,8 +240,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     """The complaint about what cannot be a table of forces: no number in it, or nothing known of forces and settings."""
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
-    roles = {read_column_map(o.text.partition(" [")[0]).role for o in offers if o.text}
-    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why == UNKNOWN]
+    roles = {o.role for o in offers}
+    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
         return InputError(
             f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
@@ -250,12 +253,21 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     over = clock(raw)
-    worded = [c.name for c in raw.columns if "_" in c.name and named_as(c.name.split("_")[0]) in FORCES]
-    if worded and not over:
-        return InputError(
-            f"forces with words behind them: {listed([shown(n) for n in worded[:MOST_IDLE]])}", "forces over settings, of one source", file=raw.path,
-            advice=f'Name those of one source: --map "{worded[0]}={named_as(worded[0].split("_")[0])} [coefficient A=1 m^2]"; others are ignored.',
-        )  # fmt: skip
+    words = vocabulary()
+    unread = {
+        header(c): f"{c.name}={words.of_flow(c.name)} [lbf]" for c in raw.columns if c.unit and words.of_flow(c.name)
+    }
+    worded = {
+        c.name: f"{c.name}={n} [coefficient A=1 m^2]"
+        for c in raw.columns
+        if (n := named_as(c.name.split("_")[0])) in FORCES
+    }
+    for found, one in (("in units that are not known", unread), ("with words behind them", worded)) if not over else ():
+        if one:
+            return InputError(
+                f"forces {found}: {listed([shown(n) for n in [*one][:MOST_IDLE]])}", "forces over settings, in a unit, of one source",
+                file=raw.path, advice=f'Name those of one source: --map "{next(iter(one.values()))}"; others are ignored.',
+            )  # fmt: skip
     return InputError(
         over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
         file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
@@ -300,7 +312,7 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
-    given = read_column_map(offer.text.partition(" [")[0]) if offer.text else None
+    given = offer.said
     own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.lost}
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
         return offer
@@ -333,20 +345,34 @@ def _offers(
 
 def _in_vain(
     raw: RawTable, mapping: Mapping[str, ColumnMap], still: Sequence[tuple[RawColumn, Proposal]]
-) -> Iterator[InputError]:
-    """What no answer to a question mends: lift without drag where no column is left that may be it, a speed of zero throughout."""
-    said_of = dict(mapping) | {c.name: read_column_map(o.text.partition(" [")[0]) for c, o in still if o.text}
-    wind = {m.name: name for name, m in said_of.items() if m.name in WIND and not m.error}
-    if wind and "drag" not in wind and all(o.text for _, o in still):
-        force, one = next(iter(wind.items()))
-        yield InputError(
-            f"{force} without drag", "a column drag", file=raw.path, column=one,
-            advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.",
-        )  # fmt: skip
-    for c in raw.columns:
-        given = said_of.get(c.name)
-        if given is not None and given.name == "U" and len(raw) and not np.any(np.nan_to_num(c.values)):
-            yield InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=c.name)
+) -> tuple[tuple[Evidence, ...], tuple[InputError, ...]]:
+    """What no answer mends: a single row, lift without drag, drag at a drift angle without side, a speed of zero; a warning where a
+    column is left that may be what lacks.
+    """
+    said_of = dict(mapping) | {c.name: o.said for c, o in still if o.said}
+    names = {m.name: name for name, m in said_of.items() if not m.error}
+    moving = [c.name for c in raw.columns if np.any(np.nan_to_num(c.values))]
+    wind = next((w for w in WIND if w in names), "")
+    vain = []
+    for lacks, angle in (("drag", ""), ("side", "beta"), ("lift", "alpha")) if wind else ():
+        own = {lacks, *("YZ" if angle else "")}
+        if names.keys().isdisjoint(own) and (not angle or names.get(angle) in moving):
+            vain.append(InputError(
+                f"{wind} without {lacks}{f' at {angle}' * bool(angle)}", f"a column {lacks}", file=raw.path, column=names[wind],
+                advice="X, Y and Z of the body contain parts of drag, side and lift; C_D0 is part of the slope of Z.",
+            ))  # fmt: skip
+    shows = [Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")] * (
+        len(raw) == 1
+    )
+    if vain and (strange := [c.name for c, o in still if not o.text]):
+        shows += [
+            Evidence(f"warning: {v.found}: nothing follows, unless it is one of {listed(strange[:MOST_IDLE])}")
+            for v in vain
+        ]
+        vain = []
+    if len(raw) and names.get("U", moving[:1]) not in (*moving, moving[:1]):
+        vain.append(InputError("a speed of zero throughout", "a speed above zero", file=raw.path, column=names["U"]))
+    return tuple(shows), tuple(vain)
 
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from coeflab.core.types import Array
 from coeflab.tables.column_map import PROPELLER
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.force_table import AT_REST
-from coeflab.tables.levels import MOST_LEVELS, SHARE, levels_of, slopes_by_level
+from coeflab.tables.levels import APART, MOST_LEVELS, SHARE, levels_of, slopes_by_level
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 
@@ -30,18 +31,20 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
     speed = next((c.values for c in columns if c.said.role == "speed"), None)
     used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
-    for idle in (
-        c for c in raw.columns if c.name not in used and not c.means and not c.is_text and _has_levels(c, speed)
-    ):
-        yield from _by_column(idle, settings, columns, speed)
+    for idle in (c for c in raw.columns if c.name not in used and not c.means):
+        names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
+        if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed):
+            yield from _by_column(numbers, [*names], settings, columns, speed)
 
 
 def _has_levels(column: RawColumn, speed: Array | None) -> bool:
-    """Whether a column has a few levels, other than those of the speed."""
+    """Whether a column has a few levels, other than those of the speed, each of hardly any width: a result of the rows has none."""
     if not np.all(np.isfinite(column.values)) or not len(column.values):
         return False
     own = levels_of(column.values)
     if not 1 <= own.max() < MOST_LEVELS:
+        return False
+    if max(np.ptp(column.values[own == k]) for k in range(own.max() + 1)) > APART * np.abs(column.values).max():
         return False
     return (
         speed is None
@@ -51,7 +54,11 @@ def _has_levels(column: RawColumn, speed: Array | None) -> bool:
 
 
 def _by_column(
-    idle: RawColumn, settings: dict[str, Assigned], columns: Sequence[Assigned], speed: Array | None
+    idle: RawColumn,
+    names: Sequence[str],
+    settings: dict[str, Assigned],
+    columns: Sequence[Assigned],
+    speed: Array | None,
 ) -> Iterator[Evidence]:
     for name, swept in settings.items():
         others = [np.abs(np.nan_to_num(c.values)) <= AT_REST for n, c in settings.items() if n != name]
@@ -60,10 +67,11 @@ def _by_column(
             y = force.values if force.said.pure or speed is None else force.values / speed**2
             found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone])
             if found is not None and found.depends:
+                levels = [str(names[round(v)]) if len(names) else f"{v:.6g}" for v in found.levels]
                 given = words(Finding.of(
                     "levels.column", "table", Severity.WARN, statistic=found.spread, threshold=SHARE, symbol=f"the slope of {force.said.name} over {name}",
-                    advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{found.levels[0]:.6g}" }} in campaign.toml',
-                    slopes=tuple(f"{s:.3g}" for s in found.slopes), levels=tuple(f"{v:.4g}" for v in found.levels), column=idle.name,
+                    advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{levels[0]}" }} in campaign.toml',
+                    slopes=tuple(f"{s:.3g}" for s in found.slopes), levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels), column=idle.name,
                 ))  # fmt: skip
                 yield Evidence(f"warning: {given.statement}. {given.advice}")
                 return

@@ -232,7 +232,7 @@ def _factor(unit: str, dimension: str) -> float | None:
 
 def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
     """Rows with a number in every setting."""
-    blank = [np.isnan(one.values) for one in columns if one.said.role in SETTINGS]
+    blank = [_lacking(one) for one in columns if one.said.role in SETTINGS]
     return np.flatnonzero(~np.logical_or.reduce([np.zeros(rows, dtype=bool), *blank]))
 
 
@@ -241,9 +241,16 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
     for one in columns:
         if one.said.role not in SETTINGS:
             continue
-        blank = np.flatnonzero(np.isnan(one.values))
+        blank = np.flatnonzero(_lacking(one))
         if blank.size:
-            yield f"left out, no {one.column.name}: {places(raw, blank)}"
+            above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
+            yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
+
+
+def _lacking(one: Assigned) -> NDArray[np.bool_]:
+    """Rows without a number in a setting, or at rest where others move: of those nothing can be primed."""
+    moving = np.nan_to_num(one.values) != 0.0
+    return np.asarray(~moving if one.said.role == "speed" and np.any(moving) else np.isnan(one.values))
 
 
 def places(raw: RawTable, rows: Sequence[int] | NDArray[np.int64]) -> str:

@@ -19,7 +19,6 @@ from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.collect import DOUBTFUL as UNCERTAIN
-from coeflab.tables.column_map import ROLES, read_column_map
 from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
@@ -36,18 +35,11 @@ Progress = Callable[[str], None]
 Value = TypeVar("Value")
 MOST = 40  # tables of a folder, sheets of a workbook
 JOIN = "joined"  # option: tables of the same columns become one
-SPLIT = (
-    "conditions.speed",
-    "conditions.density",
-    HALF_MODEL,
-    POINT_OF,
-    "table.",
-    "coefficients.",
-    "columns.",
-)  # each table may have its own
+SPLIT = (  # each table may have its own
+    "conditions.speed", "conditions.density", HALF_MODEL, POINT_OF, "table.", "coefficients.", "columns.",
+)  # fmt: skip
 OWN_KEYS = f"table.centre, .arm_point, .contains_inertia, {HALF_MODEL}, {POINT_OF}, conditions.speed, conditions.density, {AREA}, {LENGTH_OF}, {UNITS_OF}"
 ALONE = ("table.", "coefficients.")  # what one table has is no proposal for another
-_FORCE = re.compile(r"-?(?:[XYZKMN]|lift|drag|side)\b")
 _SETS = ("angle", "velocity", "radius", "control")  # what a row of a table of means has, and a record over time has not
 
 
@@ -254,12 +246,10 @@ def _of_sheets(
 
 def why_no_table(raw: RawTable) -> str:
     """Why a table is none of forces over settings, by its names and units; empty where it is."""
-    texts = [one.text for one in proposals(raw)]
-    if not any(_FORCE.match(text) for text in texts):
+    roles = {one.role for one in proposals(raw)}
+    if "force" not in roles:
         return "no force or moment by its names"
-    names = [read_column_map(text.partition(" [")[0]).name for text in texts if text]
-    known = ROLES.keys() & set(names)
-    return "" if any(ROLES[name] in _SETS for name in known) else "no angle, velocity, rate or radius by its names"
+    return "" if roles & {*_SETS} else "no angle, velocity, rate or radius by its names"
 
 
 def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...], tuple[Chosen, ...]] | None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -35,6 +37,7 @@ from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
 UNKNOWN = "no known name"
+BESIDE_WIND = "lift, drag and moments are there as coefficients already"
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
 SAME = 0.1
@@ -43,26 +46,9 @@ VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
-IDLE_UNITS = frozenset(
-    {"°c", "c", "degc", "k", "hz", "khz", "pa", "kpa", "mpa", "bar", "mbar", "v", "mv", "a", "ma", "w", "kw"}
-)
 # Of a time a wrong split makes one, r_rads_s, so the name has to say it too.
-TIMES = frozenset({"s", "sec", "ms", "min", "h"})
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
-TURNS = {
-    "": "",
-    "1/s": "rps",
-    "s^-1": "rps",
-    "hz": "rps",
-    "rev/s": "rps",
-    "u/s": "rps",
-    "1/min": "rpm",
-    "u/min": "rpm",
-    "rev/min": "rpm",
-    "min^-1": "rpm",
-}
-SHIP = ("shipspeed", "vship", "vs", "fullscalespeed", "schiffsgeschwindigkeit", "vitessenavire", "vitessedunavire")
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
@@ -105,6 +91,16 @@ class Proposal:
     assumed: bool = False
 
     @property
+    def said(self) -> ColumnMap | None:
+        """What it says, without a unit; None where nothing is known."""
+        return read_column_map(self.text.partition(" [")[0]) if self.text else None
+
+    @property
+    def role(self) -> str:
+        """Of what it says; empty where nothing is known."""
+        return self.said.role if self.said else ""
+
+    @property
     def whole(self) -> bool:
         """Whether nothing has to be added."""
         return bool(self.text) and OPEN not in self.text
@@ -129,9 +125,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     """
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
-    if folded(column.name) in SHIP and _fits(
-        unit := vocabulary().units.get(column.unit.casefold(), column.unit), "speed"
-    ):
+    unit = vocabulary().units.get(column.unit.casefold(), column.unit)
+    if folded(column.name) in vocabulary().lists["ship"] and _fits(unit, "speed"):
         scale = (stated or {}).get(SCALE)
         if scale is None:
             return Proposal(
@@ -199,10 +194,13 @@ def _worded(column: RawColumn) -> str:
 def _idle(column: RawColumn) -> str:
     """Why a column of numbers cannot matter to a fit: one number throughout, or a unit of nothing that fits use."""
     known = column.values[np.isfinite(column.values)]
+    if known.size and not np.any(known):
+        return "zeros throughout"
     if known.size and float(np.ptp(known)) <= 1e-9 * float(np.abs(known).max()) and not allowed(column.unit):
         return "one number throughout"
     unit = column.unit.strip().casefold()
-    if unit in IDLE_UNITS or (unit in TIMES and _OF_TIME.search(column.name)):
+    words = vocabulary().lists
+    if folded(unit) in words["idle"] or (unit in words["times"] and _OF_TIME.search(column.name)):
         return f"no fit uses [{column.unit}]"
     return ""
 
@@ -262,7 +260,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             return str(read_column_map(short)), "its name", True
         except InputError:
             pass
-    if own == "n" and column.unit and column.unit.casefold() in (*TURNS, "rps", "rpm"):
+    if own == "n" and column.unit.casefold() in vocabulary().turns:
         return "rps", "its name and unit", False
     if own == "T" and _fits(column.unit, "force"):
         return "thrust", "its name and unit", False
@@ -272,14 +270,16 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     prefix, prime = "se_" if error else "", ""
     if bare.endswith("prime") or short.endswith("'"):
         bare, prime = bare.removesuffix("prime"), "'"
-    if wind := vocabulary().flow.get(bare):
+    known = _knows(bare) or error or prime
+    wind = vocabulary().flow.get(bare) or ("" if known else _in_other_words(own))
+    if wind in WIND:
         also = "; Cl of aircraft is also the rolling moment, K" if bare == "cl" else ""
         return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
     words = vocabulary()
     pure = "" if prime else words.coefficients.get(bare, "")
-    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure
+    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure or wind
     if not name:
         return "", UNKNOWN, False
     if error and name not in COMPONENTS:
@@ -298,10 +298,28 @@ def _knows(bare: str) -> bool:
     return any(bare in section for section in (words.columns, words.flow, words.coefficients))
 
 
+def _in_other_words(name: str) -> str:
+    """What a name is by its words in another order, or cut short: Angle of drift, drift ang, Lift coeff; empty where it is nothing."""
+    words, parts = vocabulary(), _words(name)
+    full = [w for part in parts if (w := words.short.get(part, part))]
+    every = (
+        ("".join(some) for some in permutations(full)) if len(full) <= 3 and (full != parts or len(full) > 1) else ()
+    )
+    found = next((n for w in every if (n := words.columns.get(w) or words.flow.get(w))), "")
+    return found if found in FORCES or not {*parts} & words.lists["coefficient"] else ""
+
+
+def _words(name: str) -> list[str]:
+    return [folded(w) for w in re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
+
+
 def _is_pure(name: str) -> bool:
     """Whether a name is that of a coefficient."""
     bare = folded(name)
-    return not {bare, _OF_ALL.sub("", bare)}.isdisjoint(vocabulary().coefficients)
+    return not {*_words(name)}.isdisjoint(vocabulary().lists["coefficient"]) or not {
+        bare,
+        _OF_ALL.sub("", bare),
+    }.isdisjoint(vocabulary().coefficients)
 
 
 def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
@@ -343,7 +361,7 @@ def coefficient_as_said(said: ColumnMap, known: Mapping[str, object]) -> Proposa
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
     if said.role == "propeller":
-        unit = TURNS.get(unit.casefold(), unit) if said.name == "rps" else unit
+        unit = vocabulary().turns.get(unit.casefold(), unit) if said.name == "rps" else unit
         by_name = next((turns for turns in ("rpm", "rps") if turns in folded(column.name)), "")
         unit = unit or {"rps": by_name, "J": "-"}.get(said.name, "")
     name = str(said).partition(" [")[0]
@@ -396,14 +414,10 @@ def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
 
 def taken_as(one: Assigned) -> str:
     """What a unit text that nobody knows was taken for; empty where the file's unit is known, or there is none."""
-    unit = " ".join(one.column.unit.split())
-    if (
-        unit in ("", "-", "1")
-        or one.said.pure
-        or one.said.per_speed
-        or one.said.name in WORDS
-        or _fits(vocabulary().units.get(unit.casefold(), unit), one.said.dimension)
-    ):
+    unit, given = " ".join(one.column.unit.split()), one.said
+    known = _fits(vocabulary().units.get(unit.casefold(), unit), given.dimension)
+    known |= vocabulary().turns.get(unit.casefold()) == given.unit
+    if known or unit in PURE or given.pure or given.per_speed or given.name in WORDS:
         return ""
     return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
 
@@ -436,14 +450,19 @@ def proposals(
         one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
-        given = read_column_map(one.text.partition(" [")[0]) if one.text else None
+        if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
+            one = Proposal("point", "it counts the rows")
+        given = one.said
         if given is not None and given.name not in ("label", "ignore"):
             if given.name == "point" and (given.plain in taken or _repeats(column)):
                 one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
             elif given.plain in taken:
                 first = next(i for i, c in enumerate(raw.columns) if c.name == taken[given.plain])
                 again = f"{given.plain} is {{}} already"
-                if one.whole and not out[first].whole:
+                unsized = (
+                    out[first].text.endswith(f"[{OPEN}]") and "coefficient" in one.text
+                )  # a force without unit beside its coefficient
+                if (one.whole and not out[first].whole) or unsized:
                     out[first] = Proposal("ignore", again.format(column.name))
                     taken[given.plain] = column.name
                 else:
@@ -455,23 +474,36 @@ def proposals(
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
         out = [_beside_the_body(one, taken[body], body) for one in out]
+    if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
+        out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
     out = _without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
-        # V is the speed beside what says where the water comes from; alone it may be a sway velocity in capitals.
-        beside = {"alpha", "beta", "R"} & set(taken) and not {"U", "v"} & set(taken)
+        # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
+        over = {"drag"} - {
+            read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
+        }
+        beside = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
         if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
-        if folded(column.name) in SHIP and taken.get("U", column.name) != column.name:
+        if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
             out[i] = Proposal("ignore", f"U is {taken['U']} already")
         if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and _fits(column.unit, "moment"):
             out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
     return tuple(_without_a_doubled_flow(raw, out))
 
 
+def _is_index(column: RawColumn) -> bool:
+    """Whether a column without a name, or called so, counts the rows from 0 or 1, again from there where tables were joined."""
+    first = column.values[0] if len(column.values) > 1 else np.nan
+    steps = np.diff(column.values)
+    unnamed = column.name == "column 1" or folded(column.name) in vocabulary().lists["index"]
+    return unnamed and first in (0.0, 1.0) and bool(np.all((steps == 1.0) | (column.values[1:] == first)))
+
+
 def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
     """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
-    roles = [read_column_map(one.text.partition(" [")[0]) if one.text else None for one in out]
+    roles = [one.said for one in out]
     still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
     both = [
         ("angle" if m.role == "angle" else "speed")
@@ -505,21 +537,24 @@ def _of_company(
         As for `proposed`.
     """
     known = column.values[np.isfinite(column.values)]
-    if "cd" in pure and one.text in (f"M [{OPEN}]", f"N [{OPEN}]") and known.size:
+    if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
         is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
             what = "a Mach number" if is_mach else "a count"
-            note = f"{what} by its values beside coefficients; {one.text} if it is the moment"
+            note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
-    if (
-        folded(column.name) == "fn"
-        and column.unit in PURE
-        and known.size
-        and known.min() > 0.0
-        and known.max() < FROUDE
-    ):
+    froude = folded(column.name) in ("fn", "fr") and column.unit in PURE
+    if froude and known.size and 0.0 < known.min() <= known.max() < FROUDE:
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
-        return Proposal("ignore", note, note=note)
+        return Proposal("ignore", note, note=note * (folded(column.name) == "fn"))
+    own = {vocabulary().coefficients.get(name) for name in pure}
+    name = one.said.name if one.said else ""
+    twice = name in ("X", "Z") or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
+    if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+    of_body = {"ca", "ct", "cn"} & pure if "cn" in pure else set()
+    if len(of_body) > 1 and folded(column.name) in of_body and {"cl", "cd"} <= pure:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
     if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
         axial = folded(column.name) == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
@@ -540,24 +575,28 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
     Nothing is left out where no force or no setting is known without them.
     """
     strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
-    roles = {read_column_map(one.text.partition(" [")[0]).role for one in out if one.text}
+    roles = {one.role for one in out}
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED):
         return out
-    settings = [
-        c.values
-        for c, one in zip(raw.columns, out, strict=True)
-        if one.text and read_column_map(one.text.partition(" [")[0]).role in VARIED
-    ]
+    settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
     plain = {c.name.strip() for c in raw.columns}
+    series = Counter(_counted(raw.columns[i].name) for i in strange)
     idle = {
         i
         for i in strange
-        if _is_of_a_force(raw.columns[i].name, plain) or not _like_a_setting(raw.columns[i].values, settings)
+        if _is_of_a_force(raw.columns[i].name, plain)
+        or series[_counted(raw.columns[i].name)] > FEW_STRANGE
+        or not _like_a_setting(raw.columns[i].values, settings)
     }
     return [
         replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)
     ]
+
+
+def _counted(name: str) -> str:
+    """A name of a series without its number: Cp_ of Cp_017; of others the name itself."""
+    return re.sub(r"(?<=[A-Za-z_ ])\d+$", "", name.strip())
 
 
 def _is_of_a_force(name: str, names: Set[str]) -> bool:
@@ -594,10 +633,10 @@ def _together(one: Array, other: Array) -> float:
 def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     """A prime as a coefficient of the area that a person, or words that were accepted, say it was divided by."""
     area = known.get(AREA)
-    if area is None or area == "prime" or not one.text:
+    if area is None or area == "prime":
         return one
-    given = read_column_map(one.text.partition(" [")[0])
-    if given.name not in FORCES or not given.primed:
+    given = one.said
+    if given is None or given.name not in FORCES or not given.primed:
         return one
     length = known.get(LENGTH_OF, known.get("scaling.length"))
     moment = given.name in MOMENTS

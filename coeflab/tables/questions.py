@@ -14,7 +14,7 @@ from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR, MOMENTS
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
-from coeflab.tables.column_map import ROLES, read_column_map
+from coeflab.tables.column_map import ROLES
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import Assigned
@@ -118,7 +118,7 @@ def without_unit(offer: Proposal) -> bool:
     """Whether a column states no unit, so that one for all such columns may give it; angles are asked one by one."""
     if offer.unread or not offer.text.endswith(f"[{OPEN}]"):
         return False
-    return read_column_map(offer.text.partition(" [")[0]).dimension not in ("angle", "none")
+    return offer.said is not None and offer.said.dimension not in ("angle", "none")
 
 
 def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:
@@ -201,7 +201,7 @@ def _of_axes(
     )  # fmt: skip
     angles = [c.said.name for c in columns if c.said.role == "angle"]
     follows = {e.key: e for e in shows if e.key}
-    for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
+    for name in dict.fromkeys((*angles, *(name for name in likely if ROLES[name] == "angle"))):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):

@@ -18,6 +18,7 @@ from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.conditions import BETWEEN
+from coeflab.tables.dialect import is_of_openfoam
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import STUDIES
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
@@ -95,10 +96,14 @@ def importer_of(path: Path, name: str = "") -> str:
                 f"{kind}, a simulator's model", "a table or runs of a solver", file=path,
                 advice=f"Read it by: coeflab params check {path}.",
             )  # fmt: skip
+        if is_of_openfoam([text for _, text in _first_lines(path, 60)]):
+            raise InputError(
+                "forces of one OpenFOAM case", "the folder of its case, or of all cases of a sweep", file=path
+            )
         others = ", ".join(n for n in readers if n != GENERAL)
         unread = InputError(
             "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else one of {others}",
-            file=path, advice="Where its names are not found, their line is --option header=NUMBER. Its first lines:",
+            file=path, advice=f"{_as_table(path)}Where its names are not found, their line is --option header=NUMBER. Its first lines:",
         )  # fmt: skip
         unread.example = "\n".join(f"  {number:2d}  {text}" for number, text in begin)
         raise unread
@@ -107,7 +112,16 @@ def importer_of(path: Path, name: str = "") -> str:
     raise InputError(found, f"--as {' or --as '.join(known or readers)}", file=path, advice=f"{each}.")
 
 
-def _first_lines(path: Path) -> list[tuple[int, str]]:
+def _as_table(path: Path) -> str:
+    """What keeps a text from being a table, for one who takes it for one; empty where nothing does."""
+    try:
+        IMPORTERS.load(GENERAL).raw(path, {})  # type: ignore[misc]
+    except InputError as why:
+        return f"As {GENERAL}{f', line {why.line}' * bool(why.line)}: found {why.found}; expected {why.expected}. "
+    return ""
+
+
+def _first_lines(path: Path, most: int = FIRST) -> list[tuple[int, str]]:
     """The first lines of a text that are not blank, by their numbers and cut; none of what is no text."""
     try:
         with stream_of(path) as stream:
@@ -123,7 +137,7 @@ def _first_lines(path: Path) -> list[tuple[int, str]]:
     else:
         return []
     lines = [(n, line.expandtabs().rstrip()) for n, line in enumerate(text.splitlines(), start=1) if line.strip()][
-        :FIRST
+        :most
     ]
     return [(n, line[:CUT]) for n, line in lines] if all(line.isprintable() for _, line in lines) else []
 
@@ -193,11 +207,7 @@ def read_groups(
 
 
 def with_declarations(
-    table: ForceTable,
-    file: Path,
-    cells: str = "",
-    uncertainty: InputUncertainty | None = None,
-    variant: str = "",
+    table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None, variant: str = ""
 ) -> ForceTable:
     """A table with its cell counts, studies and input uncertainty.
 

@@ -50,11 +50,7 @@ PATIENCE = 2.0  # s of work that are left before processes are started for it
 _RESIDUAL = re.compile(
     r"resid|\brms|continuity|[xyz][- ](?:velocity|momentum)|^(?:k|omega|epsilon|energy|nut|tke|sdr|tdr)$", re.IGNORECASE
 )
-ENDED = {
-    Ended.CRASHED: Convergence.CRASHED,
-    Ended.DIVERGED: Convergence.DIVERGED,
-    Ended.EMPTY: Convergence.EMPTY,
-}
+ENDED = {Ended.CRASHED: Convergence.CRASHED, Ended.DIVERGED: Convergence.DIVERGED, Ended.EMPTY: Convergence.EMPTY}
 
 
 @brief

@@ -22,6 +22,7 @@ from coeflab.law.scaling import Scaling, require_hull
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import HALF_MODEL
+from coeflab.tables.vocabulary import vocabulary
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import POINT_OF
 
@@ -42,9 +43,6 @@ REFERENCE = "reference point"  # what a person may say for the point of the arm
 OF_ARMS = ("table.centre", "table.arm_point", "table.contains_inertia")  # keys that a straight tow has not
 VISCOSITY = "conditions.viscosity"
 EACH = "each"  # in mapping.toml: keys of one table of several, by its name
-NO_LENGTHS = frozenset(
-    ["kg", "g", "t", "s", "N", "kN", "m/s", "kn", "deg", "rad", "m^2", "m^3", "Pa", "lb"]
-)  # a wrong unit, no name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -81,10 +79,6 @@ def _sign(name: str) -> Callable[[Any], Any]:
         return " ".join(str(text).split())
 
     return read
-
-
-def _frame(said: Any) -> Any:
-    return parse_axes(said).declared
 
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -164,13 +158,7 @@ def _one_of(*words: str) -> Callable[[Any], Any]:
 def _area(said: Any) -> Any:
     if str(said).casefold().rstrip("s") == "prime":
         return "prime"
-    _measured("area")(said)
-    return quantity(said, "area")
-
-
-def _length(said: Any) -> float:
-    _measured("length")(said)
-    return quantity(said, "length")
+    return quantity(_measured("area")(said), "area")
 
 
 def _hull(said: Any) -> Any:
@@ -180,9 +168,9 @@ def _hull(said: Any) -> Any:
 
 READERS: dict[str, Callable[[Any], Any]] = {
     "coefficients.area": _area,
-    "coefficients.length": _length,
+    "coefficients.length": lambda said: quantity(_measured("length")(said), "length"),
     "columns.units": _one_of("SI"),
-    "axes.frame": _frame,
+    "axes.frame": lambda said: parse_axes(said).declared,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
     **dict.fromkeys(PLACE_KEYS, _place),
@@ -236,38 +224,6 @@ _NO_METRES = re.compile(
     r"\d\s*(?:mm|cm|m)\b|\b(?:in|ft|dm|km|yd|feet|foot|inch|inches|L)\b|^\s*(?!(?:from|m)\b)\w+\s+(?:from|von|vom)\b"
 )  # what stands beside the number of a place and would change it
 _SIZED = re.compile(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,:]*(.*)")
-_BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
-_SIDED = frozenset(
-    [
-        "aft",
-        "behind",
-        "abaft",
-        "astern",
-        "after",
-        "forward",
-        "fwd",
-        "fore",
-        "ahead",
-        "before",
-        "below",
-        "above",
-        "under",
-        "over",
-        "port",
-        "starboard",
-        "hinter",
-        "vor",
-        "achtern",
-        "achterlich",
-        "vorn",
-        "ueber",
-        "über",
-        "unter",
-        "derriere",
-        "derrière",
-        "devant",
-    ]
-)
 
 
 def is_reference(said: Any) -> bool:
@@ -298,7 +254,7 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
         key == "scaling.length"
         and (sized := _SIZED.fullmatch(text))
         and (name := sized[2].strip(" ()"))
-        and name not in NO_LENGTHS
+        and name not in vocabulary().lists["no_length"]
     ):
         if re.match(r"(?:dm|km|yd|feet|foot|inch|inches|met(?:er|re)s?)\b|['′\"″]", name, re.IGNORECASE):
             raise InputError(
@@ -352,7 +308,7 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
         )
     rest = typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed
     words = [w for w in re.split(r"[\s,;:@()]+", rest) if w]
-    if numbers and (sided := {w.casefold() for w in words} & _SIDED):
+    if numbers and (sided := {w.casefold() for w in words} & vocabulary().lists["sided"]):
         raise InputError(
             f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
             column=key, advice=f"Leave out {sided.pop()}.",
@@ -365,7 +321,7 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
         )  # fmt: skip
     if "/" in rest or (not numbers and len(words) > 2):
         raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=key)
-    return " ".join(w for w in words if w.casefold() not in _BETWEEN), at or "0"
+    return " ".join(w for w in words if w.casefold() not in vocabulary().lists["between"]), at or "0"
 
 
 def reynolds(settings: Settings) -> float | None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
-from coeflab.tables.form import Line, argument, column_lines, form, is_shown, question_line, setting_line, with_reynolds
+from coeflab.tables.form import Line, argument, column_lines, is_shown, question_line, setting_line, with_reynolds
 from coeflab.tables.interpretation import Interpretation, interpreted
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
@@ -143,18 +143,19 @@ def form_together(
         What is known, with names of parts where it is said of one.
     read_by : sequence of Line
     numbers : dict of str to int, optional
-        See `coeflab.tables.form.form`.
+        Those of the keys that were shown before; new ones are added.
     whole : str
         See `questions_together`.
     """
-    if len(parts) == 1:
-        return form(parts[0].raw, founds[0], settings, read_by, numbers)
     out = [*read_by, *_columns(parts, founds)]
     out += [replace(question_line(q), key=key, argument=argument("--set", key, q.default or "?")) for key, q in
             questions_together(parts, founds, whole)]  # fmt: skip
     words: dict[str, str] = {}
     for part in parts:
-        words |= {key: f"{part.name}, {place}" for key, _, place in against_words(part.raw, own(settings, part, parts))}
+        words |= {
+            key: f"{part.name}, {place}".removeprefix(", ")
+            for key, _, place in against_words(part.raw, own(settings, part, parts))
+        }
     about = {key: text for found in founds for key, text in found.about.items()}
     for key, one in settings.items():
         plain = key.rpartition("/")[2]

@@ -38,18 +38,8 @@ DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks"
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}
 COMMENTS = ("#", "%", "//", "!")
 _ENCODINGS = (
-    "utf-8",
-    "utf-16",
-    "utf-16-le",
-    "utf-16-be",
-    "cp1252",
-    "latin-1",
-    "cp437",
-    "mac-roman",
-    "shift_jis",
-    "euc_kr",
-    "gb18030",
-)
+    "utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp437", "mac-roman", "shift_jis", "euc_kr", "gb18030",
+)  # fmt: skip
 SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
@@ -109,10 +99,6 @@ class TextDialect:
     remarks: tuple[str, ...] = ()
     stated: Mapping[str, Stated] = field(default_factory=dict)
     above: tuple[str, ...] = ()  # lines over the head
-
-
-def _said_delimiter(delimiter: str) -> str:
-    return next(name for name, d in DELIMITERS.items() if d == delimiter)
 
 
 def _comments(options: Options) -> tuple[str, ...]:
@@ -339,26 +325,37 @@ def _fitted(line: str, delimiter: str, width: int, filled: int) -> list[str] | N
     return None
 
 
+def _over_rule(line: str, rule: str, width: int) -> list[str] | None:
+    """The names over a rule of strokes, one a column: each stands over its own; None where the rule has none of them, or not as many."""
+    middles = [sum(m.span()) / 2 for m in re.finditer(r"[-=_]+", rule)]
+    if len(middles) != width or width < FEWEST_NAMED:
+        return None
+    names = [""] * width
+    for word in re.finditer(r"\S+", line):
+        k = min(range(width), key=lambda i: abs(middles[i] - sum(word.span()) / 2))
+        names[k] = f"{names[k]} {word[0]}".strip()
+    return names if all(names) else None
+
+
 def _head(
-    lines: list[str],
-    start: int,
-    dialect: tuple[str, Marks, int, int],
-    numbers: Set[int],
-    options: Options,
-    path: Path,
+    lines: list[str], start: int, dialect: tuple[str, Marks, int, int], numbers: Set[int], options: Options, path: Path
 ) -> tuple[Head, list[str]]:
     """The names over the line ``start`` (counted from 1)."""
     delimiter, marks, width, filled = dialect
     comments = _comments(options)
     above: list[Row] = []
     remarks: list[str] = []
+    ruled = ""
     for n in range(start - 1, 0, -1):
         line = lines[n - 1].strip(" \n") if delimiter == "\t" else lines[n - 1].strip()
         remark = is_comment(line.lstrip(), comments)
         bare = line.lstrip().lstrip("".join(comments)).strip() if remark else line
         if not bare or RULE.fullmatch(bare):
+            ruled = lines[n - 1] if bare else ruled
             continue
         cells = _fitted(bare, delimiter, width, filled)
+        if cells is None and not above:
+            cells = _over_rule(lines[n - 1], ruled, width)
         asked = n in (options.header, options.units)
         if (
             cells is None
@@ -454,7 +451,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         }
     )
     phrases = {
-        "delimiter": _said_delimiter(delimiter),
+        "delimiter": next(name for name, d in DELIMITERS.items() if d == delimiter),
         "decimal mark": SAID[marks.decimal],
         "thousands mark": SAID[marks.thousands],
         "header": f"line {head.line}" if head.line else "none",

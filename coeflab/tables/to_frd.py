@@ -95,12 +95,7 @@ class Columns:
         if is_folder and row is not None and self.row_labels:
             found = f"{found} in {self.row_labels[row]}"
         return InputError(
-            found,
-            expected,
-            file=self.file,
-            line=line,
-            column=self.headers.get(name, name) or None,
-            advice=advice,
+            found, expected, file=self.file, line=line, column=self.headers.get(name, name) or None, advice=advice
         )
 
     @property

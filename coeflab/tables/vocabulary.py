@@ -56,6 +56,12 @@ class Vocabulary:
         Symbols, with blanks between, by what they mean.
     units : mapping of str to str
         Spelling of the units library by a unit as written, in small letters.
+    turns : mapping of str to str
+        Units of a rate of a propeller, likewise; of other rates 1/s is rad/s.
+    short : mapping of str to str
+        Words of a name in full; empty for those that say nothing.
+    lists : mapping of str to frozenset of str
+        Folded words for a speed of the ship, an index; units of nothing that a fit uses, units of a time.
     own : frozenset of str
         Names that a person's own file gives a meaning.
     """
@@ -66,6 +72,9 @@ class Vocabulary:
     several: Words
     symbols: Words
     units: Words
+    turns: Words
+    short: Words
+    lists: Mapping[str, frozenset[str]]
     own: frozenset[str] = frozenset()
 
     def of_flow(self, name: str) -> str:
@@ -93,8 +102,10 @@ def _read(content: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 @cache
 def _shipped() -> Vocabulary:
-    sections: dict[str, Any] = _read(own_toml(own_text(files("coeflab.tables.words") / "vocabulary.toml")))
-    return Vocabulary(**sections)
+    content = own_toml(own_text(files("coeflab.tables.words") / "vocabulary.toml"))
+    lists = {name: frozenset(map(folded, words.split())) | {*words.split()} for name, words in content["lists"].items()}
+    sections: dict[str, Any] = _read(content)
+    return Vocabulary(**sections, turns=content["turns"], short=content["short"], lists=lists)
 
 
 _OWN: ContextVar[Vocabulary | None] = ContextVar("vocabulary", default=None)
@@ -179,5 +190,5 @@ def _joined(path: Path) -> Vocabulary:
     selected = {s: {w: m for w, m in getattr(base, s).items() if w not in every} for s in SECTIONS[:4]}
     return Vocabulary(
         **{s: {**selected[s], **own[s]} for s in SECTIONS[:4]},
-        symbols={**base.symbols, **own["symbols"]}, units={**base.units, **own["units"]}, own=every,
+        symbols={**base.symbols, **own["symbols"]}, units={**base.units, **own["units"]}, turns=base.turns, short=base.short, lists=base.lists, own=every,
     )  # fmt: skip

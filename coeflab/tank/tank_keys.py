@@ -115,8 +115,7 @@ class TankKeys(Declaration):
     solver: takes.Text = "openfoam"
     runner: takes.Text = "local"
     cores: Annotated[
-        int,
-        takes.Takes("a whole number of cores", lambda v, _: _whole(v, 4096), {"type": "integer", "minimum": 1}),
+        int, takes.Takes("a whole number of cores", lambda v, _: _whole(v, 4096), {"type": "integer", "minimum": 1})
     ] = 1
     symmetry: takes.Flag = True
 

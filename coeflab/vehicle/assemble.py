@@ -207,10 +207,7 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
             ),
             "terms": tuple(
                 ModelTerm(
-                    symbol=s,
-                    factors=tuple(Factor(*f) for f in t.factors),
-                    value=finite(c),
-                    half_width_95=finite(h),
+                    symbol=s, factors=tuple(Factor(*f) for f in t.factors), value=finite(c), half_width_95=finite(h)
                 )
                 for s, t, c, h in zip(model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True)
             ),

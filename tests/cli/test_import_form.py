@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from coeflab.cli import app, import_
 from coeflab.cli.import_ import _first_slopes
 from coeflab.law.scaling import beyond_ends
-from coeflab.report.tables.results import unused
+from coeflab.report.tables.force_tables import unused
 from coeflab.study.checks import coverage
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.questions import questions

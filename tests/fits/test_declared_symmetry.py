@@ -267,3 +267,25 @@ def test_a_computed_pair_counts_once_and_without_its_bias(tables: Reader, one_si
     assert sweep.value == pytest.approx(there.value, rel=1e-6)
     measured = fitted(tables(BOTH, drift=text)).sweep("Yv")
     assert len(measured.x) == len(ANGLES) + 2
+
+
+# A symmetry that the points rule out
+
+
+@pytest.mark.parametrize(("constant", "withdrawn"), [(0.0, False), (0.05, True), (-0.1, True)])
+def test_a_symmetry_that_the_points_rule_out_is_withdrawn(tables: Reader, constant: float, withdrawn: bool) -> None:
+    """A constant of 5 % of the largest Y; Nv' of the same runs keeps the declaration."""
+    angles = np.radians(np.arange(1.0, 13.0))
+    head, *rows = csv_of(angles).splitlines()
+    cells = np.array([[float(x) for x in row.split(",")] for row in rows])
+    cells[:, 3] += constant * np.abs(cells[:, 3]).max()
+    text = "\n".join([head, *(",".join(f"{x:.9g}" for x in row) for row in cells)]) + "\n"
+    found = fitted(tables('["port-starboard"]', drift=text))
+    codes = {f.subject: f for f in found.findings if f.code == "symmetry.withdrawn"}
+    assert set(codes) == ({"synthetic Yv'"} if withdrawn else set())
+    assert found.sweep("Yv").symmetry == ("" if withdrawn else "port-starboard")
+    assert found.sweep("Nv").symmetry == "port-starboard"
+    value, u95 = values(found)["Yv"]
+    assert value is not None
+    assert u95 is not None
+    assert abs(value + 0.02) <= u95

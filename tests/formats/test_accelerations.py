@@ -24,7 +24,7 @@ from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_i
 from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
-from coeflab.report.sections import parameter_file as export_section
+from coeflab.report.sections import exports as export_section
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -14,7 +14,7 @@ from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
 from coeflab.report.sections.coefficients import form_not_assessed, shorter_ranges
-from coeflab.report.tables import results
+from coeflab.report.tables import comparisons
 from coeflab.report.tables.results import works
 from coeflab.study.symmetry import is_zero
 from tests.motion.vehicles import made as vehicle_file
@@ -265,17 +265,17 @@ def test_a_plan_without_a_file_gets_no_command():
 
 def test_campaigns_stand_with_body_and_source_where_there_are_several():
     study = small_study(FULL)
-    assert not results.campaigns(study).rows
+    assert not comparisons.campaigns(study).rows
     first = study.tables[0]
     other = replace(first, campaign="other", body="another hull", source=replace(first.source, kind="cfd"))
-    found = results.campaigns(replace(study, tables=(first, other)))
+    found = comparisons.campaigns(replace(study, tables=(first, other)))
     assert [(*row[:3], row[-1]) for row in found.rows] == [
         ("tow", "body of tow", first.source.kind, "-"), ("other", "another hull", "cfd", "-"),
     ]  # fmt: skip
     turned = replace(
         first, by_symmetry=first.name, motion={**first.motion, "w": first.motion["v"], "v": 0.0 * first.motion["v"]}
     )
-    (row, _) = results.campaigns(replace(study, tables=(first, turned, other))).rows
+    (row, _) = comparisons.campaigns(replace(study, tables=(first, turned, other))).rows
     assert (first.varies, row[3]) == (("v",), "v' (by symmetry w')")
     assert (
         document(replace(study, tables=(first, other)), full=False).sections[1].tables[0].title

@@ -11,7 +11,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.report.content import document
 from coeflab.report.first_page import study_summary
-from coeflab.report.sections.parameter_file import in_words, stability_sections
+from coeflab.report.sections.stability import in_words, stability_sections
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.study.checks.stability import check as stability_check
 from coeflab.vehicle.reference import read_references

@@ -14,7 +14,7 @@ from coeflab.bodies.simplify.source import subject
 from coeflab.core.finding import Severity
 from coeflab.estimates import STEERED, _derived, _steered
 from coeflab.estimates.fins import FoilForce
-from coeflab.report.sections.parameter_file import without_u95
+from coeflab.report.sections.manoeuvres import without_u95
 from coeflab.study.estimated_vehicle import asked, compared, from_shape
 from coeflab.study.study import Study
 from coeflab.vehicle.held_to_model import law_u95

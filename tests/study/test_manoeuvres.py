@@ -13,7 +13,7 @@ from coeflab.core.files import shipped
 from coeflab.formats.exporting import exports_of
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.motion.simulation import manoeuvres_of
-from coeflab.report.sections.parameter_file import manoeuvre_sections
+from coeflab.report.sections.manoeuvres import manoeuvre_sections
 from coeflab.study.plan import read_plan
 from tests.motion.vehicles import made, rudder_covered
 from tests.report.studies import FULL, small_study

@@ -13,8 +13,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.report.as_json import studies as as_json
 from coeflab.report.sections.campaign import tow_sections
+from coeflab.report.tables.comparisons import by_campaign
 from coeflab.report.tables.own_cfd import own_tow, tow_against
-from coeflab.report.tables.results import by_campaign
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
 from coeflab.study.secants import OF_SECANT

@@ -8,6 +8,7 @@ import pytest
 
 import coeflab
 from coeflab.core.errors import InputError
+from coeflab.tables.campaign import read_campaign
 
 PLAN = """[study]
 name = "one"
@@ -59,3 +60,22 @@ def test_anything_else_is_refused_with_advice(given: object) -> None:
     with pytest.raises(InputError, match=r"expected a Plan, the path of a plan.toml") as why:
         coeflab.run(given)  # type: ignore[arg-type]
     assert why.value.advice
+
+
+@pytest.mark.parametrize(
+    ("head", "what", "command"),
+    [
+        ("study", "a plan", "coeflab run"), ("matrix", "a matrix of runs", "coeflab tow"), ("tank", "a tow", "coeflab tow"),
+        ("configuration", "a body", "coeflab vehicle"), ("campaign", "a campaign", "coeflab fit"),
+    ],
+)  # fmt: skip
+def test_a_file_of_another_kind_is_said_to_be_one(tmp_path: Path, head: str, what: str, command: str) -> None:
+    """A plan was read as a campaign, with a complaint a key."""
+    (tmp_path / "own.toml").write_text(f"[{head}]\nx = 1\n")
+    for read in (coeflab.read_plan, read_campaign):
+        if (head, read) in (("study", coeflab.read_plan), ("campaign", read_campaign)):
+            continue
+        with pytest.raises(InputError) as why:
+            read(tmp_path / "own.toml")
+        assert (why.value.found, why.value.line, why.value.others) == (f"{what}, with [{head}]", 1, ())
+        assert command in why.value.advice

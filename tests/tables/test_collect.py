@@ -20,7 +20,7 @@ from scipy.signal import lfilter
 from coeflab.core.errors import InputError
 from coeflab.core.wording import natural
 from coeflab.fits import FITS
-from coeflab.report.tables.results import inspected, unused
+from coeflab.report.tables.force_tables import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import likely_patterns, name_pattern

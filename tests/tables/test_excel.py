@@ -225,7 +225,7 @@ def test_a_panic_of_the_reader_is_an_input_error(monkeypatch: pytest.MonkeyPatch
     def panics(_path: str) -> None:
         raise PanicException("index out of range")
 
-    monkeypatch.setattr("python_calamine.CalamineWorkbook", type("Book", (), {"from_path": staticmethod(panics)}))
+    monkeypatch.setattr("python_calamine.CalamineWorkbook", type("Book", (), {"from_filelike": staticmethod(panics)}))
     assert "a broken workbook (index out of range)" in refusal(SAMPLES / "yaw.xls")
 
 

@@ -18,13 +18,15 @@ from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map, unturned
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.form import Group, form, screen
+from coeflab.tables.form import Group, screen
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import assigned, with_unit
+from coeflab.tables.parts import Part
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
+from coeflab.tables.several_tables import form_together
 from tests.cli.test_import import without_slopes
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
@@ -475,7 +477,9 @@ def test_a_drag_beside_a_side_force_of_the_body_is_confirmed_with_its_other_read
     assert not proposals(read_raw(file, "table"))[1].note, "with lift beside it, along the flow"
     file.write_text("beta [deg],Drag [N],Side Force [N]\n-4,50,12\n0,48,0\n4,50,-12\n")
     table = read_raw(file, "table")
-    line = next(one for one in form(table, interpreted(table, {}, {}), {}) if one.key == "Drag")
+    line = next(
+        one for one in form_together([Part("", table, "", {})], [interpreted(table, {}, {})], {}) if one.key == "Drag"
+    )
     assert (line.group, line.value, line.pending) == (Group.GRAVE, "drag [N]", True)
     assert "Side Force is Y of the body" in line.why
     assert "-X [N] where x points forward, X [N] where aft" in line.why

@@ -12,14 +12,15 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
-from coeflab.tables.form import form
 from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import Assigned
+from coeflab.tables.parts import Part
 from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, read_in, require_one_datum
 from coeflab.tables.settings_in_files import against_words
+from coeflab.tables.several_tables import form_together
 from coeflab.tables.words.above import words_above
 from coeflab.tables.words.axes import TURN_OF_R
 from coeflab.tables.words.points import POINT_FROM
@@ -211,7 +212,7 @@ def test_words_against_a_proposal_or_a_setting_are_named() -> None:
         known = {"table.centre": Setting(side, "confirmed")}
         found = interpreted(raw, {"R": read_column_map("R [m]"), "Mz": read_column_map("N [N*m]")}, known)
         assert any(e.text.startswith("warning: table.centre") and "line 1" in e.text for e in found.shows)
-        line = next(one for one in form(raw, found, known) if one.key == "table.centre")
+        line = next(one for one in form_together([Part("", raw, "", {})], [found], known) if one.key == "table.centre")
         assert line.why == f'! but line 1: "{words}"'
     assert "table.centre" not in said("r > 0 turns to starboard; positive rudder turns to port")
 

@@ -30,14 +30,7 @@ def arms(incomplete: str) -> list[str]:
 
 
 @options.worded
-def command(
-    *,
-    body: str,
-    to: str,
-    out: Path | None = None,
-    symbols: bool | None = None,
-    json: bool = False,
-) -> None:
+def command(*, body: str, to: str, out: Path | None = None, symbols: bool | None = None, json: bool = False) -> None:
     """Write the equations of motion of a vehicle with an arm as code.
 
     In closed form, by Kane's method: inertia, bias, weight, buoyancy, drag. Needs the package sympy: coeflab[derive].

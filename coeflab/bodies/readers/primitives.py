@@ -60,9 +60,7 @@ FORMS: dict[str, Any] = {
 }  # fmt: skip
 FINS = {"two": 2, "four": 4}
 TURN = takes.Within(
-    lambda turn: (
-        "[roll, pitch, yaw] of at most 360 deg each, a whole turn" if max(map(abs, turn)) > 2.0 * np.pi else ""
-    ),
+    lambda turn: "[roll, pitch, yaw] of at most 360 deg each, a whole turn" if max(map(abs, turn)) > 2.0 * np.pi else ""
 )
 Size = Annotated[takes.Length, takes.ABOVE_ZERO]
 LENGTH = takes.number_in("length")

@@ -69,11 +69,7 @@ class Piece:
         whole = mesh_integrals(vertices, faces)
         a, b, c = (vertices[faces[:, k]] for k in range(3))
         return cls(
-            vertices,
-            np.cross(b - a, c - a) / 2.0,
-            whole.volume,
-            whole.centre,
-            whole.second_moments / whole.volume,
+            vertices, np.cross(b - a, c - a) / 2.0, whole.volume, whole.centre, whole.second_moments / whole.volume
         )
 
     def extents(self, turn: Array) -> Array:

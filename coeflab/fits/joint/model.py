@@ -73,10 +73,7 @@ def predicted(
 
 
 def equations_in_words(
-    parts: Sequence[Component],
-    equations: Sequence[Equation],
-    constraint: Constraint,
-    n_runs: int,
+    parts: Sequence[Component], equations: Sequence[Equation], constraint: Constraint, n_runs: int
 ) -> list[list[str]]:
     """Per component: whether the data stand the equations, how components are weighed, what comes from equations alone."""
     found = freed(

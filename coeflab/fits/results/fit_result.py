@@ -218,6 +218,8 @@ class Sweep:
         Whether all settings have one size, so that they determine neither slope nor curvature.
     symmetry : str
         Declared symmetry by which a sweep of one side is odd or even; empty where both sides were run or none is declared.
+    withdrawn : tuple of (value, U95) or None
+        What a declared symmetry would give that the points rule out.
     by_symmetry : str
         Table whose rows these are, turned by a declared symmetry; empty for rows that were run.
     bias : float
@@ -257,6 +259,7 @@ class Sweep:
     one_size: bool = False
     symmetry: str = ""
     by_symmetry: str = ""
+    withdrawn: tuple[float, float] | None = None
     bias: float = 0.0
 
     @property

@@ -19,8 +19,10 @@ ROUNDING = 1e-9  # of the value: scatter below it is that of the arithmetic
 
 def _speeds(speed: Array) -> int:
     """How many of them differ."""
-    at = np.sort(speed)
-    return 1 + int(np.count_nonzero(np.diff(at) > SAME_SPEED * at[-1])) if len(at) else 0
+    found: list[float] = []
+    for one in np.sort(speed).tolist():  # from the last that counts: many close ones are no single speed
+        found += [one] if not found or one - found[-1] > SAME_SPEED * float(np.max(speed)) else []
+    return len(found)
 
 
 def straight_runs(table: ForceTable, length: float) -> StraightRuns | None:
@@ -55,9 +57,7 @@ def straight_runs(table: ForceTable, length: float) -> StraightRuns | None:
         float(flat.coefficients[0]), float(flat.half_width[0]), slope * float(np.ptp(over)),
         max(abs(slope) * float(np.max(np.abs(over))), float(np.max(np.abs(flat.residuals)))), probability,
     )  # fmt: skip
-    if not made.has_trend:
-        return made
-    return replace(made, random=float(sloped.half_width[0]))
+    return replace(made, random=float(sloped.half_width[0])) if made.has_trend else made
 
 
 def resistance(
@@ -77,7 +77,6 @@ def resistance(
     if not found:
         return (), None
     r = max(found, key=lambda one: len(one.speed))
-    trend = f"; {r.changes}" if r.has_trend else ""
     return found, Coefficient(
         symbol=SYMBOL,
         value=r.value,
@@ -88,7 +87,7 @@ def resistance(
         origin="fit",
         table=r.table,
         campaign=r.campaign,
-        estimator=f"mean of {r.runs}{trend}",
+        estimator=f"mean of {r.runs}" + f"; {r.changes}" * r.has_trend,
         n_points=len(r.speed),
         citation=citation,
     )

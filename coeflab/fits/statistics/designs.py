@@ -36,6 +36,10 @@ class Response:
         Rows that were run.
     odd : bool
         The curve is odd by declaration.
+    spread : callable, optional
+        Covariance (m, m) of the curve at settings (m,), as far as the rows that were run know it.
+    freedom : float
+        Degrees of freedom of ``noise``; infinite where it is known.
     """
 
     curve: Callable[[Array], Array]
@@ -44,12 +48,25 @@ class Response:
     x: Array = field(default_factory=lambda: np.zeros(0))
     y: Array = field(default_factory=lambda: np.zeros(0))
     odd: bool = False
+    spread: Callable[[Array], Array] | None = None
+    freedom: float = np.inf
+
+    def simulated(self, added: Array, draws: int, seed: int, *, known: bool) -> Array:
+        """Readings (draws, m) at the added settings, of the expected curve and noise, or of those that the rows allow unless ``known``."""
+        rng = np.random.default_rng(seed)
+        scatter = rng.normal(0.0, self.noise, (draws, len(added)))
+        if known or self.spread is None:
+            return np.asarray(self.curve(added) + scatter)
+        size, axes = np.linalg.eigh(self.spread(added))
+        root = axes * np.sqrt(np.maximum(size, 0.0))
+        scatter *= np.sqrt(self.freedom / rng.chisquare(self.freedom, (draws, 1)))
+        return np.asarray(self.curve(added) + rng.standard_normal((draws, len(added))) @ root.T + scatter)
 
 
 def predicted_u95(
     response: Response, added: Array, draws: int = FINAL, seed: int = 1, *, deletions: bool = True
 ) -> float:
-    """U95 of the slope once the added settings are run: the median over simulated readings.
+    """U95 of the slope once the added settings are run: the median over simulated readings, of curves and noise that the rows allow.
 
     Infinite where fewer than three settings differ.
 
@@ -60,13 +77,13 @@ def predicted_u95(
     draws, seed : int
         Of the readings' scatter.
     deletions : bool
-        Let one row be wrong, as the estimator does; without it the search is twice as fast.
+        Let one row be wrong, as the estimator does, and curve and noise be unknown; without it the search is twice as fast.
     """
     x = np.concatenate([response.x, np.asarray(added, float)])
     if len(np.unique(np.round(x, 12))) < 3:
         return float("inf")
-    scatter = np.random.default_rng(seed).normal(0.0, response.noise, (draws, len(added)))
-    y = np.hstack([np.tile(response.y, (draws, 1)), response.curve(added) + scatter])
+    read = response.simulated(np.asarray(added, float), draws, seed, known=not deletions)
+    y = np.hstack([np.tile(response.y, (draws, 1)), read])
     return float(np.median(estimate_many(prepare(x, odd=response.odd), y, deletions=deletions).u95))
 
 

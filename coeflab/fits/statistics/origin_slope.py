@@ -5,6 +5,7 @@ A row that does not fit the others is left out and named; the curve comes from t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -168,3 +169,11 @@ def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
     mean, covariance = joint(slope.design, slope.y, slope.weights, at)
     factor = special.stdtrit(len(slope.y) - slope.design.flat, 0.975)
     return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
+
+
+def curve_spread(slope: OriginSlope) -> tuple[Callable[[Array], Array] | None, float]:
+    """Covariance (m, m) of the fitted curve as a function of settings (m,), and the degrees of freedom of the noise; None without a value."""
+    design = slope.design
+    if design is None:
+        return None, np.inf
+    return lambda at: joint(design, slope.y, slope.weights, at)[1][1:, 1:], float(len(slope.y) - design.flat)

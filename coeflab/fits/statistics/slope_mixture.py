@@ -246,13 +246,7 @@ def _specifications(t: Array, even: bool, settings: Index, stated: bool, strips:
 
 
 @remembered(12)  # the components of a sweep share their settings
-def prepare(
-    x: Array,
-    variance: Array | None = None,
-    *,
-    strips: Strips | None = None,
-    odd: bool = False,
-) -> Design:
+def prepare(x: Array, variance: Array | None = None, *, strips: Strips | None = None, odd: bool = False) -> Design:
     """Factorise a sweep.
 
     Parameters

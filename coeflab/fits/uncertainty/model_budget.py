@@ -42,9 +42,7 @@ from coeflab.tables.force_table import ForceTable
 if TYPE_CHECKING:
     from coeflab.core.types import Array
     from coeflab.fits.results.fitted_model import FittedModel
-    from coeflab.fits.uncertainty.budget import (
-        Budget,
-    )
+    from coeflab.fits.uncertainty.budget import Budget
     from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
     from coeflab.fits.uncertainty.propagation import Propagated
     from coeflab.law.coefficient import Coefficient

@@ -23,12 +23,7 @@ def tunings(incomplete: str) -> list[str]:
 
 
 @options.worded
-def command(
-    *,
-    plan: Path,
-    out: Path | None = None,
-    json: bool = False,
-) -> None:
+def command(*, plan: Path, out: Path | None = None, json: bool = False) -> None:
     """Tune numbers of a parameter file to measured steady turns.
 
     With priors and bounds. Output-error least squares through the vehicle's own equations. Says which parameters the data do not determine, and

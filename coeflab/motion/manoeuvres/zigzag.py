@@ -70,10 +70,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         )
         standing, thrust = approach.propulsion(vehicle, float(nu[0]))
         sides = {"dr": angle}, {"dr": -angle}
-        words = (
-            thrust,
-            f"first rudder {np.degrees(angle):+.4g} deg, to starboard by the coefficients of the file",
-        )
+        words = (thrust, f"first rudder {np.degrees(angle):+.4g} deg, to starboard by the coefficients of the file")
     phases = tuple(
         Phase(f"execute {k + 1}", sides[k % 2], o.longest, Until("heading", k % 2 == 0, (-1.0) ** k * o.execute))
         for k in range(o.executes)

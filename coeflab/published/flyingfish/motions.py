@@ -227,10 +227,7 @@ def third(fish: model.FlyingFish) -> ComparedTable:
     body = left(np.array([0.5, 0.0]))
     return PAPER.table(
         "third",
-        (
-            Row("motion 3", "speed over the ground", "m/s", 0.5, over),
-            Row("motion 3", "climb", "m/s", 0.0, climb),
-        ),
+        (Row("motion 3", "speed over the ground", "m/s", 0.5, over), Row("motion 3", "climb", "m/s", 0.0, climb)),
         ahead=body[0],
         down=body[1],
     )

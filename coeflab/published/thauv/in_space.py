@@ -23,15 +23,7 @@ from coeflab.fits.glide_polar import series
 from coeflab.formats.imported_file import Law, Stated, imported_file
 from coeflab.glider.glide import GlideRun, steady_glides, steady_spirals
 from coeflab.glider.glider import Glider, GliderPhase
-from coeflab.glider.space import (
-    SpaceBody,
-    Spiral,
-    cruise,
-    out_of_balance,
-    pushed,
-    steady_spiral,
-    unexplained_in_space,
-)
+from coeflab.glider.space import SpaceBody, Spiral, cruise, out_of_balance, pushed, steady_spiral, unexplained_in_space
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.simulators import SIMULATORS

@@ -235,13 +235,8 @@ def _with_room(table: Table) -> Table:
     if len(kept_whole) == len(table.headers) or not any(len(c) > WHOLE for row in table.rows for c in row):
         return table
     once = [i for i in range(len(table.headers)) if i not in kept_whole]
-    return replace(
-        table,
-        headers=tuple(table.headers[i] for i in kept_whole),
-        rows=tuple(tuple(row[i] for i in kept_whole) for row in table.rows),
-        left=frozenset(n for n, i in enumerate(kept_whole) if i in table.left),
-        notes=(*table.notes, *(f"{table.headers[i]}, in every row: {table.rows[0][i] or 'none'}." for i in once)),
-    )
+    more = (f"{table.headers[i]}, in every row: {table.rows[0][i] or 'none'}." for i in once)
+    return replace(table.only(kept_whole), notes=(*table.notes, *more))
 
 
 def _letters(table: Table) -> int:

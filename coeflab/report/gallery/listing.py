@@ -25,11 +25,7 @@ from coeflab.report.printable import shortened
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.stability import INDICES, sense, stability
 
-SERVED = {
-    ".html": "text/html; charset=utf-8",
-    ".pdf": "application/pdf",
-    ".json": "application/json",
-}
+SERVED = {".html": "text/html; charset=utf-8", ".pdf": "application/pdf", ".json": "application/json"}
 
 
 def key_of(relative: str) -> str:

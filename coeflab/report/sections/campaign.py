@@ -39,6 +39,7 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
+from coeflab.report.tables import sweeps as sweep_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.lines import MEANING
@@ -197,7 +198,7 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
         figures.append(sweep_figure(sweep, f"{place}-data"))
     if sweep.forms:
         figures.append(estimator_figure(sweep, published, f"{place}-estimators"))
-    shown = filled(tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep))
+    shown = filled(sweep_tables.sensitivity(sweep), sweep_tables.left_out(sweep), sweep_tables.estimators(sweep))
     return Section(place, name, tuple(text), shown, tuple(figures))
 
 

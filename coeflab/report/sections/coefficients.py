@@ -12,6 +12,7 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
+from coeflab.report.tables import force_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.uncertainty import SET, sentences_on_open
@@ -111,7 +112,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     notes = [
         in_one_line(zero), form_not_assessed(shown), shorter_ranges(shown, tied),
         *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
-        tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
+        force_tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
     headers = ("", "value", "U95", "U95 %", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"

@@ -12,8 +12,8 @@ from coeflab.report.acceptance import on_predictions
 from coeflab.report.document import Section, Topic
 from coeflab.report.figures.first_page import share_text
 from coeflab.report.sections.estimates import verdict_of_shape
-from coeflab.report.sections.parameter_file import in_words
-from coeflab.report.tables import results as tables
+from coeflab.report.sections.stability import in_words
+from coeflab.report.tables import comparisons
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
 from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
@@ -54,8 +54,8 @@ def _re_analyses(study: Study) -> list[str]:
     out = [f"{_agree(good, len(judged), 'coefficient')} with the authors' own evaluation of their data, within U95."]
     if failed:
         out.append(in_sentences("Beyond U95, a failure: ", [_named(c) for c in failed], join=listed))
-    if wide := [f"{_named(c)} ({share_text(tables.weight(c))})" for c in judged if tables.is_weak(c)]:
-        out.append(in_sentences(f"Weak, as {tables.WEAK}: ", wide, join=listed))
+    if wide := [f"{_named(c)} ({share_text(comparisons.weight(c))})" for c in judged if comparisons.is_weak(c)]:
+        out.append(in_sentences(f"Weak, as {comparisons.WEAK}: ", wide, join=listed))
     if len(ours) > len(judged):
         out.append(in_sentences("No verdict without U95: ", [_named(c) for c in ours if c.passed is None], join=listed))
     return [*out, SAME_DATA]

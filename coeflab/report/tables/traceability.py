@@ -8,7 +8,7 @@ from coeflab.core.axes import point_in_words
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
-from coeflab.report.tables.results import unused_rows
+from coeflab.report.tables.force_tables import unused_rows
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 

@@ -134,16 +134,7 @@ def _estimates(
             x, y, se, _, _ = collect_points(rows, component, length, np.zeros(len(table)))
             index = rows.rows[table.usable[component][rows.rows]]
             if len(x) >= FEWEST and np.any(x):
-                yield (
-                    name,
-                    component,
-                    component + variable,
-                    index,
-                    x,
-                    y,
-                    se,
-                    origin_slope.estimate(x, y, se),
-                )
+                yield (name, component, component + variable, index, x, y, se, origin_slope.estimate(x, y, se))
 
 
 def _value(value: float, half: float) -> str:

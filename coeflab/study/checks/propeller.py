@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import as_check
 from coeflab.tables.force_table import AT_REST, DRIVEN
-from coeflab.tables.levels import levels_of
+from coeflab.tables.levels import APART, levels_of
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check
@@ -61,7 +61,7 @@ def self_propulsion(table: ForceTable) -> Iterator[Finding]:
         rows = np.flatnonzero(still & (level == k))
         rows = rows[np.argsort(rate[rows], kind="stable")]
         for a, b in pairwise(rows):
-            if force[a] < 0.0 <= force[b] and rate[b] > rate[a]:
+            if force[a] < 0.0 <= force[b] and rate[b] > (1.0 + APART) * rate[a]:
                 share = -force[a] / (force[b] - force[a])
                 ratio = table.propeller.get("J", np.full(len(table), np.nan))
                 advance = float(ratio[a] + share * (ratio[b] - ratio[a]))

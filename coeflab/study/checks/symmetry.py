@@ -64,7 +64,8 @@ def check(study: Study) -> Sequence[Check]:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    found = [as_check("symmetry", f) for f in biases(study)]
+    ruled_out = [f for fit in study.fits for f in fit.findings if f.code == "symmetry.withdrawn"]
+    found = [as_check("symmetry", f) for f in (*biases(study), *ruled_out)]
     return [c for s in odd if (c := _intercept(s)) is not None] + found + across
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +15,9 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
-from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS, MOTIONS
+from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import FORCES, PROPELLER, WIND
+from coeflab.tables.column_map import EXAMPLES, FORCES, ROLES, ColumnMap
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
@@ -27,58 +26,29 @@ from coeflab.tables.vocabulary import did_you_mean, one_name
 summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"
 citations = ("sname1950",)
 
-ANGLES = ("alpha", "beta")
 UNCERTAIN, POINT = "uncertain", "point"
-EXAMPLES = {
-    **dict.fromkeys(("X", "Y", "Z", *WIND), "N"),
-    **dict.fromkeys(MOMENTS, "N*m"),
-    **dict.fromkeys((*ANGLES, *CONTROLS), "deg"),
-    **dict.fromkeys((*LINEAR, "U"), "m/s"),
-    **dict.fromkeys(ANGULAR, "rad/s"),
-    "R": "m",
-    "density": "kg/m^3",
-    "rps": "rps",
-    "J": "-",
-    "thrust": "N",
-}
-PLAIN = {"U": "speed", "R": "length", "density": "density"}  # roles of their own, by dimension
+OWN = tuple(name for name, role in ROLES.items() if role != "word" and name not in FORCES)
 
 
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """What a column is: its role, dimension, plain name, and whether it is nondimensional."""
-
-    role: str
-    dimension: str
-    name: str
-    primed: bool
-
-
-def _kind(name: str) -> _Kind | None:
-    """The kind of a column by its name, None for an unknown one."""
+def _kind(name: str) -> ColumnMap | None:
+    """What a column is by its name, None for an unknown one."""
     primed = name.endswith("'")
     plain = one_name(name.removesuffix("'"))
     force = plain.removeprefix("se_")
     if force in FORCES:
-        role = "error" if plain != force else "force"
-        return _Kind(role, "moment" if force in MOMENTS else "force", force, primed)
-    if plain in MOTIONS:
-        return _Kind("velocity", "speed" if plain in LINEAR else "rate", plain, primed)
-    if primed:
-        return None
-    if plain in ANGLES:
-        return _Kind("angle", "angle", plain, primed)
-    if plain in PROPELLER:
-        return _Kind("propeller", PROPELLER[plain], plain, primed)
-    if plain in CONTROLS:
-        return _Kind("control", "angle", plain, primed)
-    return _Kind(plain, PLAIN[plain], plain, primed) if plain in PLAIN else None
+        return ColumnMap(force, primed=primed, error=plain != force)
+    return ColumnMap(plain, primed=primed) if plain in (MOTIONS if primed else OWN) else None
 
 
-def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
+def _factor(header: Header, kind: ColumnMap, cells: Cells) -> float:
     """SI factor of a column, errors placed at its header."""
     line = cells.first_line - 1
-    unit = require_unit(header, cells.file, line, f"{header.name} [{'-' if kind.primed else EXAMPLES[kind.name]}]")
+    unit = require_unit(
+        header,
+        cells.file,
+        line,
+        f"{header.name} [{'-' if kind.primed else 'rps' if kind.name == 'rps' else EXAMPLES[kind.dimension]}]",
+    )
     try:
         return factor(unit, "none" if kind.primed else kind.dimension)
     except UnitsError as why:
@@ -92,7 +62,7 @@ def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
         ) from None
 
 
-def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
+def _values(cells: Cells, header: Header, kind: ColumnMap) -> Array:
     with np.errstate(over="ignore"):
         values = cells.numbers(header.name) * _factor(header, kind, cells)
     wild = np.abs(values) > LARGEST_NUMBER
@@ -106,7 +76,7 @@ def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
-    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *CONTROLS, *FORCES, *PROPELLER))
+    known = ", ".join((*OWN, *CONTROL_COLUMNS, *FORCES))
     near = did_you_mean(header.name)
     return InputError(
         f"the unknown column {shown(header.text)}",
@@ -120,12 +90,10 @@ def _unknown(cells: Cells, header: Header) -> InputError:
 
 def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
     """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
-    given: dict[str, dict[str, Array]] = {
-        r: {} for r in ("angle", "control", "error", "force", "velocity", "propeller", *PLAIN)
-    }
+    given: dict[str, dict[str, Array]] = {role: {} for role in (*ROLES.values(), "error")}
     labels: dict[str, list[str]] = {}
     headers: dict[str, str] = {}
-    primes: list[tuple[_Kind, Array]] = []
+    primes: list[tuple[ColumnMap, Array]] = []
     for header in cells.headers:
         if header.name in table.ignore:
             continue
@@ -137,8 +105,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         kind = _kind(header.name)
         if kind is None:
             raise _unknown(cells, header)
-        name = f"se_{kind.name}" if kind.role == "error" else kind.name
-        if name in headers:
+        if (name := kind.plain) in headers:
             raise InputError(
                 f"{headers[name]} and {header.text}", "one of them", file=cells.file, line=cells.first_line - 1,
                 column=header.text,
@@ -150,11 +117,13 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         else:
             given[kind.role][kind.name] = values
     shares = {kind.name: values for kind, values in primes}
-    speed = speed_of_rows(given["U"].get("U"), given["velocity"], shares, campaign, len(cells), bool(given["angle"]))
+    speed = speed_of_rows(
+        given["speed"].get("U"), given["velocity"], shares, campaign, len(cells), bool(given["angle"])
+    )
     density = given["density"].get("density")
     for kind, values in primes:
         given[kind.role][kind.name] = values * campaign.scaling.unit(
-            WIND.get(kind.name, kind.name), campaign.conditions.density if density is None else density, speed
+            kind.component, campaign.conditions.density if density is None else density, speed
         )
     return Columns(
         file=cells.file,
@@ -170,7 +139,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         labels=labels,
         doubtful=_doubtful(cells, labels.get(UNCERTAIN, [""] * len(cells)), headers),
         row_labels=tuple(labels.get(POINT, ())),
-        radius=given["R"].get("R"),
+        radius=given["radius"].get("R"),
         density=density,
         propeller=given["propeller"],
     )

@@ -10,6 +10,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from io import BytesIO
 from lzma import LZMAError
 from pathlib import Path
 from statistics import median
@@ -317,7 +318,9 @@ def _sheets(path: Path, only: str = "") -> dict[str, list[list[Value]]]:
     import python_calamine
 
     try:
-        with python_calamine.CalamineWorkbook.from_path(str(path)) as book:
+        with python_calamine.CalamineWorkbook.from_filelike(
+            BytesIO(whole_bytes(path, SHEET_BYTES))
+        ) as book:  # a name may lie
             out: dict[str, list[list[Value]]] = {}
             wanted = {only} & set(book.sheet_names)
             tables = [m.name for m in book.sheets_metadata if m.typ == python_calamine.SheetTypeEnum.WorkSheet]

@@ -247,7 +247,7 @@ def recognises(path: Path) -> bool:
         return True
     except InputError:
         return False
-    least = dialect.width / 2 + (0.1 if dialect.delimiter == " " else 0.0)
+    least = len({*dialect.numbers} | dialect.words) / 2 + (0.1 if dialect.delimiter == " " else 0.0)
     return dialect.width > 1 and len(dialect.numbers) >= least
 
 

@@ -1,115 +1,39 @@
-"""Stability of straight motion with controls fixed: indices with U95, roots against speed, critical speed.
-
-Eigenvalues of small motions against speed: real parts above, imaginary parts below where there are any.
-
-Simulated manoeuvres in a report: figures with status, track and histories as far as the file determines them.
-
-Exports in a report: what every target makes of a parameter file, and what it loses.
-"""
+"""Stability of straight motion with controls fixed: indices with U95, roots against speed, critical speed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
-from coeflab.core.types import Array
 from coeflab.core.wording import grouped, in_sentences, listed
-from coeflab.formats import loss_tables
-from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
-from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.motion.manoeuvre import Simulation
+from coeflab.law.symbols import primed
 from coeflab.motion.steady_state import RootLocus, root_locus
-from coeflab.report.document import Figure, Section, Series
-from coeflab.report.figures.motion import motion_figures
-from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
-from coeflab.report.figures.series import STYLES, curve, numbers, tagged
-from coeflab.report.figures.svg import settings, svg_text
+from coeflab.report.document import Figure, Section
+from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table
-from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
-from coeflab.vehicle.inertia import against_computed
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
 from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
 
-UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
-IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
-ACROSS = "speed  [m/s]"
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
-
-
-def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
-    """Roots of one plane over speed.
-
-    Parameters
-    ----------
-    locus : RootLocus
-    name : str
-        Of the parameter file.
-    anchor : str
-    """
-    waves = bool(np.any(locus.roots.imag != 0.0))
-    bottom = BOTTOM + (LOWER + GAP if waves else 0.0)
-    title = f"{name}: roots of straight motion in {IN_PLANE[locus.index]}"
-    across = (0.0, float(locus.speed[-1]))
-    description = f"{_said('Real', locus.roots.real)}{_said('Imaginary', locus.roots.imag) if waves else ''}"
-    with settings():
-        figure = drawing(bottom + UPPER + 8.0 + LEGEND)
-        real = np.append(locus.roots.real, 0.0)
-        main = panel(
-            figure, bottom, UPPER, across=across, up=limits(real, 0.08) or (-1.0, 1.0), name_up="real part  [1/s]",
-            name_across="" if waves else ACROSS,
-        )  # fmt: skip
-        handles = _lines(main, locus, locus.roots.real)
-        panels = [numbers(main, _series(locus, locus.roots.real), ACROSS, "real part  [1/s]")]
-        if waves:
-            up = limits(locus.roots.imag, 0.1) or (-1.0, 1.0)
-            lower = panel(
-                figure, BOTTOM, LOWER, across=across, up=up, name_up="imag.  [1/s]", name_across=ACROSS, most_up=3
-            )
-            _lines(lower, locus, locus.roots.imag)
-            panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
-        legend(figure, handles, bottom + UPPER)
-        svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, "" if locus.index == "G_h" else locus.statement, description, tuple(panels))
-
-
-def _lines(axes: Axes, locus: RootLocus, values: Array) -> list[Any]:
-    axes.axhline(0.0, color=COLOURS["ink"], linewidth=0.8, zorder=1)
-    if locus.critical is not None:
-        axes.axvline(locus.critical, color=COLOURS["ink"], linewidth=0.9, linestyle=(0, (1.0, 2.0)), zorder=1)
-    handles: list[Any] = []
-    for i, style in zip(range(values.shape[1]), STYLES, strict=False):
-        look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.4}
-        handles += tagged(axes.plot(locus.speed, values[:, i], label=f"root {i + 1}", zorder=2.5, **look), f"root{i}")
-    return handles
-
-
-def _series(locus: RootLocus, values: Array) -> list[Series]:
-    return [curve(f"root{i}", f"root {i + 1}", locus.speed, values[:, i]) for i in range(values.shape[1])]
-
-
-def _said(part: str, values: Array) -> str:
-    ends = ", ".join(f"{low:.3g} to {high:.3g}" for low, high in zip(values[0], values[-1], strict=True))
-    return f"{part} parts from the slowest to the fastest speed, 1/s: {ends}. "
-
-
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
     "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
     "U95 comes from that of the derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
 )
+
+
 TURNING_TEXT = (
     "r'/dr = (Nv' Ydr' - Yv' Ndr') / [Yv' (Nr' - xG' m') - Nv' (Yr' - m')] is the turning ability of the rudder."
 )
+
+
 REVERSAL_TEXT = "U_c is the critical speed of the stern planes: slower, planes to dive make it rise. U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]."
 
 
@@ -364,208 +288,3 @@ def _pairs(values: NDArray[np.complex128]) -> str:
         elif v.imag == 0.0:
             out.append(number(v.real, 3))
     return "; ".join(out)
-
-
-SIMULATED = ("Extrapolated: the motion leaves the range of the data.",)
-WITHOUT_U95 = (
-    "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
-)
-SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
-
-
-def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
-    """One section, or none where the plan asks for no manoeuvre."""
-    if not study.manoeuvres:
-        return ()
-    files = {p.name: p for p in study.parameter_files.values()}
-    each = tuple(_manoeuvre(m, f"manoeuvre-{i}", files.get(m.vehicle.name)) for i, m in enumerate(study.manoeuvres))
-    return (Section("manoeuvres", "Simulated manoeuvres", (*SIMULATED, without_u95(study)), subsections=each),)
-
-
-def without_u95(study: Study) -> str:
-    """Why the quantities of the manoeuvres have no U95, or that there is none to have one."""
-    if drawn := _drawn(study):
-        names = list(dict.fromkeys(result.manoeuvre.name.replace("_", " ") for result in study.manoeuvres))
-        single = [n for n in names if n not in drawn]
-        rest = f" The {listed(single)} is computed once: coeflab uncertainty FILE gives intervals." if single else ""
-        members = ", ".join(f"{name} {count}" for name, count in drawn.items())
-        return f"The 95 % ranges on the first page are of draws of the coefficients: {members}.{rest}"
-    if any(f.value is not None for result in study.manoeuvres for f in result.figures):
-        return WITHOUT_U95
-    every = listed(list(dict.fromkeys(result.manoeuvre.name.replace("_", " ") for result in study.manoeuvres)))
-    return f"{every[:1].upper()}{every[1:]} could not be computed, so there is no U95."
-
-
-def _drawn(study: Study) -> dict[str, int]:
-    """Manoeuvres of a vehicle from its shape that were repeated with random coefficients, and how often."""
-    carried = study.shape.carried if study.shape is not None else ()
-    return {
-        c.question.manoeuvre.replace("_", " "): c.question.members
-        for c in carried
-        if any(s.low is not None for s in c.spreads)
-    }
-
-
-def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
-    """Which rotary derivatives of a motion that no data cover are from literature, a sentence; empty where none is."""
-    covered = {c.variable.removesuffix("'") for c in made.vehicle.covered}
-    wanted = [f"{c}{r}" for r, components in (("r", "YN"), ("q", "ZM")) if r in made.vehicle.free for c in components]
-    found = [parameters.coefficient(s) for s in wanted if s[-1] not in covered] if parameters else []
-    stated = [primed(c.symbol) for c in found if c is not None and c.origin == "literature" and c.value is not None]
-    return f" {listed(stated)} are published values, not fits." if stated else ""
-
-
-def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
-    """Its figures and two drawings; in the appendix what was assumed, the other drawings, and figures without any value."""
-    name = made.manoeuvre.name.replace("_", " ")
-    title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
-    text = []
-    if made.undetermined:
-        text.append(
-            f"Nothing is drawn: the data do not support this motion. {made.undetermined}{_stated_rates(made, parameters)}"
-        )
-    if made.trajectory.why:
-        text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
-    length = made.vehicle.length
-    drawn = motion_figures(made.trajectory.until(made.determined), anchor, length, title)
-    shown = tuple(f for f in drawn if f.anchor.removeprefix(f"{anchor}-") in SHOWN) or drawn[:2]
-    table = (figure_table(made.figures, title, length),)
-    is_empty = bool(text) and all(f.value is None for f in made.figures)
-    if is_empty:
-        text.append(f"No value: {listed([f.name for f in made.figures])}.")
-    more = Section(
-        f"{anchor}-more",
-        "Assumed and found",
-        tuple(f"{s[:1].upper()}{s[1:]}." for s in made.statements),
-        table if is_empty else (),
-        figures=tuple(f for f in drawn if f not in shown),
-        appendix=True,
-    )
-    return Section(anchor, title, tuple(text), () if is_empty else table, shown, (more,))
-
-
-EXPORTED = (
-    "Largest difference: forces and accelerations of the written file by the simulator's own equations against those of the parameter file.",
-)
-
-
-def export_sections(study: Study) -> tuple[Section, ...]:
-    """One section, or none where the plan asks for no export."""
-    if not study.exports and not study.refused:
-        return ()
-    each = tuple(
-        Section(
-            f"export-{i}",
-            f"{result.parameters} for {result.target}",
-            tables=_tables(result.target, result.loss),
-            appendix=True,
-        )
-        for i, result in enumerate(study.exports)
-        if result.loss is not None
-    )
-    refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
-    text = (*EXPORTED, *refused, *added_masses(study))
-    return (Section("exports", "Exports", text, (summary(study),), subsections=each),)
-
-
-def added_masses(study: Study) -> tuple[str, ...]:
-    """Of every parameter file that is exported, where its added mass rests on a mean or differs from the computed one."""
-    waters = {result.parameters: result.loss.water for result in study.exports if result.loss is not None}
-    files = {p.name: p for p in study.parameter_files.values()}
-    each = {name: [*w.warnings, against_computed(files[name]) if name in files else ""] for name, w in waters.items()}
-    named = {name: ". ".join(f"{w[:1].upper()}{w[1:]}" for w in words if w) for name, words in each.items()}
-    return tuple(
-        f"Added mass of {name} for stability, motions and exports: {words}." for name, words in named.items() if words
-    )
-
-
-def _tables(target: str, loss: Loss) -> tuple[Table, ...]:
-    points = loss_tables.at_points(loss.at_points, f"Force law of {target}", controls=False)
-    return (loss_tables.forces(loss), *((points,) if points.rows else ()))
-
-
-def _sentence(refused: Refused) -> str:
-    why = refused.why
-    return f"{refused.parameters} for {refused.target}. Found {why.found}; expected {why.expected}."
-
-
-KINDS = {
-    Kind.NOT_HELD: "a term that the target's force law does not have",
-    Kind.MISSING: "a number that the target needs and the parameter file does not state",
-    Kind.REPLACED: "a number of the parameter file in whose place the target gets another",
-    Kind.MISMATCH: "a number that the target understands in another way",
-    Kind.LEFT_OUT: "a term with which the target would drive what the file damps, or damp what it drives",
-}
-
-
-ACCELERATIONS = {
-    "measured": "the file's acceleration derivatives; gaps are filled with computed added mass",
-    "computed": "computed added mass only",
-}
-
-
-def summary(study: Study) -> Table:
-    """One row an export, those that were refused last."""
-    rows = tuple(
-        (result.parameters, result.target, _verdict(result), _worst(result), _accelerations(result), _place(result))
-        for result in study.exports
-    )
-    rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
-    headers = ("parameter file", "target", "loss", "largest difference in %", "added mass", "files")
-    lossy = [result.loss for result in study.exports if result.loss is not None]
-    kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
-    notes = (
-        *(
-            ("accepted: the study's plan allows this loss, so the file is written.",)
-            if any("accepted" in row[2] for row in rows)
-            else ()
-        ),
-        *(f"{kind}: {KINDS[kind]}." for kind in Kind if kind in kinds),
-        *(
-            f"added mass {used}: {ACCELERATIONS[used]}."
-            for used in ACCELERATIONS
-            if any(row[4] == used for row in rows)
-        ),
-        *(["files: each row also has one loss report, .loss.txt."] if lossy else []),
-        "Largest difference in %: export minus parameter file, of any force or acceleration, divided by its largest value. A "
-        "component below 1 % of the largest force or moment is too small to judge. "
-        f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
-    )
-    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
-
-
-def _accelerations(made: Export) -> str:
-    return ABSENT if made.loss is None else made.loss.water.used
-
-
-def _verdict(made: Export) -> str:
-    if made.loss is None:
-        return "none: tables of the file's own values"
-    if made.lossless:
-        return "none"
-    return f"accepted: {loss_tables.counted(made.loss) or 'force or acceleration differs'}"
-
-
-def _worst(made: Export) -> str:
-    if made.loss is None:
-        return ABSENT
-    name, worst = made.loss.furthest
-    small = made.loss.too_small
-    if name not in small:
-        return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
-    shares = {c: float(x) for c, x in zip(COMPONENTS, np.nan_to_num(made.loss.relative), strict=True) if c not in small}
-    if made.loss.accelerations is not None:
-        i, share = made.loss.accelerations.furthest
-        shares[f"d{MOTIONS[i]}/dt"] = share
-    name = max(shares, key=lambda c: shares[c])
-    rest = (
-        f"{loss_tables.percent(shares[name])} ({name})"
-        if shares[name] > LOSSLESS
-        else loss_tables.percent(shares[name])
-    )
-    return f"{rest}; {', '.join(small)} too small to judge"
-
-
-def _place(made: Export) -> str:
-    names = ", ".join(n for n in sorted(made.files) if made.loss is None or not n.endswith(".loss.txt"))
-    return f"{made.folder}/: {names}" if made.folder else names

@@ -1,0 +1,272 @@
+"""Kinds of files that thirty public repositories held: rows of units, names over a rule, an index, taps, balances. All remade here."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from coeflab.cli import app
+from coeflab.core.errors import InputError
+from coeflab.fits.rows.straight_runs import _speeds
+from coeflab.tables.column_map import read_column_map
+from coeflab.tables.imported import _table
+from coeflab.tables.level_columns import slopes_by_idle_columns
+from coeflab.tables.mapping import assigned, without_a_setting
+from coeflab.tables.parts import read_parts
+from coeflab.tables.proposals import named_as, proposals
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.reading import importer_of, read_raw
+from coeflab.tables.settings import Setting
+from coeflab.tables.several_tables import form_together, interpreted_together
+
+pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
+
+ANGLES = (-4.0, -2.0, 0.0, 2.0, 4.0)
+POLAR = [(a, 0.1 * a, 0.02 + 0.001 * a * a, -0.01 * a) for a in ANGLES]
+
+
+def lines(*head: str, rows: list[str]) -> str:
+    return "\n".join([*head, *rows]) + "\n"
+
+
+def texts(path: Path, text: str) -> dict[str, str]:
+    """What is proposed of the columns of a text, by their names."""
+    path.write_text(text)
+    raw = read_raw(path, importer_of(path))
+    return {c.name: p.text for c, p in zip(raw.columns, proposals(raw), strict=True)}
+
+
+def test_a_row_of_units_may_hold_slashes_numbers_and_nothing(tmp_path: Path) -> None:
+    """A balance's file was no table: / for no unit, places of taps among the units, columns of tabs behind the last name."""
+    rows = [
+        f"{i}\t{a}\t{cd:.4f}\t{cl:.4f}\t{cm:.4f}\t21.5\t54.2\t0.{i}\t-0.{i}\t\t\t\t\t"
+        for i, (a, cl, cd, cm) in enumerate(POLAR, 1)
+    ]
+    head = (
+        "Run_nr\tAlpha\tCD\tCL\tCm\tT\tV\tCp_001\tCp_002\t\t\t\t\t",
+        "/\tdegrees\t/\t/\t/\tdegr. C\tm/s\t100.00\t95.20\t\t\t\t\t",
+    )
+    found = texts(tmp_path / "corr.txt", lines(*head, rows=rows))
+    assert found["Alpha"] == "alpha [deg]"
+    assert found["Run_nr"] == "point"
+    assert (found["T"], found["V"]) == ("ignore", "U [m/s]")
+    assert found["CL"].startswith("lift [coefficient")
+    raw = read_raw(tmp_path / "corr.txt", "table")
+    assert [c.unit for c in raw.columns if c.name.startswith("Cp")] == ["", ""]
+    blank = texts(tmp_path / "blanks.csv", lines(*head, rows=rows).replace("\t", " ").replace("degr. C", "degr.C"))
+    assert blank["Alpha"] == "alpha [deg]"
+
+
+def test_a_row_of_data_is_no_row_of_units(tmp_path: Path) -> None:
+    """One word that is a unit by chance, or numbers beside one unit, make no units of data."""
+    raw = texts(tmp_path / "t.csv", "alpha,CL,CD,m\n-2,-0.2,0.02,m\n0,0,0.02,m\n2,0.2,0.02,m\n")
+    assert raw["alpha"] == "alpha [deg]"
+    assert len(read_raw(tmp_path / "t.csv", "table")) == 3
+
+
+def test_names_stand_over_the_strokes_of_a_rule(tmp_path: Path) -> None:
+    """ "Top Xtr Bot Xtr" with single blanks is two columns, as the rule below says; without the rule it was refused."""
+    rows = [f" {a:7.3f} {cl:8.4f} {cd:9.5f} {cm:8.4f}  0.8011  0.0271" for a, cl, cd, cm in POLAR]
+    head = (
+        "XFLR5 v6.09",
+        "",
+        "  alpha     CL        CD        Cm    Top Xtr Bot Xtr",
+        " ------- -------- --------- -------- ------- -------",
+    )
+    found = texts(tmp_path / "polar.txt", lines(*head, rows=rows))
+    assert list(found) == ["alpha", "CL", "CD", "Cm", "Top Xtr", "Bot Xtr"]
+    assert found["Bot Xtr"] == "ignore"
+
+
+def test_two_rows_of_names_are_both_read(tmp_path: Path) -> None:
+    """Of long names and symbols only the symbols counted, so that D and C had no known name and Run none at all."""
+    head = ("Run,Speed,Drift angle,Drag,Side force,Yaw moment", ",U,beta,D,C,Mz", "-,m/s,deg,kN,kN,kNm")
+    path = tmp_path / "t.csv"
+    found = texts(path, lines(*head, rows=[f"{i},2,{a},0.1,{-0.01 * a},{0.02 * a}" for i, a in enumerate(ANGLES)]))
+    assert found == {
+        "Run": "point", "Speed: U": "U [m/s]", "Drift angle: beta": "beta [deg]", "Drag: D": "drag [kN]", "Side force: C": "Y [kN]", "Yaw moment: Mz": "N [kNm]",
+    }  # fmt: skip
+    assert "lines 1 and 2: both name the columns" in read_raw(path, "table").remarks
+    units = texts(path, lines("Yaw,Drag,Lift", "what,lb / N,lb / N", rows=[f"{a},1,{a}" for a in ANGLES]))
+    assert "drag [N]" not in units.values(), "a row of units of two systems is no second name"
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("Angle of drift", "beta"), ("drift ang", "beta"), ("Lift coefficient", "lift"), ("Coefficient of drag", "drag"), ("lift_coeff", "lift"),
+        ("Pitching moment coefficient", "M"), ("Force in Y", "Y"), ("rate of turn", "r"), ("alfa", "alpha"), ("Leeway", "beta"), ("Cln", "N"),
+        ("yaw rate coefficient", ""), ("lift to drag", ""), ("pressure coefficient", ""), ("moment of inertia", ""), ("run angle", ""),
+    ],
+)  # fmt: skip
+def test_words_of_a_name_in_another_order_or_cut_short(name: str, meant: str) -> None:
+    assert named_as(name) == meant
+
+
+def test_a_coefficient_in_words_is_a_pure_number(tmp_path: Path) -> None:
+    found = texts(
+        tmp_path / "t.csv",
+        lines("AoA (deg),Lift coefficient,Drag coefficient", rows=[f"{a},{cl},{cd}" for a, cl, cd, _ in POLAR]),
+    )
+    assert found["Lift coefficient"] == "lift [coefficient A=?]"
+
+
+def test_an_index_counts_the_rows_and_is_asked_of_nobody(tmp_path: Path) -> None:
+    """Frames that pandas wrote begin with a column without a name; joined ones count again."""
+    rows = [f"{i % 3},{a},{cl},{cd}" for i, (a, cl, cd, _) in enumerate(POLAR)]
+    assert texts(tmp_path / "a.csv", lines(",alpha,CL,CD", rows=rows))["column 1"] == "label"
+    plain = [f"{i},{a},{cl},{cd}" for i, (a, cl, cd, _) in enumerate(POLAR)]
+    assert texts(tmp_path / "b.csv", lines(",alpha,CL,CD", rows=plain))["column 1"] == "point"
+    setting = [f"{10 * i},{a},{cl},{cd}" for i, (a, cl, cd, _) in enumerate(POLAR)]
+    assert texts(tmp_path / "c.csv", lines(",alpha,CL,CD", rows=setting))["column 1"] == ""
+
+
+def test_v_is_the_speed_of_a_resistance_test_and_fr_a_froude_number(tmp_path: Path) -> None:
+    found = texts(
+        tmp_path / "r.csv",
+        lines(";V [knots];Fr [-];RT [kN];CF [10-3]", rows=[f"{i};{10 + i}.0;0.2{i};9{i}.3;1.7" for i in range(5)]),
+    )
+    assert (found["V"], found["Fr"], found["RT"]) == ("U [knots]", "ignore", "drag [kN]")
+    sway = texts(tmp_path / "s.csv", lines("V [m/s],X [N],Y [N],N [N m]", rows=[f"{a},1,{a},{a}" for a in ANGLES]))
+    assert sway["V"] == "", "beside Y and N it may be a sway velocity"
+
+
+def test_coefficients_along_the_flow_leave_forces_of_the_body_out(tmp_path: Path) -> None:
+    """A balance writes both: CL and CD by the tunnel, Fx ... Mz by its own axes, Ct and Cn turned by the angle."""
+    head = "Alpha [deg],CL,CD,Cm,Cn,Ct,Fx [N],Fz [N],My [Nm],M"
+    rows = [f"{a},{cl},{cd},{cm},{cl + 0.001},{0.01 - cd},{9 * cd},{9 * cl},{9 * cm},0.127" for a, cl, cd, cm in POLAR]
+    found = texts(tmp_path / "t.csv", lines(head, rows=rows))
+    assert {k for k, v in found.items() if v == "ignore"} == {"Cn", "Ct", "Fx", "Fz", "My", "M"}
+    assert found["Cm"].startswith("M [coefficient")
+    both = texts(
+        tmp_path / "u.csv",
+        lines("AOA,Lift,Drag,CL,CD", rows=[f"{a},{90 * cl},{90 * cd},{cl},{cd}" for a, cl, cd, _ in POLAR]),
+    )
+    assert (both["Lift"], both["Drag"]) == ("ignore", "ignore"), "a force without a unit beside its coefficient"
+
+
+def test_a_workbook_is_known_by_its_content_whatever_its_name(tmp_path: Path) -> None:
+    shutil.copy(next((Path(__file__).parent / "samples").rglob("*.xlsx")), tmp_path / "old.xls")
+    assert read_parts(tmp_path / "old.xls", "", {})[0]
+
+
+def test_rows_at_rest_are_left_out_with_a_word(tmp_path: Path) -> None:
+    """One row of speed zero refused the whole table after the last question."""
+    (tmp_path / "t.csv").write_text(
+        "beta [deg],U [m/s],X [N],Y [N]\n0,0,0.01,0\n" + "".join(f"{a},2,-1,{-a}\n" for a in ANGLES)
+    )
+    raw = read_raw(tmp_path / "t.csv", "table")
+    columns = assigned(
+        raw,
+        {n: read_column_map(t) for n, t in (("beta", "beta [deg]"), ("U", "U [m/s]"), ("X", "X [N]"), ("Y", "Y [N]"))},
+    )
+    assert list(without_a_setting(raw, columns)) == ["left out, no U above zero: line 2"]
+    written, _ = _table(raw, columns, {"scaling.length": Setting(2.0, ""), "conditions.speed": Setting(2.0, "")}, {})
+    assert written.decode().count("\nline ") == len(ANGLES)
+
+
+def test_many_close_speeds_are_no_single_one() -> None:
+    """1,400 speeds a hundredth of a knot apart counted as one, and gave no X0'."""
+    assert _speeds(np.linspace(0.01, 14.0, 1400)) > 600
+    assert _speeds(np.array([1.0, 1.0004, 2.0, 2.0004])) == 2
+
+
+def of_levels(name: str, values: np.ndarray, labels: tuple[str, ...] = ()) -> list[str]:
+    """Warnings about a column beside a sweep whose slope doubles in its second half."""
+    alpha = np.tile(np.array(ANGLES), 2)
+    slope = np.repeat([1.0, 2.0], len(ANGLES))
+    raw = RawTable(
+        Path("t.csv"),
+        (RawColumn("alpha", "deg", alpha), RawColumn("Z", "N", -slope * alpha), RawColumn(name, "", values, labels)),
+    )
+    columns = assigned(
+        raw,
+        {
+            "alpha": read_column_map("alpha"),
+            "Z": read_column_map("Z"),
+            name: read_column_map("label" if labels else "ignore"),
+        },
+    )
+    return [e.text for e in slopes_by_idle_columns(raw, columns)]
+
+
+def test_levels_have_no_width_and_may_be_words() -> None:
+    """A result that falls in two heaps is no setting; the name of a body in each row is one."""
+    assert len(of_levels("Re", np.repeat([1e5, 2e5], 5))) == 1
+    assert of_levels("Cp", np.concatenate([np.linspace(0.1, 0.14, 5), np.linspace(0.9, 0.95, 5)])) == []
+    (text,) = of_levels("body", np.full(10, np.nan), ("n0012",) * 5 + ("n0021",) * 5)
+    assert 'select = { "body" = "n0012" }' in text
+
+
+@pytest.mark.parametrize(
+    ("text", "found", "warned"),
+    [
+        ("alpha,beta,CL,CD\n-4,2,-0.4,0.1\n0,2,0,0.1\n4,2,0.4,0.1\n", "drag without side at beta", False),
+        ("alpha,CL,slope\n-4,-0.4,0.1\n0,0,0.12\n4,0.4,0.11\n", "lift without drag", True),
+        ("alpha,CL,CD\n4,0.4,0.1\n", "one row", True),
+    ],
+)
+def test_what_gives_no_slope_is_said_with_the_first_form(tmp_path: Path, text: str, found: str, warned: bool) -> None:
+    (tmp_path / "t.csv").write_text(text)
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (one,) = interpreted_together(parts, {}, {})
+    assert any(found in w.found for w in one.complaints) is not warned
+    assert any(found in e.text for e in one.shows) is warned
+
+
+def test_the_error_of_an_unknown_column_waits_for_it_and_is_not_asked(tmp_path: Path) -> None:
+    raw = RawTable(
+        tmp_path, tuple(RawColumn(n, u, np.array(ANGLES)) for n, u in (("alpha", "deg"), ("Q7", "N"), ("se_Q7", "N")))
+    )
+    parts = read_parts_of(raw)
+    shown = {line.key: line for line in form_together(parts, interpreted_together(parts, {}, {}), {})}
+    assert shown["Q7"].value == ""
+    assert shown["se_Q7"].group > shown["Q7"].group
+    said = interpreted_together(parts, {"Q7": read_column_map("Y [N]")}, {})[0]
+    assert str(said.mapping["se_Q7"]) == "se_Y [N]"
+
+
+def read_parts_of(raw: RawTable) -> list:  # type: ignore[type-arg]
+    from coeflab.tables.parts import Part
+
+    return [Part("", raw, "table", {})]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("# Force coefficients\n# dragDir : (1 0 0)\n# Time Cd Cl\n0 1 2\n1 1 2\n", "one OpenFOAM case"),
+        ("a\tb\tc\n1\t2\t3\t4\n2\t2\t3\t4\n3\t2\t3\t4\n", "3 names over rows of 4 cells"),
+    ],
+)
+def test_a_text_that_is_no_table_says_why(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "t.dat").write_text(text)
+    with pytest.raises(InputError) as why:
+        importer_of(tmp_path / "t.dat")
+    assert words in f"{why.value.found} {why.value.advice}"
+
+
+def test_forces_in_units_of_nobody_are_named(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text(
+        "Yaw,Bal Drag,Bal Lift\nDegrees / Degrees,lb / N,lb / N\n"
+        + "".join(f"{a},1.{i},0.{i}\n" for i, a in enumerate(ANGLES))
+    )
+    parts, _ = read_parts(tmp_path / "t.csv", "", {})
+    (found,) = interpreted_together(parts, {}, {})
+    assert "Bal Drag [lb / N]" in found.complaints[0].found
+    assert "Bal Drag=drag [lbf]" in found.complaints[0].advice
+
+
+def test_an_import_names_the_body_that_others_of_its_hull_take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("coeflab.cli.import_._first_slopes", lambda folder: False)
+    (tmp_path / "t.csv").write_text("beta [deg],X [N],Y [N],N [N m]\n" + "".join(f"{a},-1,{-a},{-a}\n" for a in ANGLES))
+    typed = [
+        "import", str(tmp_path / "t.csv"), "--out", str(tmp_path / "mine"), "--accept",
+        *(word for key in ("axes.frame=FRD", "axes.reference_point=nose", "scaling.length=2", "conditions.density=1000", "conditions.speed=2", "axes.beta=+") for word in ("--set", key)),
+    ]  # fmt: skip
+    assert "--set campaign.body=mine" in " ".join(CliRunner().invoke(app, typed).output.split())
+    assert "Body:" not in CliRunner().invoke(app, [*typed, "--set", "campaign.body=hull", "--force"]).output
