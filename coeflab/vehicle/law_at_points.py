@@ -19,6 +19,7 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import NEAR_ZERO, not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
+from coeflab.fits.tied_law import DRIFTS
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
 from coeflab.law.terms import read_term
 from coeflab.tables.force_table import AT_REST, ForceTable
@@ -172,6 +173,9 @@ def measured_tables(
             variables = spoken.get((c, t.name))
             if variables is None or c not in t.forces:
                 continue
+            if tied:  # about another point than that of its runs a rate drifts
+                known = frozenset[str]().union(*(own for (other, _), own in spoken.items() if other == c))
+                variables |= {DRIFTS[m] for m in variables & DRIFTS.keys()} & known
             strange = np.any(moving[[m not in variables for m in names]], axis=0)
             combined = _combined(t, names, length) & (not tied)
             for row in np.flatnonzero(combined):

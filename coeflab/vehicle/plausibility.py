@@ -23,7 +23,7 @@ from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
 from coeflab.vehicle import imported_numbers
 from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
-from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
+from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spoken
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.sizes import size_findings
@@ -264,9 +264,10 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
                     continue
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
-                if 0.0 < (share := b.term.coefficient / usual) < SMALLEST[n]:
+                same_way = b.term.coefficient * float(np.sign(usual))
+                if 0.0 < same_way < SMALLEST[n] * abs(usual):
                     out.append(_damping_check(
-                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {share:.2g} of k^{n + 1} {a.term.symbol}",
+                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
                         f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
                         "Is it per degree and second? Rates are in rad/s.",
                     ))  # fmt: skip
@@ -384,6 +385,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     law that is no longer the one whose misses the file states.
     """
     out = []
+    bent = spoken(parameters).beyond_slopes
     stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
         largest = f.largest or 1.0
@@ -412,6 +414,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             tables = [m.response for m in parameters.models if f.component in acts_in(m)]
             longer = (
                 f"Its law is the table of {', '.join(tables)}: give that fit another degree or form (coeflab formats surface)" if tables
+                else "Look for a reading apart from its repeats" if f.component in bent
                 else 'Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"])'
             )  # fmt: skip
             comment = (

@@ -16,6 +16,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.terms import read_term
 from coeflab.study.fitting import fitted, rejoined
 from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.law_at_points import measured_tables
 
 LENGTH, DENSITY, SPEED = 5.0, 1000.0, 3.0
 FORCE = 0.5 * DENSITY * SPEED**2 * LENGTH**2
@@ -121,3 +122,12 @@ def test_covariance_of_two_campaigns_is_that_of_random_numbers() -> None:
     f, g = found["tied_law", "arm"], found["slope_at_origin", "drift"]
     with_drift = next(s for s in f.shared if (s.fit, s.campaign) == (g.fit, g.campaign))
     assert np.any(with_drift.covariance[:, g.coefficients.symbols.index("Yv")] != 0.0)
+
+
+def test_the_runs_of_the_arm_are_points_of_the_law() -> None:
+    """They drift about the study's point, of which no coefficient fitted to them speaks: the law was held against none of them."""
+    drift, turning = replace(swept("v"), body="boat"), replace(arm("v", (0.0,)), body="boat")
+    fits = list(laws([drift], [turning]).values())
+    spoken = {("Y", drift.name): frozenset("v"), ("Y", turning.name): frozenset("r")}
+    found = measured_tables([drift, turning], fits, spoken, {}, frozenset(), LENGTH, DENSITY)
+    assert [(t.table, len(t.labels)) for t in found] == [(drift.name, len(SINES)), (turning.name, len(RATES))]

@@ -184,5 +184,9 @@ def test_fins_of_uuv_simulator(tmp_path: Path, law: str) -> None:
     assert {s.control: (s.limit, s.rate) for s in p.surfaces} == {"dr": (0.5, None), "ds": (0.5, None)}
     assert found.left_out["late_fins"] == [f"0.2 s of {n}p" for n, _, _ in TAIL]
     assert "joints" not in found.left_out
+    silent = text.replace(
+        "0.2</timeConstant></dynamics>\n<liftdrag>", "${later}</timeConstant></dynamics>\n<liftdrag>", 1
+    )
+    assert read(tmp_path, silent).left_out["actuators"] == ["Fin ap"]
     other = read(tmp_path, text.replace("<type>Quad", "<type>Other").replace("<type>Two", "<type>Other"))
     assert other.left_out["actuators"] == [f"Fin {n}p" for n, _, _ in TAIL]

@@ -156,7 +156,7 @@ def parsers() -> dict[str, Parser]:
         "Model scale 1:31.6, forces with inertia, ship speed in knots, mit Trägheitsanteil, λ = 25.0",
         "Forces made dimensionless by 0.5*rho*U^2*L^2, rotating arm of radius 15.2 m, primes of the wetted area 5.98 m2",
     )
-    models = tuple(p for p in sorted(MODELS.iterdir()) if p.name != "nps_auv2.m")
+    models = (*(p for p in sorted(MODELS.iterdir()) if p.name != "nps_auv2.m"), *_corpus("driven.urdf", "driven.scn"))
     files = {
         "campaign": Parser(_shipped("cfd_data/suboff_roddy_2") + _shipped("cfd_data/tank_spheroid"), lambda p: read_tables(PlannedTable(p, ())), share=0.3),
         "csv": Parser(_shipped("cfd_data/*/table.csv"), read_cells),

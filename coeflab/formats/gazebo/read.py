@@ -64,6 +64,7 @@ signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> posit
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
 TURN, FREE = 2.0 * math.pi + 1e-3, 1e6  # rad; limits of joints that turn freely are written as huge numbers
+FLATTEST = 1e-4  # of its largest side: no hull is so thin
 OF_BOX = (0.5, 2.5, 4.5)  # a cylinder has 1.5 times the water of its ellipsoid, a box 2
 
 
@@ -311,7 +312,7 @@ def _of_box(root: Element, link: GzLink, path: Path) -> list[Check]:
     """Added mass across against that of the ellipsoid in the box of the hull's collisions."""
     held = assembly(root, link.link.rpartition("::")[2], path)
     box = collision_box(held, path)
-    if box is None or not np.all(box > 0.0):
+    if box is None or not np.all(box > FLATTEST * np.max(box)) or not np.max(box) < FREE:
         return []
     own = np.diag(_added_mass(link))
     due = np.diag(ellipsoid_added_mass(box / 2.0, link.density or ROUND_DENSITY))

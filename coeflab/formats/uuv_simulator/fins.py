@@ -46,12 +46,12 @@ def fins_of(
         try:
             name = text_of(name, x)
             foil, joint = _fin(plugin, found, x, path)
+            lag = value_of(plugin, "dynamics/timeConstant", 0.0, x, path)
         except UnknownLawError:
             unread.append(f"Fin {name}")
             continue
         read.append((foil, joint))
-        if (lag := value_of(plugin, "dynamics/timeConstant", 0.0, x, path)) > 0.0:
-            late.append(f"{lag:g} s of {name}")
+        late += [f"{lag:g} s of {name}"] if lag > 0.0 else []
     out = Fins({}, (), np.zeros((6, 6)), []) if found is None else fins_by_slopes(read, found, subject)
     words = [*left_out(subject, "actuators", unread), *out.findings, *left_out(subject, "late_fins", late)]
     return out._replace(findings=words), plugins
