@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
+from collections.abc import Iterable
+from functools import cache
 from typing import Any, TypeVar
 
 Noun = TypeVar("Noun")
@@ -96,15 +96,13 @@ VERBS = {
 }  # fmt: skip
 
 
-def _by_word(words: Mapping[str, str]) -> dict[str, list[str]]:
+@cache
+def _by_word(verbs: bool) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
-    for here, elsewhere in words.items():
+    for here, elsewhere in (VERBS if verbs else ELSEWHERE).items():
         for word in elsewhere.split():
             found.setdefault(word, []).append(here)
     return found
-
-
-_OF_NOUNS, _OF_VERBS = _by_word(ELSEWHERE), _by_word(VERBS)
 
 
 def nearest(name: str, known: Iterable[str], verbs: bool = False) -> str:
@@ -123,10 +121,12 @@ def nearest(name: str, known: Iterable[str], verbs: bool = False) -> str:
     >>> nearest("to_dataframe", ("frame", "plot")), nearest("plots", ("frame", "plot")), nearest("cov", ("frame",))
     ('frame()', 'plot', '')
     """
+    from difflib import get_close_matches  # nobody misses a name in a run that ends well
+
     names = {n for n in known if not n.startswith("_")}
     folded = name.casefold().replace("_", "")
     for word in (folded, folded.removesuffix("s"), folded.removesuffix("es")):
-        for here in (_OF_VERBS if verbs else _OF_NOUNS).get(word, ()):
+        for here in _by_word(verbs).get(word, ()):
             if ("[]" if here[0] == "[" else re.split(r"\W", here)[0]) in names:
                 return here
     near = get_close_matches(name, sorted(names), 1, 0.6)

@@ -20,13 +20,13 @@ from coeflab.fits.statistics.least_squares import factorise
 from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
-from coeflab.motion.behaviour import Behaviour
 from coeflab.report.figures.variables import domain_in_words
 from coeflab.vehicle.comparison import ROUNDING, Verdict
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult, Pooling
     from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
+    from coeflab.motion.behaviour import Behaviour
     from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison
     from coeflab.vehicle.parameter_file import ParameterFile
 

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.bodies.mass_model import at_rest
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.vehicle.from_shape import displaced_mass, floods
 
 if TYPE_CHECKING:
     from coeflab.study.study import FromShape, Study
@@ -35,6 +33,8 @@ def check(study: Study) -> Sequence[Check]:
 
 def _trim(shape: FromShape) -> list[Check]:
     """A warning for a stated centre of gravity with which the vehicle does not hang level."""
+    from coeflab.bodies.mass_model import at_rest
+
     weighed = shape.weighed
     mass, middle = weighed.configuration.mass, weighed.configuration.centre_of_buoyancy
     if mass is None or middle is None or "centre" in weighed.assumed:
@@ -51,6 +51,8 @@ def _trim(shape: FromShape) -> list[Check]:
 
 
 def _mass(shape: FromShape) -> list[Check]:
+    from coeflab.vehicle.from_shape import displaced_mass, floods
+
     weighed = shape.weighed
     mass, displaced = weighed.configuration.mass, displaced_mass(weighed.body, shape.conditions.density)
     if mass is None or "mass" in weighed.assumed or floods(weighed.body):

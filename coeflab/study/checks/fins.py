@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from coeflab.bodies.outlining import fins_along
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 
@@ -20,9 +19,11 @@ REVERSED = "Is the mesh x aft? Of a mesh with x aft and z up write --axes CFD. F
 
 def check(study: Study) -> Sequence[Check]:
     """A warning where all fins stand ahead of the middle of the hull."""
-    seen = study.shape.weighed.body.outline if study.shape is not None else None
-    found = fins_along(seen) if seen is not None else None
-    if study.shape is None or found is None:
+    if study.shape is None or (seen := study.shape.weighed.body.outline) is None:
+        return []
+    from coeflab.bodies.outlining import fins_along
+
+    if (found := fins_along(seen)) is None:
         return []
     severity = Severity.WARN if found.ahead else Severity.PASS
     comment = REVERSED if found.ahead else ""

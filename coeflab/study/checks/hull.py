@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from coeflab.bodies.mesh.particulars import likeness
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 
@@ -20,6 +19,10 @@ LENGTH, VOLUME, ABSURD = 0.1, 0.05, 0.5
 
 def check(study: Study) -> Sequence[Check]:
     """The hull's length against that of the primes, its volume against the particulars, and whether both are one body."""
+    if not study.hulls:
+        return []
+    from coeflab.bodies.mesh.particulars import likeness
+
     out = []
     for name, found in study.hulls.items():
         file, hull = study.parameter_files[name], found.body

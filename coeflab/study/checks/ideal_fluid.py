@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.core.wording import listed
-from coeflab.estimates import IDEAL, every_way
 from coeflab.law.symbols import derivative
 
 if TYPE_CHECKING:
@@ -29,6 +28,8 @@ def check(study: Study) -> Sequence[Check]:
     """
     if study.shape is None:
         return []
+    from coeflab.estimates import every_way
+
     seen = study.shape.weighed.body.outline
     one = seen is not None and every_way(seen)
     shares = study.shape.estimates.shares
@@ -36,6 +37,8 @@ def check(study: Study) -> Sequence[Check]:
 
 
 def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one: bool) -> list[Check]:
+    from coeflab.estimates import IDEAL
+
     found, apart = [], []
     for c in parameters.coefficients:
         d = derivative(c.symbol)

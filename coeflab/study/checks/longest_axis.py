@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.orientation import doubt
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
 
@@ -20,7 +18,12 @@ citations = ("sname1950",)
 def check(study: Study) -> Sequence[Check]:
     """What contradicts axes that were stated one by one; a frame by its name would not have come so far."""
     body = study.shape.weighed.body if study.shape is not None else None
-    if body is None or not isinstance(body.shape, TriangleMesh):
+    if body is None:
+        return []
+    from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.orientation import doubt
+
+    if not isinstance(body.shape, TriangleMesh):
         return []
     found = doubt(body)
     if found is not None:
