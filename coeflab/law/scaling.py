@@ -109,7 +109,9 @@ def require_hull(value: Any, key: str | None = None) -> None:
         number = float(value)
     except (TypeError, ValueError):
         return  # with its unit, or none that is read
-    if isfinite(number) and (doubt := doubtful_size("scaling.length", number)):
+    if not isfinite(number) or number < LENGTHS[0] / 1000.0:
+        return  # no hull in km either: its own bounds say what is wrong
+    if doubt := doubtful_size("scaling.length", number):
         raise InputError(
             f"{number:g}, a length without a unit", f"{LENGTHS[0]:g} to {LENGTHS[1]:g} m, or a length with its unit", column=key,
             advice=f'{doubt}; if not, "{number:g} m".',

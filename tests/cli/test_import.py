@@ -471,9 +471,20 @@ def in_check(table: ForceTable) -> list[str]:
     return [c.subject for c in conditions.check(SimpleNamespace(tables=[table])) if c.severity is Severity.WARN]  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(("typed", "said"), [("3000", 'Then write "3000 mm"'), ("0.004", 'Then write "0.004 km"')])
+def test_a_length_of_no_hull_is_asked_back(drift: Path, tmp_path: Path, typed: str, said: str) -> None:
+    """Without its unit; with it, it counts and warns."""
+    ask = ("import", drift, "--out", tmp_path / "out", "--yes", "--force")
+    done = invoke(*ask, *sets(**{"scaling.length": typed}))
+    assert isinstance(done.exception, InputError)
+    assert said in " ".join(str(done.exception).split())
+    assert not (tmp_path / "out").exists()
+    done = invoke(*ask, *sets(**{"scaling.length": f"{typed} m"}))
+    assert done.exit_code == 0, done.output
+    assert in_check(table_of(tmp_path / "out")) == ["out unit of length"]
+
+
 @pytest.mark.parametrize(("key", "typed", "said"), [
-    ("scaling.length", "3000", 'is it in mm? Then write "3000 mm"'),
-    ("scaling.length", "0.004", "is it in km?"),
     ("conditions.speed", "2000", 'is it in mm/s? Then write "2000 mm/s"'),
 ])  # fmt: skip
 def test_a_number_in_another_unit_is_a_warning(drift: Path, tmp_path: Path, key: str, typed: str, said: str) -> None:

@@ -212,7 +212,7 @@ def test_lines_over_a_table_are_offered_and_never_taken(tmp_path: Path) -> None:
     file = tmp_path / "tank.csv"
     file.write_text("# S = 0.25 m^2, V = 2 m/s, m = 4.3 m\nbeta [deg],Y [-]\n-4,0.01\n0,0\n4,-0.01\n")
     done = invoke("import", file, "--out", tmp_path / "out")
-    assert left_open(done) == ["axes.frame", "axes.reference_point", "scaling.length"]
+    assert left_open(done) == ["axes.frame", "scaling.length"]  # forces alone need no point
     assert 'conditions.speed 2 line 1: "V = 2 m/s"' in flat(done.output)
     assert "Y [coefficient A=0.25 m^2]" in done.output
     assert not (tmp_path / "out").exists()

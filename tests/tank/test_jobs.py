@@ -20,6 +20,7 @@ from coeflab.core import files
 from coeflab.core.errors import InputError, OutputError
 from coeflab.tables.raw_table import Run
 from coeflab.tank import job as carried
+from coeflab.tank import jobs
 from coeflab.tank.job import carry_out, lengths, main
 from coeflab.tank.jobs import (
     STATE,
@@ -324,7 +325,7 @@ def test_a_solver_that_does_not_listen_is_killed_and_its_result_is_kept(
 
 
 def test_two_processes_do_not_carry_out_one_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carried, "PATIENCE", 0.1)
+    monkeypatch.setattr(jobs, "PATIENCE", 0.1)
     job = prepared(tmp_path)
     with only_one(job.folder, "job"), pytest.raises(InputError, match=f"a job that process {os.getpid()} on"):
         carry_out(job.folder)
