@@ -132,7 +132,7 @@ def _written(out: Path, campaign: Campaign, by_default: bool) -> None:
             show.sentence(f"{f'{t.file}: ' * several}Rows {words}.")
     show.sentence(unused(tables))
     if body := campaign.tables[0].body if by_default else "":
-        show.sentence(f"Body: {body}. Another campaign of the same hull says so: --set campaign.body={body}")
+        show.sentence(f"Body: {body}; other campaigns of this hull: --set campaign.body={body}")
     show.text()
 
 
