@@ -385,6 +385,7 @@ def typed_surface(control: Control, text: str, option: str) -> ParameterSurface:
 NUMBERS = ("bollard", "rate", "bollard_astern", "dead_zone", "torque", "handedness", "tilt_limit", "lag")
 VECTORS = ("place", "axis", "tilt_axis")
 WORDS = ("command", "unit")
+COMMANDS = ("rate", "dead_zone")
 
 
 def typed_thruster(text: str, conditions: Conditions) -> ParameterThruster:
@@ -414,6 +415,10 @@ def typed_thruster(text: str, conditions: Conditions) -> ParameterThruster:
             )
         except ValueError:
             keys[key] = value
+    for key in COMMANDS:  # "1100 rpm" says the unit of the command as well
+        number, _, unit = str(keys.get(key, "")).partition(" ")
+        if unit and keys.setdefault("unit", unit) == unit:
+            keys[key] = float(number) if re.fullmatch(r"[-+.\d]+(e[-+]?\d+)?", number) else keys[key]
     try:
         stated = validated(ThrusterKeys, keys)
     except InputError as why:

@@ -88,6 +88,15 @@ def test_what_is_refused(text: str) -> None:
         typed_thruster(text, WATER)
 
 
+def test_a_command_may_have_its_unit() -> None:
+    plain, stated = (
+        typed_thruster(f"main; bollard = 60 N; {rate}", WATER) for rate in ("rate = 12; unit = 1/s", "rate = 12 1/s")
+    )
+    assert stated == plain
+    with pytest.raises(InputError, match="dead_zone"):  # two units of one command
+        typed_thruster("main; bollard = 60 N; rate = 12 1/s; dead_zone = 30 rpm", WATER)
+
+
 def test_a_body_toml_takes_it() -> None:
     made = validated(
         ThrusterKeys,
