@@ -438,10 +438,10 @@ def test_a_killed_job_is_not_taken_up_before_its_solver_has_ended(
     wait((job.folder / "begun").exists)
     process.kill()
     process.wait()
-    monkeypatch.setattr(carried, "PATIENCE", 0.2)
+    monkeypatch.setattr(jobs, "PATIENCE", 0.2)
     with pytest.raises(InputError, match=f"a job that process {process.pid} on"):
         carry_out(job.folder)
-    monkeypatch.setattr(carried, "PATIENCE", 20.0)
+    monkeypatch.setattr(jobs, "PATIENCE", 20.0)
     (job.folder / "enough").touch()
     assert carry_out(job.folder).state is JobState.FINISHED
 
