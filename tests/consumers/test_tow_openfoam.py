@@ -22,7 +22,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("simpleFoam") is None, reason="OpenFOAM is not installed"),
 ]
-# Re 1000, laminar: 5,588 cells settle within 220 iterations.
+# Re 1000, laminar: 17,491 cells settle within 220 iterations.
 TANK = """
 [tank]
 name = "finned_spheroid"
@@ -37,8 +37,8 @@ yaw = [0.2, 0.4]
 [solver.openfoam]
 wall = "none"
 turbulence = "laminar"
-cells_per_length = 20
-cells_per_chord = 5
+cells_per_length = 40
+cells_per_chord = 8
 ahead = 1.0
 behind = 1.0
 beside = 1.0
@@ -109,8 +109,7 @@ def test_towed_killed_and_gone_on_with(tmp_path: Path) -> None:
     for name, first in firsts.items():
         assert float(first[1]) == states(out)[name]["resumed_from"] + 1  # type: ignore[operator]
 
-    # The same condition from its start, on the same mesh, agrees within the standard errors, beside which the tail of a laminar run
-    # that still settles stays: 6e-6 of the force was seen, where batch means say 1e-6.
+    # The same condition from its start, on the same mesh, agrees within the standard errors.
     name = next(iter(firsts))
     whole = tmp_path / "whole"
     shutil.copytree(out, whole, symlinks=True)
@@ -125,7 +124,7 @@ def test_towed_killed_and_gone_on_with(tmp_path: Path) -> None:
     assert isinstance(other["errors"], dict)
     for c in ("X", "Y", "N"):
         both = hypot(one["errors"][c], other["errors"][c])
-        assert one["means"][c] == pytest.approx(other["means"][c], abs=2.3 * both + 2e-5 * abs(other["means"][c]))
+        assert one["means"][c] == pytest.approx(other["means"][c], abs=2.3 * both)  # 1.97 at most in 90 by hand
 
     # Side force and moment of a slender body in drift, and its damping on the arm.
     said = tow(tmp_path, "x", "--collect", "--json")
