@@ -76,9 +76,13 @@ def _keyword(found: re.Match[str]) -> str:
         return f'{name}=["{motions}"]'
     if option in _OF_READING and not value.isdigit():
         return f'options={{"{_OF_READING[option]}": "{value}"}}'
-    key, equals, rest = value.partition("=")
-    if option == "set" and equals:
+    if option == "set" and "=" in value:
         return value
-    typed = rest if equals else value
-    typed = typed if re.fullmatch(r"-?[\d.]+(?:e-?\d+)?", typed) else f'"{typed}"'
-    return f'{name}={{"{key}": {typed}}}' if equals else f"{name}={typed}"
+    several = re.findall(r"([\w.]+)=(\S+)", value)
+    pairs = several if len(several) > 1 else [tuple(value.split("=", 1))] if "=" in value else []
+    held = ", ".join(f'"{key}": {_typed(rest)}' for key, rest in pairs)
+    return f"{name}={{{held}}}" if pairs else f"{name}={_typed(value)}"
+
+
+def _typed(value: str) -> str:
+    return value if re.fullmatch(r"-?[\d.]+(?:e-?\d+)?", value) else f'"{value}"'

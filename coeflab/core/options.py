@@ -107,21 +107,25 @@ def one_of(default: str, *choices: str) -> Any:
 
 
 def orders() -> Any:
-    """A dataclass field that takes orders such as left=60 rotor1.tilt=1.5, a list of words, angles in rad; on the command line in deg."""
-    result = words()
+    """A dataclass field that takes orders such as left=60 rotor1.tilt=1.5, words or a mapping, angles in rad; on the command line in deg."""
+
+    def read(value: Any, file: Path) -> tuple[str, ...]:
+        return _words([f"{k}={v}" for k, v in value.items()] if isinstance(value, Mapping) else value, file)
+
+    result = _option((), "words", read)
     return dataclasses.field(default=result.default, metadata={**result.metadata, "orders": True})
 
 
 def words(*default: str) -> Any:
     """A dataclass field that takes a list of words; a text is split at commas and blanks."""
+    return _option(default, "words", _words)
 
-    def read(value: Any, _file: Path) -> tuple[str, ...]:
-        items = value.replace(",", " ").split() if isinstance(value, str) else value
-        if not isinstance(items, (list, tuple)) or not all(isinstance(i, str) for i in items):
-            raise InputError(shown(value), "a list of words")
-        return tuple(items)
 
-    return _option(default, "words", read)
+def _words(value: Any, _file: Path) -> tuple[str, ...]:
+    items = value.replace(",", " ").split() if isinstance(value, str) else value
+    if not isinstance(items, (list, tuple)) or not all(isinstance(i, str) for i in items):
+        raise InputError(shown(value), "a list of words")
+    return tuple(items)
 
 
 def text(default: str) -> Any:

@@ -39,6 +39,10 @@ def mesh(folder: Path) -> str:
 
 DRIFT_ANGLES = {"beta [deg]": V, "Y [N]": -120.0 * V}
 ASKED: dict[str, tuple[Callable[[], Any], str]] = {
+    "rudder of twin screws": (
+        lambda: cf.simulate("huuv", "turning_circle"),
+        'commands={"left": 100, "right": 100}, unequal',
+    ),
     "a misspelt keyword": (lambda: table(lenght=2), "Did you mean length?"),
     "a symbol": (lambda: table(rho=1000), "Did you mean density?"),
     "units": (lambda: table({"v [m/s]": V, "Fy": V}), 'columns={"Fy": "Y [kN]"}'),
