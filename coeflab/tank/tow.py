@@ -255,7 +255,7 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     OutputError
         The folder cannot be written.
     """
-    folder = folder.absolute()
+    folder = folder.resolve()
     solver = SOLVERS.load(tank.solver)
     installed = solver.installed()
     refuse_other(folder, tank, body.body.name)
@@ -372,7 +372,7 @@ def opened(folder: Path) -> Tow:
     """
     tank, body, _ = reopened(folder)
     jobs = tuple(read_job(folder / name) for name in read_plan(folder)["jobs"])
-    return Tow(folder.absolute(), tank, body, SOLVERS.load(tank.solver).installed(), jobs)
+    return Tow(folder.resolve(), tank, body, SOLVERS.load(tank.solver).installed(), jobs)
 
 
 def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:

@@ -253,6 +253,14 @@ def test_a_moved_folder_is_still_the_tow(whole: tuple[Tow, Collected], tmp_path:
     assert str(tmp_path) not in (tmp_path / "moved" / PLAN).read_text()
 
 
+def test_a_folder_named_by_way_of_another_or_by_a_link_keeps_its_jobs(tmp_path: Path) -> None:
+    (tmp_path / "aside").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "aside")
+    for out, folder in (("aside/../x", "x"), ("link/y", "aside/y")):
+        tow = laid_out(tmp_path, tank_file(tmp_path, solver="openfoam"), out)
+        assert [row.job for row in states_of(tmp_path / folder)] == [row.job for row in states_of(tow.folder)]
+
+
 def test_what_changed_is_named_and_run_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tow = laid_out(tmp_path, tank_file(tmp_path))
     room.carried_out(tow, 0, lambda: None)
