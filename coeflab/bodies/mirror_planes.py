@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.solids import Outline as Silhouette
 from coeflab.bodies.mesh.solids import mesh_outline
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.shape import Part, Parts, Revolution, Shape
@@ -134,18 +136,20 @@ def mirror_planes(shape: Shape) -> Planes:
     by_moments = mirrors(shape)
     if not isinstance(shape, TriangleMesh) or not any(by_moments):
         return by_moments
-    x, y, z = (found and _alike(shape, axis) for axis, found in enumerate(by_moments))
+    by_length = np.argsort(np.ptp(shape.vertices, axis=0), kind="stable")  # the longer one up: a sixth of the time
+    held = np.array(by_moments)
+    for view in combinations(by_length.tolist(), 2):
+        if held[list(view)].any():
+            seen = mesh_outline(shape.vertices, shape.faces, np.eye(3)[list(view)])
+            for axis in view:
+                held[axis] &= _is_own_image(seen, view.index(axis), 2.0 * float(shape.centre_of_volume[axis]))
+    x, y, z = held.tolist()
     return x, y, z
 
 
-def _alike(mesh: TriangleMesh, axis: int) -> bool:
-    middle = 2.0 * float(mesh.centre_of_volume[axis])
-    for other in (k for k in range(3) if k != axis):
-        seen = mesh_outline(mesh.vertices, mesh.faces, np.eye(3)[[axis, other]])
-        image = seen.scale((-1.0, 1.0)).translate((middle, 0.0))
-        if (seen - image).area() > SILHOUETTE * seen.area():
-            return False
-    return True
+def _is_own_image(seen: Silhouette, axis: int, twice_middle: float) -> bool:
+    turn, move = ((-1.0, 1.0), (twice_middle, 0.0)) if axis == 0 else ((1.0, -1.0), (0.0, twice_middle))
+    return bool((seen - seen.scale(turn).translate(move)).area() <= SILHOUETTE * seen.area())
 
 
 def unpaired(foils: Sequence[Foil], axis: int, middle: float, within: float) -> list[Foil]:
