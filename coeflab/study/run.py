@@ -50,7 +50,8 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
     if plan.datum and plan.datum != table.datum:
         raise ScalingMismatchError(
             f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "
-            "state the reference point from one datum. A body names its own as datum under [body] of its body.toml; that of a mesh is its origin."
+            f'state the reference point from one datum. Where both are one point: datum = "{plan.datum.id}" under [axes] of '
+            f"the campaign.toml of {table.campaign}. A body names its own under [body] of its body.toml; that of a mesh is its origin."
         )
     return table.about(plan.reference_point)
 

@@ -490,6 +490,8 @@ def proposals(
             out[i] = Proposal("ignore", f"U is {taken['U']} already")
         if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and _fits(column.unit, "moment"):
             out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
+        if {"r", "R"} <= set(taken) and column.name == taken["R"]:
+            out[i] = Proposal("ignore", f"r is {taken['r']} already, U over it")
     return tuple(_without_a_doubled_flow(raw, out))
 
 

@@ -55,7 +55,7 @@ def questions_together(
     out: list[tuple[str, Question]] = []
     for key in dict.fromkeys(q.key for found in founds for q in found.questions):
         have = [(p, q) for p, f in zip(parts, founds, strict=True) for q in f.questions if q.key == key]
-        strong = [(p, q) for p, q in have if not q.why.startswith(("median", "it cancels"))] or have
+        strong = [(p, q) for p, q in have if not q.harmless and not q.why.startswith(("median", "it cancels"))] or have
         if len({q.why.startswith("it cancels") for _, q in have}) > 1 and not key.startswith(ALONE):
             have = strong
         values = {q.default for _, q in strong if q.default}

@@ -124,6 +124,21 @@ def test_words_of_two_sheets_that_differ_are_open_with_both(tmp_path: Path) -> N
     assert made["Attack.csv"].forces["M"][0] == pytest.approx(-95.0 + 2.0 * 40.0 * -1.0)  # moved to midships
 
 
+def test_a_sheet_at_no_drift_leaves_the_sign_of_drift_to_the_others(tmp_path: Path) -> None:
+    turns = [(r, 1.6, 0.0, np.degrees(1.6 / r), 100.0 / r, -320.0 / r) for r in (8.0, 10.0, 14.0)]
+    arm = (("R (m)", "U (m/s)", "Drift (deg)", "r (deg/s)", "Fy (N)", "Mz (Nm)"), *turns)
+    book = workbook(tmp_path / "t.xlsx", Drift=rows(ABOVE, *DRIFT), Arm=rows(("inertia subtracted",), *arm))
+    form = invoke("import", book, "--out", tmp_path / "out")
+    assert left_open(form) == ["axes.frame", "axes.reference_point"], form.output
+    assert "if y is starboard, else" in flat(form.output)
+    typed = ("--set", "axes.frame=FRD", "--set", "axes.reference_point=midship", "--accept")
+    done = invoke("import", book, "--out", tmp_path / "out", *typed)
+    assert done.exit_code == 0, done.output
+    drift, arm_rows = tables_of(tmp_path / "out").values()
+    assert drift.motion["v"] * drift.forces["Y"] == pytest.approx(-abs(drift.motion["v"] * drift.forces["Y"]))
+    assert arm_rows.motion["r"] == pytest.approx([1.6 / r for r in (8.0, 10.0, 14.0)])  # R beside r is U over it
+
+
 def test_tables_of_a_folder_are_tables_of_a_campaign_and_halves_of_a_sweep_may_be_joined(tmp_path: Path) -> None:
     folder = tmp_path / "series"
     folder.mkdir()
