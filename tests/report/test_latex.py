@@ -143,13 +143,22 @@ def test_works_are_bibtex_whatever_their_key() -> None:
     assert list(latex.render(Document("Title", "", ()))) == ["report.tex"]
 
 
+def test_a_table_of_few_rows_that_fold_over_a_page_goes_on_too() -> None:
+    """A float taller than its page is cut off by LaTeX with a warning alone."""
+    words = " ".join(["word"] * 120)
+    for rows, longer in ((3, True), (1, False)):
+        text = of_one(Table("Tall", ("n", "what", "why"), ((("1", words, words),) * rows), (), frozenset({1, 2})))
+        assert (r"\begin{longtable}" in text) is longer
+        assert (r"\begin{table}[H]" in text) is not longer
+
+
 def test_a_users_text_holds_no_symbol() -> None:
     with keeping(("Yv' of us",)):
         assert latex.tex("Yv' of us: Yv'") == "Yv' of us: $Y_{v}'$"
 
 
 def test_a_long_table_goes_on_and_text_folds() -> None:
-    rows = tuple((str(k), "a text that is far too long for one line of a page") for k in range(latex.FLOATS + 1))
+    rows = tuple((str(k), "a text that is far too long for one line of a page") for k in range(latex.ON_A_PAGE + 1))
     text = of_one(Table("Long", ("n", "what"), rows, ("Note.",), frozenset({1})))
     balanced(text)
     assert r"\begin{longtable}{@{}r>{\raggedright\arraybackslash}p{" in text

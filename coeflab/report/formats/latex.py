@@ -6,6 +6,7 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
+from math import ceil
 from typing import NamedTuple
 
 from coeflab.core.table import ABSENT, Table, percent, plus_minus, with_u95
@@ -26,7 +27,7 @@ LITERAL = re.compile(
     r"[A-Za-z]+(?:\^-?\d+)?(?:[*/]\(?[A-Za-z]+(?:\^-?\d+)?\)?)*"
 )  # units that siunitx sets as they are written
 LONGEST_TITLE, LONGEST_COLUMN, LONGEST_KEY = 300, 160, 40  # letters
-FLOATS = 30  # rows; a longer table goes on over pages
+ON_A_PAGE = 30  # lines of rows; a longer table goes on over pages
 LINE = 112  # letters of footnote size in a line, with three for the gap between two columns
 WIDE, NARROW, FOLDED = (
     28,
@@ -35,14 +36,14 @@ WIDE, NARROW, FOLDED = (
 )  # letters: a column beyond the first folds, the second may, the third it then has at least
 LEVELS = ("section", "subsection", "subsubsection", "paragraph")
 SPECIAL = {
-    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "/": r"\slash{}", "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "`": r"\textasciigrave{}", "\u2026": r"\ldots{}", "\u2013": r"\textendash{}",
     "\u2014": r"\textemdash{}", "\u202f": r"\,", "\u00a0": "~", "\u2018": r"\textquoteleft{}", "\u2019": r"\textquoteright{}",
     "\u201c": r"\textquotedblleft{}", "\u201d": r"\textquotedblright{}", "\u00a7": r"\S{}",
 }  # fmt: skip
 IN_MATH = {
     "\u2212": "-", "\u00b1": r"\pm", "\u00d7": r"\times", "\u00b0": r"{}^{\circ}", "\u2264": r"\le", "\u2265": r"\ge", "\u00b7": r"\cdot",
-    "\u2032": "'", "\u00bd": r"\frac{1}{2}", "\u221a": r"\surd", "<": "<", ">": ">", "|": "|", "\u00b5": r"\mu", "\u00b2": "^{2}",
+    "/": "/", "\u2032": "'", "\u00bd": r"\frac{1}{2}", "\u221a": r"\surd", "<": "<", ">": ">", "|": "|", "\u00b5": r"\mu", "\u00b2": "^{2}",
     "\u00b3": "^{3}", "\u202f": r"\,",
 } | {letter: rf"\{name}" for name, letter in GREEK.items()}  # fmt: skip
 PLAIN = re.compile(r"\u2212?(?<![\w.])\d[\d.]*(?:\u202f×\u202f10)?|.", re.DOTALL)
@@ -146,7 +147,7 @@ def _section(section: Section, level: int) -> Iterator[str]:
 
 
 def set_table(table: Table, name: str) -> str:
-    """A table as LaTeX: a float, or one over several pages.
+    """A table as LaTeX, where it stands; one that is longer than a page goes on over several.
 
     Parameters
     ----------
@@ -162,14 +163,14 @@ def set_table(table: Table, name: str) -> str:
     folds = _folding(table)
     columns = f"@{{}}{''.join(_columns(table, folds))}@{{}}"
     is_wide = _room(table, folds) > LINE
-    if len(table.rows) > FLOATS:
+    if _lines(table, folds) > ON_A_PAGE:
         size = r"\scriptsize\setlength{\tabcolsep}{2pt}" if is_wide else r"\footnotesize"
         opening = [rf"\begingroup{size}\setlength{{\LTcapwidth}}{{\linewidth}}", f"\\begin{{longtable}}{{{columns}}}"]
         above = [r"\toprule", head, r"\midrule"]
         again = [caption + r" \\", *above, r"\endfirsthead", *above, r"\endhead", r"\bottomrule", r"\endfoot"]
         return "\n".join([*opening, *again, *rows, r"\end{longtable}", *notes, r"\par\endgroup", ""])
     opening = [
-        r"\begin{table}[htbp]",
+        r"\begin{table}[H]",
         r"\centering\footnotesize",
         caption,
         *([r"\resizebox{\linewidth}{!}{%"] * is_wide),
@@ -207,19 +208,31 @@ def _folding(table: Table) -> set[int]:
     return folds
 
 
-def _columns(table: Table, folds: Collection[int]) -> list[str]:
-    """``l``, ``r``, or for text that has to fold its share of the line."""
+def _letters(table: Table, folds: Collection[int]) -> dict[int, float]:
+    """What columns that fold have of the line, in letters."""
     widths = _widths(table)
     rest = LINE - sum(width + 3 for i, width in enumerate(widths) if i not in folds) - 3 * len(folds)
     wanted = sum(min(widths[i], 2 * WIDE) for i in folds)
-    flush, out = r">{\raggedright\arraybackslash}", []
-    for i, width in enumerate(widths):
-        if i in folds:
-            letters = max(FOLDED, min(width, rest * min(width, 2 * WIDE) / wanted))
-            out.append(f"{flush}p{{{min(letters / LINE, 0.95):.2f}\\linewidth}}")
-        else:
-            out.append("l" if i in table.left else "r")
-    return out
+    return {i: max(FOLDED, min(widths[i], rest * min(widths[i], 2 * WIDE) / wanted)) for i in folds}
+
+
+def _lines(table: Table, folds: Collection[int]) -> int:
+    """Lines of all rows, with the cells folded."""
+    letters = _letters(table, folds)
+    return sum(max((ceil(len(row[i]) / width) for i, width in letters.items()), default=1) for row in table.rows)
+
+
+def _columns(table: Table, folds: Collection[int]) -> list[str]:
+    """``l``, ``r``, or for text that has to fold its share of the line."""
+    letters = _letters(table, folds)
+    return [
+        rf">{{\raggedright\arraybackslash}}p{{{min(letters[i] / LINE, 0.95):.2f}\linewidth}}"
+        if i in folds
+        else "l"
+        if i in table.left
+        else "r"
+        for i in range(len(table.headers))
+    ]
 
 
 def _cell(text: str, unit: bool, left: bool) -> str:
