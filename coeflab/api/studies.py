@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coeflab.api.result import Result
-from coeflab.api.vehicle import Vehicle
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.core.missed import suggesting
@@ -19,6 +18,7 @@ from coeflab.study.study import Plan
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from coeflab.api.vehicle import Vehicle
     from coeflab.report.acceptance import Acceptance
     from coeflab.report.document import Document
     from coeflab.study.towed import Towed
@@ -60,6 +60,8 @@ class Study(plain.Study):
         name : str
             Of the file; may be left out where there is one.
         """
+        from coeflab.api.vehicle import Vehicle
+
         files = self.parameter_files
         if name not in files and not (name == "" and len(files) == 1):
             raise InputError(f"no vehicle {shown(name)}", f"one of {', '.join(files)}", column="name")

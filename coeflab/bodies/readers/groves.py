@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, lru_cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import ClassVar
@@ -31,7 +31,7 @@ from coeflab.bodies.pieces import Control, Piece, hull_piece
 from coeflab.bodies.profiles import FOOT, LARGEST_RADIUS, MIDDLE_END, suboff_meridian, suboff_profile
 from coeflab.core.declarations import Declaration, Flag, declared
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, brief, locked
 
 Hull = Callable[[Array], tuple[Array, Array]]
 
@@ -86,6 +86,7 @@ def sail_half_thickness(x: Array) -> tuple[Array, Array]:
     return HALF_THICKNESS * share, HALF_THICKNESS**2 * slope
 
 
+@cache
 def sail(hull: Hull) -> Appendage:
     """The sail: vertical sides on the hull, a cap of half an ellipse as high as a quarter of the local thickness."""
     volume, surface, covered, moment = 0.0, 0.0, 0.0, np.zeros(2)
@@ -101,7 +102,7 @@ def sail(hull: Hull) -> Appendage:
         moment += np.array([weight @ (area * x), weight @ lift])
         surface += float(weight @ (2.0 * (SIDE_TOP - foot) * np.hypot(b, slope) / b + cap))
         covered += float(weight @ (2.0 * np.arcsin(b / radius) * np.hypot(radius, radius_slope)))
-    return Appendage(volume, moment, surface, covered)
+    return Appendage(volume, locked(moment), surface, covered)
 
 
 def sail_sections(stations: int, levels: int, cap: int) -> Array:
@@ -156,6 +157,7 @@ def _foot(hull: Hull, q: Array, share: Array) -> Array:
     return y
 
 
+@cache
 def plane(hull: Hull) -> Appendage:
     """One stern plane; its moment counts x alone, since four of them balance about the axis.
 
@@ -174,7 +176,7 @@ def plane(hull: Hull) -> Appendage:
     stretch = np.sqrt(1.0 + slope**2 + TAPER**2 * (slope * (1.0 - q) + half) ** 2)
     sides = 2.0 * q_weight @ (stretch * (tip**2 - edge**2) / (2.0 * TAPER))
     flat = 2.0 * tip**2 * (q_weight @ half)
-    return Appendage(float(volume), np.array([along, 0.0]), float(sides + flat), _covered(hull))
+    return Appendage(float(volume), locked([along, 0.0]), float(sides + flat), _covered(hull))
 
 
 def _covered(hull: Hull) -> float:
@@ -254,10 +256,9 @@ def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh
     fine = np.sqrt(hull_panels / HULL_PANELS)
     solids = [meshed(suboff_meridian(), hull_panels)]
     if with_sail:
-        solids.append(_solid(sail_sections(*_counts(SAIL, fine)), 0.0))
+        solids.append(_sail_of(_counts(SAIL, fine)))
     if with_planes:
-        sections = plane_sections(*_counts(PLANE, fine))[:, :, [0, 2, 1]]
-        solids += [_solid(sections, turn * np.pi / 2.0) for turn in range(4)]
+        solids += [_plane_of(turn, _counts(PLANE, fine)) for turn in range(4)]
     return united(solids)
 
 
@@ -319,12 +320,21 @@ def outline(with_sail: bool, with_planes: bool, controls: tuple[Control, ...] = 
 
 
 def _sail(panels: int) -> TriangleMesh:
-    return _solid(sail_sections(*_shared(TOWED_SAIL, panels, lambda n: 2 * n[0] * (2 * n[1] + n[2] + 1))), 0.0)
+    return _sail_of(_shared(TOWED_SAIL, panels, lambda n: 2 * n[0] * (2 * n[1] + n[2] + 1)))
 
 
 def _plane(turn: int, panels: int) -> TriangleMesh:
-    sections = plane_sections(*_shared(TOWED_PLANE, panels, lambda n: 2 * n[0] * (2 * n[1] + 3)))
-    return _solid(sections[:, :, [0, 2, 1]], turn * np.pi / 2.0)
+    return _plane_of(turn, _shared(TOWED_PLANE, panels, lambda n: 2 * n[0] * (2 * n[1] + 3)))
+
+
+@lru_cache(16)  # meshes of one body at many counts share most of these
+def _sail_of(counts: tuple[int, ...]) -> TriangleMesh:
+    return _solid(sail_sections(*counts), 0.0)
+
+
+@lru_cache(64)
+def _plane_of(turn: int, counts: tuple[int, ...]) -> TriangleMesh:
+    return _solid(plane_sections(*counts)[:, :, [0, 2, 1]], turn * np.pi / 2.0)
 
 
 def _shared(counts: tuple[int, ...], panels: int, triangles: Callable[[tuple[int, ...]], int]) -> tuple[int, ...]:

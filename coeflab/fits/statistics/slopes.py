@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, brief, remembered
 from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
-from coeflab.fits.statistics.least_squares import Index, aicc, factorise, solve
+from coeflab.fits.statistics.least_squares import Factorised, Index, aicc, factorise, solve
 from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.statistics.origin_slope import OriginSlope
 
@@ -107,12 +107,12 @@ def estimate(family: Family, target: str, x: Array, y: Array, se: Array | None, 
     xs, scale = x[rows], float(np.max(np.abs(x[rows]), initial=0.0)) or 1.0
     if len(rows) <= len(terms) or len(np.unique(np.round(xs / scale, 6))) < len(terms):
         return None
-    f = factorise(design(terms, xs), None if se is None else se[rows] ** -2.0)
+    f, freedoms = _factorised(terms, xs, None if se is None else se[rows] ** -2.0)
     if f.rank < len(terms):
         return None
     coefficients, residuals = solve(f, y[rows])
     at = terms.index(target)
-    freedom = float(bell_mccaffrey(f)[at])
+    freedom = float(freedoms[at])
     normed = residuals if se is None else residuals / (f.root_weights * se[rows])
     return Estimate(
         family=family,
@@ -125,6 +125,12 @@ def estimate(family: Family, target: str, x: Array, y: Array, se: Array | None, 
         aicc=float(aicc(f, residuals)),
         lack_of_fit=lack_of_fit(f, normed, xs, 1e-6 * scale, se is not None),
     )
+
+
+@remembered(64)  # the components of a sweep share their settings
+def _factorised(terms: tuple[str, ...], x: Array, weights: Array | None) -> tuple[Factorised, Array]:
+    f = factorise(design(terms, x), weights)
+    return f, bell_mccaffrey(f)
 
 
 def is_one_sided(x: Array) -> bool:

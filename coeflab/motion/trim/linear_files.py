@@ -6,7 +6,6 @@ import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import scipy.io
 
 from coeflab.core.types import Array
 
@@ -24,6 +23,8 @@ def npz(arrays: Mapping[str, Array], names: Mapping[str, Sequence[str]]) -> byte
 
 def mat(arrays: Mapping[str, Array], names: Mapping[str, Sequence[str]]) -> bytes:
     """For `load` of MATLAB and Octave; names as cells."""
+    import scipy.io
+
     out = io.BytesIO()
     cells = {k: np.array(v, dtype=object) for k, v in names.items()}
     scipy.io.savemat(out, {**arrays, **cells}, oned_as="column")
