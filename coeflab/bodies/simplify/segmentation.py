@@ -427,9 +427,8 @@ def _planes(of: Solid) -> list[tuple[tuple[float, ...], float]]:
 MOST_HULLS, VOXELS = 16, 400_000
 HOLLOW = 0.03
 FACES = 5_000
-LARGER = (
-    1.03  # than a hull of voxels: it lies up to a voxel inside on either side, 2.7 % of the size of a cube of VOXELS
-)
+# Hulls of voxels lie up to a voxel inside on either side: 2.7 % of the size of a cube of VOXELS.
+LARGER = 1.03
 
 
 def convex_pieces(of: Solid, by_notches: bool = False) -> list[Solid]:
