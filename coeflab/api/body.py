@@ -10,8 +10,7 @@ import numpy as np
 
 from coeflab.api.questions import above_zero, si
 from coeflab.bodies import body as plain
-from coeflab.bodies.added_masses import added_masses, methods, near_walls
-from coeflab.bodies.finer_panels import finer_panels
+from coeflab.bodies.added_masses import added_masses, finer, methods, near_walls
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.bodies.simplify.source import mesh_body, subject
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-__all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer_panels", "near_walls", "read_body", "typed_body"]
+__all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
 MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
 

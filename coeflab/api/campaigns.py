@@ -10,18 +10,15 @@ from typing import Any, NamedTuple
 from coeflab.core.errors import InputError
 from coeflab.core.units import positive_typed
 from coeflab.core.wording import Verbatim
-from coeflab.fits import FITS
+from coeflab.fits import BY_DEFAULT, FITS, JOINT, USUAL
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.law.scaling import Scaling, require_hull
-from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
-from coeflab.tables.importers import Importer
 from coeflab.tables.reading import suited_fit, table_at
 
 __all__ = ["FirstFit", "Study", "Sweep", "first_fit", "fit_campaigns", "suited_fit"]
-USUAL, MODEL = Importer.fit, "manoeuvring_model"
 MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 Progress = Callable[[str], None]
 
@@ -153,13 +150,13 @@ def first_fit(folder: Path, progress: Progress = lambda _: None) -> FirstFit:
     )
     if suited == USUAL and (study is None or combined):
         try:
-            joint = fit_campaigns([folder], MODEL, progress=progress)
+            joint = fit_campaigns([folder], JOINT, progress=progress)
         except InputError:
             joint = None
         if study is None or (joint is not None and len(_valued(joint)) > len(_valued(study))):
-            study, by = joint, MODEL
-    further = "" if study is None else MODEL if combined and by == suited else "" if by == suited else by
-    return FirstFit(study, by, by == suited, study is not None and by in DEFAULT_FITS, why, further)
+            study, by = joint, JOINT
+    further = "" if study is None else JOINT if combined and by == suited else "" if by == suited else by
+    return FirstFit(study, by, by == suited, study is not None and by in BY_DEFAULT, why, further)
 
 
 def _valued(study: Study) -> set[str]:

@@ -14,21 +14,18 @@ from coeflab.api.reading import read_tables
 from coeflab.api.result import Result
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.fits import FITS
+from coeflab.fits import FITS, JOINT, USUAL
 from coeflab.fits.joint.rows import one_length
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import Importer
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import suited_fit
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
 
-USUAL = Importer.fit
 ARRAYS_NAME = "table"  # of arrays that nobody named
-MODEL = "manoeuvring_model"
 
 
 def fit(
@@ -98,7 +95,7 @@ def fit(
         )  # fmt: skip
     if include_uncertain:
         read = [t.with_uncertain_cells() for t in read]
-    by = by or (MODEL if "terms" in options else _suited(every))
+    by = by or (JOINT if "terms" in options else _suited(every))
     given = {k: list(v) if isinstance(v, tuple) else v for k, v in options.items()}
     scaling = None
     if (length is None) != (length_name is None):

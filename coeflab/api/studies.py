@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from coeflab.study.towed import Towed
 
 __all__ = ["Plan", "Study", "report_files", "require_formats", "run"]
-FORMATS = {".html": "html", ".pdf": "pdf", ".tex": "latex"}
 
 
 @suggesting
@@ -87,9 +86,12 @@ class Study(plain.Study):
             Another ending.
         """
         file = Path(path) / "report.html" if Path(path).is_dir() else Path(path)
-        if file.suffix not in FORMATS:
-            raise InputError(shown(file.name), f"a name that ends in {', '.join(FORMATS)}", column="path")
-        _, result, _ = report_files(self, [FORMATS[file.suffix]], full=full, short=short, review=review)
+        from coeflab.report.formats import REPORTERS
+
+        formats = {s: name for name in REPORTERS.usable() if (s := REPORTERS.load(name).suffix)}
+        if file.suffix not in formats:
+            raise InputError(shown(file.name), f"a name that ends in {', '.join(formats)}", column="path")
+        _, result, _ = report_files(self, [formats[file.suffix]], full=full, short=short, review=review)
         own = next(name for name in result if name.endswith(file.suffix))
         write_all(file.parent, {file.name if name == own else name: content for name, content in result.items()})
         return file

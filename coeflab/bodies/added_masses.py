@@ -21,6 +21,7 @@ from coeflab.law.water import ROUND_DENSITY
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
     from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.core.finding import Finding
     from coeflab.law.added_mass import AddedMass
 
 DENSEST = 1e5
@@ -226,6 +227,20 @@ def beside_walls(
     method, subject = ADDED_MASS.load("panel"), _original(body) or body
     options = {**(given or {}), "wall": wall}
     return tuple(method.added_mass(subject, density, {**options, "distance": d}) for d in sorted(set(distances)))
+
+
+def finer(found: AddedMass, given: Mapping[str, Any]) -> Finding | None:
+    """What a smaller error of a result would cost; None of a method that has no mesh to refine, or where nobody needs less.
+
+    Parameters
+    ----------
+    found : AddedMass
+    given : mapping
+        Options of the method as they were typed.
+    """
+    name = found.method.partition(":")[0]
+    cost = ADDED_MASS.load(name).finer if name in ADDED_MASS.names() else None
+    return None if cost is None else cost(found, given)
 
 
 def _require_solid(body: Body) -> None:

@@ -1,7 +1,7 @@
 """How far an added mass may be off that is only a rough guide to its body, as U95 and as findings.
 
 The 95 % half-width of a diagonal entry is a share of the entry and the displaced water together: an ellipsoid of three like
-axes turns about in water without moving any, so that no share of the entry itself would hold. The shares are those that hold 95 %
+axes turns about in water without moving any, so that no share of the entry itself would hold. The shares (``rough_share`` of a method) are those that hold 95 %
 of the diagonal entries of the twelve meshes of ``tests/bodies/twelve.py`` against the panel method, 2,000 panels extrapolated: a
 calibration, whose own 95 % validates nothing. Ten single bodies that had no part in it (cone, torus, plate, tall box, disc, wedge,
 octahedron, capsule, flat spheroid, short ring; 1,000 panels) have all of their 108 entries inside, at .71 of the half-width at most.
@@ -13,14 +13,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.shape import Shape
 from coeflab.bodies.volume_moments import displaced
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.types import Array
 from coeflab.law.added_mass import AddedMass
-
-SHARES = {"strip:lamb": 0.8, "strip": 0.8}
-OTHER = 1.3  # the ellipsoid, and parts that stand in poorly
 
 
 def rough_u95(found: AddedMass, shape: Shape, density: float, vanishing: NDArray[np.bool_]) -> Array:
@@ -36,7 +34,7 @@ def rough_u95(found: AddedMass, shape: Shape, density: float, vanishing: NDArray
         What symmetry makes vanish.
     """
     scale = np.diag(found.matrix) + displaced(shape, density, found.reference_point)
-    half = SHARES.get(found.method, OTHER) * np.sqrt(np.outer(scale, scale))
+    half = ADDED_MASS.load(found.method.partition(":")[0]).rough_share * np.sqrt(np.outer(scale, scale))
     error = np.zeros((6, 6)) if found.error is None else found.error
     return np.where(vanishing, error, np.maximum(half, error))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.added_mass import ADDED_MASS
+from coeflab.bodies.added_mass import ADDED_MASS, resolving
 from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, mirrors, vanishing
 from coeflab.bodies.rough_guide import rough_finding, rough_u95, unresolved_finding
@@ -138,9 +138,12 @@ class Triangulation:
         """What must travel with the recommended one: that it is a rough guide, with its U95; that no panels were possible."""
         found, out = self.recommended, []
         if found.rough:
-            out.append(rough_finding(found, "--method panel" if "panel" not in self._tried else "coeflab simplify"))
-        why = self.refused.get("panel on the mesh", self.refused.get("panel", ""))
-        if why and "panel" not in self._used and not self._is_exact(found):
+            untried = [name for name in resolving() if name not in self._tried]
+            out.append(rough_finding(found, f"--method {untried[0]}" if untried else "coeflab simplify"))
+        why = next(
+            (self.refused[k] for name in resolving() for k in (f"{name} on the mesh", name) if k in self.refused), ""
+        )
+        if why and self._used.isdisjoint(resolving()) and not self._is_exact(found):
             out.append(unresolved_finding(found.body, found.method, why, "coeflab simplify"))
         return tuple(out)
 
@@ -150,7 +153,7 @@ class Triangulation:
 
     @property
     def _tried(self) -> set[str]:
-        return self._used | set(self.refused) | {"panel" for name in self.refused if name.startswith("panel")}
+        return self._used | set(self.refused) | {name.partition(" ")[0] for name in self.refused}
 
     def _is_exact(self, found: AddedMass) -> bool:
         """Lamb's form for one ellipsoid."""
@@ -167,7 +170,7 @@ class Triangulation:
 
     def _unchecked(self, found: AddedMass) -> Parts | None:
         """The parts that stand for a mesh, where nothing was computed of that mesh."""
-        return None if "panel" in self.on_mesh or found.method in self.on_mesh else self._parts
+        return None if {found.method, *resolving()} & set(self.on_mesh) else self._parts
 
     @property
     def none_recommended(self) -> bool:

@@ -36,7 +36,7 @@ def command(
 
     About its reference point in FRD. With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
-    from coeflab.api.body import added_masses, finer_panels, typed_body
+    from coeflab.api.body import added_masses, finer, typed_body
     from coeflab.api.questions import share_of
     from coeflab.cli.fit import further
     from coeflab.core.provenance import work
@@ -65,7 +65,7 @@ def command(
     show.table(tables.derivatives(found))
     show.table(tables.symmetry(found))
     show.table(tables.primes(found))
-    cost = [f for r in found.results if (f := finer_panels(r, further(ctx.args))) is not None]
+    cost = [f for r in found.results if (f := finer(r, further(ctx.args))) is not None]
     show.found(cost)
     for citation in found.citations:
         show.text(f"  {work(citation)}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 from coeflab.core.registry import Plugin, Registry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.law.scaling import Scaling
@@ -24,10 +24,14 @@ class Fit(Plugin, Protocol):
         Whether the tables may be of several campaigns.
     reads_series : bool
         Whether it takes oscillating runs, and nothing else.
+    printed_inside : callable or None
+        ``printed_inside(result)``: how many coefficients that its options name as printed lie inside the fitted 95 % intervals,
+        and how many are printed.
     """
 
     joins_campaigns: bool = False
     reads_series: bool = False
+    printed_inside: Callable[[FitResult], tuple[int, int]] | None = None
 
     def fit(self, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
         """Coefficients with their uncertainty.
@@ -65,3 +69,9 @@ class CompletingFit(Fit, Protocol):
 
 
 FITS = Registry("coeflab.fits", "fit", Fit, __name__)  # type: ignore[type-abstract]
+
+# What fits a table, and several campaigns together, where nobody names a fit. No attribute of the plugins: an installed package
+# must not change the numbers of a plan that names none.
+USUAL = "slope_at_origin"
+BY_DEFAULT = (USUAL, "tied_law")
+JOINT = "manoeuvring_model"

@@ -380,14 +380,12 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     return AngleUnit("", (*said, why), inside)
 
 
-def printed_inside(results: Sequence[FitResult]) -> tuple[int, int]:
-    """How many printed coefficients lie inside the fitted 95 % intervals, and how many are printed; of fits of a polar."""
-    inside = count = 0
-    for found in results:
-        if found.fit == "glide_polar" and found.settings.get("printed"):
-            printed = read_printed(found.settings["printed"].split(), "glide_polar.printed")
-            inside, count = inside + angle_unit_of(printed, found).inside, count + len(printed)
-    return inside, count
+def printed_inside(result: FitResult) -> tuple[int, int]:
+    """How many printed coefficients lie inside the fitted 95 % intervals, and how many are printed."""
+    if not result.settings.get("printed"):
+        return 0, 0
+    printed = read_printed(result.settings["printed"].split(), "glide_polar.printed")
+    return angle_unit_of(printed, result).inside, len(printed)
 
 
 def munk_in_words(result: FitResult) -> str:

@@ -28,11 +28,8 @@ WITH = {
 }  # the other motion of the plane, its components, its angle
 FIRST = 1e-3  # of the speed, of the disturbance that grows
 FARTHEST = 50.0  # of r' or v/u: what passes it has no end
-GROWN, STEADY, NEAR = (
-    60.0,
-    1e-2,
-    1e-2,
-)  # e-fold times that are waited, the change of a steady turn in one of them, its error
+E_FOLDS = 60.0  # that are waited: 11 lead from FIRST to FARTHEST, the rest is for a turn that settles slowly
+STEADY, NEAR = 1e-2, 1e-2  # the change of a steady turn in one e-fold time, its error
 
 
 def _held(vehicle: Vehicle, at: Sequence[int], speed: float) -> tuple[Vehicle, Array]:
@@ -117,7 +114,7 @@ def settled_turn(vehicle: Vehicle, rate: str, speed: float) -> SettledTurn | Non
     far.terminal = True  # type: ignore[attr-defined]
     start = np.full(len(at), FIRST)
     start[0] = -FIRST if len(at) > 1 else FIRST  # drift outwards of the turn
-    found = solve_ivp(change, (0.0, GROWN), start, method="LSODA", events=far, rtol=1e-4, atol=1e-6)
+    found = solve_ivp(change, (0.0, E_FOLDS), start, method="LSODA", events=far, rtol=1e-4, atol=1e-6)
     near = found.y[:, -1]
     if found.status != 0 or not np.all(np.isfinite(near)) or np.max(np.abs(change(0.0, near))) > STEADY:
         return None

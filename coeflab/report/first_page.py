@@ -13,7 +13,7 @@ import numpy as np
 from coeflab.core.finding import Severity
 from coeflab.core.table import Table, as_printed, in_digits_of
 from coeflab.core.wording import listed, spelled_out
-from coeflab.fits.glide_polar import printed_inside
+from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.straight_runs import SYMBOL
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
@@ -270,7 +270,8 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
         wanted = "wanted " * (not study.plan.wanted or any(r.symbol in study.plan.wanted for r in rows))
         first = f"{name}: {of} {wanted}coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
         first += _open(valued)
-        inside, printed = printed_inside(study.fits)
+        compared = ((FITS.load(r.fit).printed_inside, r) for r in study.fits if r.fit in FITS.names())
+        inside, printed = map(sum, zip((0, 0), *(count(r) for count, r in compared if count is not None), strict=True))
         words = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
         absent = absent or words or "no published evaluation of these data"
     if judged and all(r.status == NO_RESULT for r in rows if r.value is None):

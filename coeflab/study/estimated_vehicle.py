@@ -26,6 +26,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
+from coeflab.fits import BY_DEFAULT
 from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.formats.export import PlannedExport
 from coeflab.formats.exporting import exports_of
@@ -39,7 +40,6 @@ from coeflab.motion.simulation import manoeuvres_of, moved, simulate
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
-from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tables.reading import table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
@@ -453,7 +453,7 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
     if path.suffix.lower() == ".json":
         found = read_parameter_file(path)
         return found, found.scaling
-    campaigns = tuple(table_at(p, DEFAULT_FITS) for p in campaigns_named(name))
+    campaigns = tuple(table_at(p, BY_DEFAULT) for p in campaigns_named(name))
     plan = Plan(
         stem(path.name), path.name, campaigns, np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,

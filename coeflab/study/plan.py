@@ -14,6 +14,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located, named, shipped, stem, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
+from coeflab.fits import BY_DEFAULT, JOINT
 from coeflab.formats.export import PlannedExport
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
@@ -25,8 +26,6 @@ from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
 
-JOINT = "manoeuvring_model"
-DEFAULT_FITS = ("slope_at_origin", "tied_law")
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
 
@@ -167,7 +166,7 @@ class TableKeys(takes.Declaration):
     @property
     def used(self) -> tuple[str, ...]:
         """The fits."""
-        return self.fits or DEFAULT_FITS
+        return self.fits or BY_DEFAULT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -464,7 +463,7 @@ def names_plan(name: str | Path) -> bool:
 def _of_campaign(path: Path) -> Plan:
     """The plan of a campaign alone: the fit that suits it, slopes at the origin with the law."""
     campaign, suited = read_campaign(path), suited_fit(path.parent)
-    fits = DEFAULT_FITS if suited in DEFAULT_FITS else (suited,)
+    fits = BY_DEFAULT if suited in BY_DEFAULT else (suited,)
     return Plan(
         stem(campaign.name), campaign.title, (table_at(path.parent, fits),), file=InputFile(path.name, sha256_of(path))
     )
@@ -494,7 +493,7 @@ def read_plan(path: str | Path) -> Plan:
         title=study.name if study.title is None else study.title,
         tables=(
             *(table_at(t.campaign, t.used, t.options, t.speed) for t in file.table),
-            *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
+            *(table_at(t.added, BY_DEFAULT) for t in tows if t.added is not None),
         ),
         tows=tows,
         conversions=tuple(PlannedConversion(c.campaign, c.of) for c in file.conversion),

@@ -43,7 +43,7 @@ OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole fo
 SIGNIFICANCE = 0.03
 LONGEST = 20_000  # rows; longer histories are first averaged in blocks, which changes no mean over whole blocks
 DIGITS = 1e-6  # no error is below half a unit of the sixth digit of the whole force: histories are written to as many
-GROWN = 1e3
+DIVERGED_BY = 1e3  # times the median of the first half: above what a start from rest or a gust does, far below overflow
 
 
 class Convergence(StrEnum):
@@ -380,7 +380,7 @@ def _grown(columns: Array) -> str:
     n = columns.shape[1]
     size = np.sqrt(np.sum(columns**2, axis=0))
     before, last = float(np.median(size[: max(n // 2, 1)])), float(np.median(size[-max(n // 20, 1) :]))
-    return f"the forces grew {last / before:.2g}-fold" if before > 0.0 and last > GROWN * before else ""
+    return f"the forces grew {last / before:.2g}-fold" if before > 0.0 and last > DIVERGED_BY * before else ""
 
 
 def _equal(columns: Array, at: Array | None) -> Array:

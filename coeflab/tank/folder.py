@@ -15,6 +15,7 @@ from coeflab.core.text.records import plain_name, read_record
 from coeflab.core.text.toml import quoted, read_toml
 from coeflab.core.version import VERSION
 from coeflab.tank.jobs import JOB, STATE, Job
+from coeflab.tank.solvers import SOLVERS
 from coeflab.tank.tank import Tank
 
 KIND = "coeflab tow 1"
@@ -78,7 +79,9 @@ def copied(matrix: Path, folder: Path) -> bytes:
     """
     file = read_toml(matrix)
     lines = file.text.split("\n")
-    for place, kind in ((("tank", "body"), "geometry"), (("solver", "external", "table"), "cfd_data")):
+    solvers = [name for name in file.content.get("solver", {}) if name in SOLVERS.names()]
+    theirs = [(("solver", name, key), kind) for name in solvers for key, kind in SOLVERS.load(name).paths.items()]
+    for place, kind in ((("tank", "body"), "geometry"), *theirs):
         named: Any = file.content
         for key in place:
             named = named.get(key) if isinstance(named, dict) else None

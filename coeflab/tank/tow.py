@@ -20,11 +20,11 @@ from coeflab.core.provenance import sha256_of
 from coeflab.core.text.bounded import log_text
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
+from coeflab.fits import BY_DEFAULT
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.report.rendered import rendered
-from coeflab.study.plan import DEFAULT_FITS
 from coeflab.study.run import run
 from coeflab.study.secants import secant
 from coeflab.study.study import Plan, PlannedTow, Study
@@ -575,7 +575,7 @@ def _study(tow: Tow, campaign: Path) -> Study:
     planned = PlannedTow(tank.title, tow.body.body.name, tank.name, added=campaign)
     study = run(
         Plan(
-            name=tank.name, title=tank.title, tables=(table_at(campaign, DEFAULT_FITS),), scaling=tank.scaling,
+            name=tank.name, title=tank.title, tables=(table_at(campaign, BY_DEFAULT),), scaling=tank.scaling,
             conditions=tank.conditions, body=tank.body, wanted=SIX, tows=(planned,),
         )
     )  # fmt: skip

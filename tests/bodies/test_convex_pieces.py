@@ -8,7 +8,7 @@ from manifold3d import Manifold
 
 from coeflab.bodies.mesh.solids import surface
 from coeflab.bodies.simplify.part_forms import likeness
-from coeflab.bodies.simplify.segmentation import convex_pieces
+from coeflab.bodies.simplify.segmentation import LARGER, VOXELS, convex_pieces
 from tests.bodies.vehicles import rod
 
 BRACKET = Manifold.cube((1.0, 0.3, 0.1)) + Manifold.cube((0.1, 0.3, 0.8))
@@ -44,3 +44,9 @@ def test_a_convex_solid_stays_whole() -> None:
     found = convex_pieces(Manifold.cube((1.0, 0.5, 0.2)))
     assert [p.volume() for p in found] == pytest.approx([0.1], rel=1e-6)
     assert np.ptp(surface(found[0])[0], axis=0) == pytest.approx([1.0, 0.5, 0.2])
+
+
+def test_hulls_are_larger_by_what_voxels_leave_out() -> None:
+    """A voxel on either side of a cube, over its size: the hulls grow by that, and by a fifth more at most."""
+    voxel = 2.0 * VOXELS ** (-1.0 / 3.0)
+    assert voxel < LARGER - 1.0 < 1.2 * voxel

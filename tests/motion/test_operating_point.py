@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coeflab.motion.trim.solver import Found, Problem, solve
+from coeflab.motion.trim.solver import Found, Problem, Scaled, _sorted, solve
 
 Array = np.ndarray
 
@@ -78,6 +78,13 @@ def test_other_isolated_solutions_are_found_and_the_least_effort_comes_first() -
     assert got.point == pytest.approx([1.0], abs=1e-9)
     assert got.others == pytest.approx(np.array([[-3.0]]), abs=1e-9)
     assert (got.rank, got.family.shape[1], got.singular) == (1, 0, False)
+
+
+@pytest.mark.parametrize(("apart", "count"), [(0.9e-3, 0), (1.1e-3, 1)])
+def test_solutions_a_thousandth_of_the_scale_apart_are_one(apart: float, count: int) -> None:
+    one = np.ones(1)
+    p = Scaled(lambda y: y, lambda _: np.eye(1), -one, one, np.zeros(1), one)
+    assert len(_sorted(p, [np.zeros(1), apart * one])[1]) == count
 
 
 def test_a_double_root_is_no_family() -> None:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from math import asin, cos, degrees, sin, tan
+from math import asin, cos, degrees, log, sin, tan
 
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+from coeflab.motion import turn_limits
 from coeflab.motion.simulation import moved, simulate
-from coeflab.motion.turn_limits import open_turn, settled_turn, unlimited
+from coeflab.motion.turn_limits import E_FOLDS, FARTHEST, FIRST, open_turn, settled_turn, unlimited
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
 from tests.motion.vehicles import UNSTABLE, made
@@ -94,3 +95,16 @@ def test_a_steady_turn_by_the_equations_of_motion_is_that_of_the_balance() -> No
     (right, _) = (f.value for f in out.figures)
     assert right == pytest.approx(found.rate * np.hypot(1.0, tan(found.angle)) * body.speed / body.length, rel=1e-3)
     assert asin(sin(found.angle)) == found.angle
+
+
+@pytest.mark.parametrize(("folds", "found"), [(5.0, False), (25.0, True), (60.0, True)])
+def test_a_turn_is_waited_for_until_it_is_steady(monkeypatch: pytest.MonkeyPatch, folds: float, found: bool) -> None:
+    """A small disturbance takes five e-fold times to the size of the turn, and some more to settle."""
+    monkeypatch.setattr(turn_limits, "E_FOLDS", folds)
+    bare = moved(made(LIMITED), "turning_circle", free=("u", "v", "r"))
+    assert (settled_turn(bare, "r", bare.speed) is not None) == found
+
+
+def test_what_is_waited_leaves_room_for_turns_that_settle_slowly() -> None:
+    """From the first disturbance to the farthest state: five to six times as long as pure growth takes."""
+    assert 5.0 < E_FOLDS / log(FARTHEST / FIRST) < 6.0

@@ -189,6 +189,12 @@ def test_histories_without_numbers(values: Array, status: Convergence) -> None:
     assert found.why
 
 
+@pytest.mark.parametrize(("times", "diverged"), [(990.0, False), (1010.0, True)])
+def test_a_thousandfold_force_has_diverged(times: float, diverged: bool) -> None:
+    found = plateau({"Y": np.where(np.arange(200) < 150, 1.0, times)})
+    assert (found.status is Convergence.DIVERGED) == diverged
+
+
 def test_zero_is_a_number() -> None:
     found = plateau({c: np.zeros(100) for c in "KMN"})
     assert found.status is Convergence.CONVERGED

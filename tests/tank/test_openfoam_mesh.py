@@ -20,7 +20,7 @@ from coeflab.core.files import shipped
 from coeflab.core.text.foam import FoamCase
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
-from coeflab.tank.openfoam.layers import FEWEST_ON_FOILS, GROWTH, wall_unit
+from coeflab.tank.openfoam.layers import FEWEST_ON_FOILS, GROWTH, layers, wall_unit
 from coeflab.tank.openfoam.mesh import mesh_job, mesh_name
 from coeflab.tank.openfoam.mesh_made import MADE, expected_cells, findings, mesh_ended, mesh_made
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
@@ -109,6 +109,13 @@ def test_wall_functions_of_a_hull_begin_at_sixty(body: TowedBody) -> None:
     fast = Conditions(1000.0, 10.0, 1e-6)
     first = mesh_sizes(body, 1.0, Half.WHOLE, MeshKeys(), fast).layers["hull"].first
     assert first / 2.0 / wall_unit(10.0, 1.0, 1e-6) == pytest.approx(60.0)
+
+
+def test_wall_functions_of_a_foil_begin_at_thirty(body: TowedBody) -> None:
+    fast, (name, chord) = Conditions(1000.0, 10.0, 1e-6), next((n, c) for n, c in body.chord.items() if n != "hull")
+    found = layers(body, name, 0.1, "functions", None, fast)
+    assert found is not None
+    assert found.first / 2.0 / wall_unit(10.0, chord, 1e-6) == pytest.approx(30.0)
 
 
 def test_boxes_of_finer_cells_reach_by_the_length_of_the_body(body: TowedBody) -> None:

@@ -23,6 +23,7 @@ citations = ("newman1977", "bryson1954", "lamb1932")
 presets: Mapping[str, Mapping[str, str]] = {"lamb": {"end_correction": "lamb"}}
 takes_surface = True
 places: Mapping[str, int] = {"lamb": 3, "": 6}
+rough_share = 0.8
 
 NONE = "sections only: nothing along {}the axis, ends not corrected"
 POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-6

@@ -256,7 +256,7 @@ def _accepted(problem: Scaled, y: Array, step: Array, halvings: int) -> Array | 
     return None
 
 
-APART = 1e-3
+DISTINCT = 1e-3  # of the scale of an unknown: solutions nearer than that are one, found twice
 WALK = 1e-2
 REACH = 10.0
 NOTHING = 1e-12
@@ -400,7 +400,7 @@ def _sorted(p: Scaled, solved: list[Array]) -> tuple[Array, list[Array]]:
     counts = p.weight > 0.0 if np.any(p.weight > 0.0) else np.ones(len(p.weight), dtype=bool)
     distinct: list[Array] = []
     for y in sorted(solved, key=lambda y: round(p.effort(y), 9)):
-        if all(np.max(np.abs(y - other)[counts]) > APART for other in distinct):
+        if all(np.max(np.abs(y - other)[counts]) > DISTINCT for other in distinct):
             distinct.append(y)
     return distinct[0], distinct[1:]
 

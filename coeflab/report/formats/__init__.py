@@ -14,7 +14,15 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Renderer(Plugin, Protocol):
-    """Renders a report in a format."""
+    """Renders a report in a format.
+
+    Attributes
+    ----------
+    suffix : str
+        Of a file's name that asks for this format; empty where none does.
+    """
+
+    suffix: str = ""
 
     def render(self, document: Document) -> Mapping[str, bytes]:
         """Contents by file name.

@@ -121,6 +121,7 @@ def _packed(values: NDArray[Any]) -> str:
 
 
 summary = "one HTML file with tables and figures, for browser and printer"
+suffix = ".html"
 STYLES = ("style.css", "symbols.css", "contents.css", "answer.css")
 SCRIPTS = ("contents.js", "zooming.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
 THREE = "three/three.min.js"

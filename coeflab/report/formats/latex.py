@@ -18,6 +18,7 @@ from coeflab.report.notation import DOT, GREEK, Command, Factor, Raised, Run, ce
 from coeflab.report.printable import shortened, visible
 
 summary = "one LaTeX file with every table: booktabs, siunitx, captions, notes; and BibTeX of the works used"
+suffix = ".tex"
 citations: tuple[str, ...] = ()
 
 FILE, WORKS = "report.tex", "report.bib"

@@ -21,6 +21,7 @@ from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, ke
 from coeflab.report.printable import BREAK, CLOCK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
+suffix = ".pdf"
 citations: tuple[str, ...] = ()
 
 TEMPLATE = ("data", "symbols", "page", "figures", "tables", "first_page", "report")

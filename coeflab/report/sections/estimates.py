@@ -193,7 +193,7 @@ def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
         return ""
     s, (factor, unit) = main[0], shown_unit(main[0].figure.unit)
     asked = next(c.question for c in carried if any(k is s for k in c.spreads))
-    if asked.manoeuvre == "stop":
+    if "remaining" in asked.options:
         so = f"to {asked.options['remaining']:g} of {speed:g} m/s"
     elif "rudder" in asked.options:
         so = f"at {_degrees(asked.options['rudder'])} of rudder and {speed:g} m/s"

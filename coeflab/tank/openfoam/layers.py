@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from coeflab.tank.towed_body import TowedBody
 
 Wall = Annotated[str, one_of("functions", "resolved", "none")]
+# Of the middle of the first cell: within the log law (30 to 300) and above its foot where the flow slows down on a hull, at its foot
+# on foils, whose boundary layer is thin; inside the viscous sublayer, below 1, of a resolved wall.
 Y_PLUS, Y_PLUS_OF_FOILS = {"functions": 60.0, "resolved": 0.8}, {"functions": 30.0, "resolved": 0.8}
 GROWTH, LAST_LAYER, LEAST_LAYER = 1.3, 0.35, 0.02  # the last and the thinnest over the cell that they lie on
 GROWTH_OF_FOILS, LAST_OF_FOILS, LEAST_OF_FOILS = 1.2, 0.43, 0.01

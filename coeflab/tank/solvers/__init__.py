@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from coeflab.core.declarations import Declaration
@@ -44,6 +45,8 @@ class TowSolver(Plugin, Protocol):
     ----------
     options : type of Declaration
         The keys of ``[solver.NAME]`` in tank.toml.
+    paths : mapping of str to str
+        Keys of its options that name a file, with the folder of what is shipped of that kind.
     jobs : callable or None
         ``jobs(tank, body, folder)``: writes the meshes and cases below the folder, each once, and gives their jobs in an order
         in which they can be carried out. Files that are there and equal are left alone; what is of no condition and no mesh
@@ -66,6 +69,7 @@ class TowSolver(Plugin, Protocol):
     """
 
     options: type[Declaration]
+    paths: Mapping[str, str] = MappingProxyType({})
     jobs: Callable[[Tank, TowedBody, Path], tuple[Job, ...]] | None = None
     history: Callable[[Path], Run] | None = None
     stop: Callable[[Path], None] | None = None

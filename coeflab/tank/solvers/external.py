@@ -58,6 +58,7 @@ class External(Declaration):
 
 
 options = External
+paths = {"table": "cfd_data"}
 
 
 def installed() -> Installation:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.finer_panels import finer_panels
+from coeflab.bodies.added_masses import finer
 from coeflab.core.axes import Datum
 from coeflab.law.added_mass import AddedMass
 
@@ -16,7 +16,7 @@ def matrix(share: float, method: str = "panel") -> AddedMass:
 
 
 def test_half_the_error_takes_four_times_the_panels() -> None:
-    found = finer_panels(matrix(0.08), {"panels": 6_000})
+    found = finer(matrix(0.08), {"panels": 6_000})
     assert found is not None
     assert found.statistic == pytest.approx(0.08)
     assert found["panels"] == 24_000
@@ -26,8 +26,8 @@ def test_half_the_error_takes_four_times_the_panels() -> None:
 
 
 def test_no_line_below_one_percent_nor_of_other_methods_and_the_most_is_said() -> None:
-    assert finer_panels(matrix(0.005), {}) is None
-    assert finer_panels(matrix(0.2, "strip"), {}) is None
-    found = finer_panels(matrix(0.2), {"panels": 32_000})
+    assert finer(matrix(0.005), {}) is None
+    assert finer(matrix(0.2, "strip"), {}) is None
+    found = finer(matrix(0.2), {"panels": 32_000})
     assert found is not None
     assert found.code == "added_mass.finest"
