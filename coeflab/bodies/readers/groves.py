@@ -176,7 +176,7 @@ def plane(hull: Hull) -> Appendage:
     stretch = np.sqrt(1.0 + slope**2 + TAPER**2 * (slope * (1.0 - q) + half) ** 2)
     sides = 2.0 * q_weight @ (stretch * (tip**2 - edge**2) / (2.0 * TAPER))
     flat = 2.0 * tip**2 * (q_weight @ half)
-    return Appendage(float(volume), locked([along, 0.0]), float(sides + flat), _covered(hull))
+    return Appendage(float(volume), locked([float(along), 0.0]), float(sides + flat), _covered(hull))
 
 
 def _covered(hull: Hull) -> float:
