@@ -28,7 +28,7 @@ from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.sections.estimates import answer_of_shape
-from coeflab.report.sections.stability import from_literature
+from coeflab.report.sections.stability import from_literature, no_index
 from coeflab.report.tables.models import quality
 from coeflab.report.tables.own_cfd import NO_RESULT
 from coeflab.study.lines import MEANING as MEANING_OF_LINE
@@ -36,7 +36,7 @@ from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.reference import Comparison, Reference, Relation
-from coeflab.vehicle.stability import ALONE, INDICES, Derived, sense, stability
+from coeflab.vehicle.stability import ALONE, INDICES, Derived, missing_for_stability, sense, stability
 
 PLACES = 4  # of a line, which has no U95 to say how many count
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
@@ -319,12 +319,9 @@ def _stability(study: Study) -> Chip:
     """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
     every = [index for p in study.parameter_files.values() for index in stability(p)]
     if not every:
-        return Chip(
-            "Stability",
-            "no value: derivatives or mass missing",
-            Severity.NOTE,
-            "stability" if study.parameter_files else "",
-        )
+        files = tuple(study.parameter_files.values())
+        words = no_index(min((missing_for_stability(p) for p in files), key=len)) if files else "no parameter file"
+        return Chip("Stability", words, Severity.NOTE, "stability" if files else "")
     first = [index for index in every if index.subject == every[0].subject]
     d: Derived = min(first, key=lambda index: index.name != "G_h")
     words = sense(d).removesuffix(ALONE).partition(" at ")[0]

@@ -247,6 +247,13 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
     return tuple(out)
 
 
+def missing_for_stability(parameters: ParameterFile) -> tuple[str, ...]:
+    """What the one of G_h and G_v lacks that lacks less: derivatives, and ``mass``; () where one can be had."""
+    known = {c.symbol for c in parameters.coefficients if c.value is not None}
+    lacks = [tuple(str(s) for s in symbols if s not in known) for *symbols, _ in INDICES.values()]
+    return min(lacks, key=len) + ("mass",) * (parameters.mass is None)
+
+
 def _apart(result: Propagated) -> float:
     """How far the linear half-width is from that by Monte Carlo, as a share of the latter."""
     return abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0

@@ -11,7 +11,15 @@ from scipy.optimize import brentq
 from scipy.special import k0
 
 from coeflab.fits.uncertainty.propagation import Propagated
-from coeflab.vehicle.stability import SIGN_OPEN, Derived, index_gradient, sense, stability, stability_index
+from coeflab.vehicle.stability import (
+    SIGN_OPEN,
+    Derived,
+    index_gradient,
+    missing_for_stability,
+    sense,
+    stability,
+    stability_index,
+)
 from tests.motion.vehicles import STABLE, made
 
 MASS, MASS_MOMENT = 0.018296, -0.127467e-4
@@ -53,6 +61,15 @@ def test_gradient_is_the_difference_quotient(y: float, n: float, sign: float, yr
         step[k] = 1e-7
         ahead, behind = (stability_index(*(point + s), MASS, MASS_MOMENT) for s in (step, -step))
         assert found[k] == pytest.approx((ahead - behind) / 2e-7, rel=1e-5, abs=1e-5 * np.abs(found).max())
+
+
+def test_what_an_index_lacks_is_that_of_the_plane_that_lacks_less() -> None:
+    whole = made(STABLE)
+    assert missing_for_stability(whole) == ()
+    assert missing_for_stability(whole.model_copy(update={"mass": None})) == ("mass",)
+    fewer = tuple(c for c in whole.coefficients if c.symbol not in ("Nr'", "Zw'", "Mw'"))
+    assert missing_for_stability(whole.model_copy(update={"coefficients": fewer})) == ("Nr'",)
+    assert not stability(whole.model_copy(update={"coefficients": fewer}))
 
 
 def of_uncertain(lever: float, arm: float, lever_half: float, arm_half: float):

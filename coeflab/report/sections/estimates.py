@@ -21,12 +21,13 @@ from coeflab.report.figures.first_page import forest_figure, share_text
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
 from coeflab.report.sections.body import hull_figure
+from coeflab.report.sections.stability import no_index
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
 from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.merge import Merged, estimates_of
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.stability import Derived, sense, stability
+from coeflab.vehicle.stability import Derived, missing_for_stability, sense, stability
 
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 COLUMN = 244.0  # points: 86 mm
@@ -295,7 +296,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         status = "" if value is not None else "no estimate"
         rows.append(AnswerRow(symbol, value, u95, status, "estimates", anchor="coefficients"))
     indices = stability(parameters)
-    held = _stability(indices[0]) if indices else "no value: derivatives or mass missing"
+    held = _stability(indices[0]) if indices else no_index(missing_for_stability(parameters))
     turn = interval_in_words(shape.carried, parameters.conditions.speed)
     chips = (
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),

@@ -106,6 +106,14 @@ def _by_others(study: Study) -> list[str]:
     return [in_sentences(start, each)] if each else []
 
 
+def no_index(lacking: Sequence[str]) -> str:
+    """What a stability index lacks that has no value, in words."""
+    mass = ["mass"] * ("mass" in lacking)
+    symbols = [s for s in lacking if s != "mass"]
+    named = symbols if len(lacking) < 3 else [f"{len(symbols)} derivatives"]
+    return f"no value: {listed([*named, *mass])} missing"
+
+
 def from_literature(parameters: ParameterFile, index: str) -> list[str]:
     """Derivatives of a stability index that no campaign of the study gave."""
     found = [parameters.coefficient(str(s)) for s in INDICES[index][:-1]]
