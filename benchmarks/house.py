@@ -2,9 +2,11 @@
 
 python benchmarks/house.py [--list]     --list names the circles, the long files and the modules with a single importer
 python benchmarks/house.py --lines      writes `lines_of_code.toml` where a subject fell; the ratchet of CI is `tests/core/test_lines_of_code.py`
+python benchmarks/house.py --texts      texts outside of templates by file, the most first
 python benchmarks/house.py --lines --because "REASON"      also where one rose
 
-Lines of code leave out blank lines, comments and docstrings. Imports count wherever they stand, in functions and under
+Lines of code leave out blank lines, comments and docstrings. Texts are literals of five words or more that are no docstring: words
+that reach a reader belong into templates (`coeflab/core/texts`). Imports count wherever they stand, in functions and under
 TYPE_CHECKING too. A circle is a set of modules that import each other, at any time. Plugins are the modules that a registry of
 plugins loads; numerics are modules that import nothing of the package but other numerics and ``core.types``. Of the modules with a
 single importer the last figure counts those that could move into it: of one subject, at most 600 lines together, and not held
@@ -16,6 +18,7 @@ from __future__ import annotations
 import ast
 import io
 import json
+import re
 import sys
 import tokenize
 import tomllib
@@ -30,6 +33,8 @@ PLUGINS = (
 )  # fmt: skip
 PURE = {"coeflab.core.types"}
 LONGEST = 600
+WORDS = 5  # of a literal: from here on it is a text
+COUNTS = ("lines", "texts")
 LINES = Path(__file__).with_name("lines_of_code.toml")
 
 
@@ -60,6 +65,24 @@ def code_lines(text: str) -> set[int]:
         if token.type not in quiet:
             found |= set(range(token.start[0], token.end[0] + 1))
     return found - skipped
+
+
+def texts(source: str) -> int:
+    """Literals of five words or more: no docstrings; an f-string is one literal, whatever stands in its braces."""
+    quiet: set[int] = set()
+    found = 0
+    for node in ast.walk(ast.parse(source)):  # breadth first: a docstring and an f-string come before their parts
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            quiet |= {id(s.value) for s in node.body[:1] if isinstance(s, ast.Expr)}
+        parts = [node]
+        if isinstance(node, ast.JoinedStr):
+            parts = list(node.values)
+            quiet |= set(map(id, parts))
+        elif not isinstance(node, ast.Constant) or id(node) in quiet:
+            continue
+        text = " 0 ".join(p.value for p in parts if isinstance(p, ast.Constant) and isinstance(p.value, str))
+        found += len(re.findall(r"[A-Za-z][A-Za-z'-]+", text)) >= WORDS
+    return found
 
 
 def imports(name: str, text: str, known: dict[str, Path]) -> tuple[set[str], set[int]]:
@@ -133,25 +156,41 @@ def apart(name: str, importer: str, lines: int) -> str:
     return f"{lines} lines together" if lines > LONGEST else ""
 
 
-def by_subject() -> dict[str, int]:
-    """Lines of code of every folder and file right below the package."""
-    out: dict[str, int] = defaultdict(int)
+def by_subject() -> dict[str, dict[str, int]]:
+    """Lines of code and texts of every folder and file right below the package."""
+    out: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(COUNTS, 0))
     for name, path in modules().items():
-        out[[*name.split("."), "__init__"][1]] += len(code_lines(path.read_text(encoding="utf-8")))
+        source = path.read_text(encoding="utf-8")
+        row = out[[*name.split("."), "__init__"][1]]
+        row["lines"] += len(code_lines(source))
+        row["texts"] += texts(source)
     return dict(sorted(out.items()))
 
 
-def written(found: dict[str, int], table: dict[str, dict[str, int | str]], because: str) -> str:
-    """The table of lines of code with the numbers that fell, and with those that rose where a reason is given."""
-    rose = {name for name, n in found.items() if n > int(table.get(name, {}).get("lines", 0))}
+def grown(
+    found: dict[str, dict[str, int]], table: dict[str, dict[str, int | str]]
+) -> dict[str, dict[str, tuple[int, int]]]:
+    """Subjects with a number above that of the table, each with both."""
+    pairs = {s: {c: (n[c], int(table.get(s, {}).get(c, 0))) for c in COUNTS if c in n} for s, n in found.items()}
+    return {s: over for s, both in pairs.items() if (over := {c: p for c, p in both.items() if p[0] > p[1]})}
+
+
+def written(found: dict[str, dict[str, int]], table: dict[str, dict[str, int | str]], because: str) -> str:
+    """The table of lines of code and texts with the numbers that fell, and with those that rose where a reason is given."""
+    rose = grown(found, table)
     if rose and not because:
-        raise SystemExit(f"More lines of code in {', '.join(sorted(rose))}; --because states why.")
+        raise SystemExit(f"More lines of code or texts in {', '.join(sorted(rose))}; --because states why.")
     out = [
-        "# Lines of code a subject may have: they only fall. A number that rises states its reason (house.py --lines).\n"
+        "# Lines of code, and texts outside of templates, a subject may have: they only fall. What rises states its reason "
+        "(house.py --lines).\n"
     ]
     for name, n in found.items():
         reason = because if name in rose else str(table.get(name, {}).get("reason", ""))
-        out.append(f"[{name}]\nlines = {n}\n" + f"reason = {json.dumps(reason)}\n" * bool(reason))
+        out.append(
+            f"[{name}]\n"
+            + "".join(f"{c} = {v}\n" for c, v in n.items())
+            + f"reason = {json.dumps(reason)}\n" * bool(reason)
+        )
     return "\n".join(out)
 
 
@@ -162,11 +201,16 @@ def main() -> None:
         table = tomllib.loads(LINES.read_text(encoding="utf-8")) if LINES.exists() else {}
         LINES.write_text(written(by_subject(), table, because), encoding="utf-8")
         return
+    if "--texts" in sys.argv:
+        counts = {name: texts(path.read_text(encoding="utf-8")) for name, path in modules().items()}
+        for name, n in sorted(counts.items(), key=lambda item: -item[1]):
+            sys.stdout.write(f"{n:5d} {name}\n" * bool(n))
+        return
     known = modules()
-    texts = {name: path.read_text(encoding="utf-8") for name, path in known.items()}
-    found = {name: imports(name, text, known) for name, text in texts.items()}
+    sources = {name: path.read_text(encoding="utf-8") for name, path in known.items()}
+    found = {name: imports(name, text, known) for name, text in sources.items()}
     graph = {name: targets for name, (targets, _) in found.items()}
-    code = {name: code_lines(text) for name, text in texts.items()}
+    code = {name: code_lines(text) for name, text in sources.items()}
     total = sum(map(len, code.values()))
     importing = sum(len(code[name] & lines) for name, (_, lines) in found.items())
     importers = defaultdict(set)
@@ -175,7 +219,7 @@ def main() -> None:
             importers[target].add(name)
     pure = set(PURE)
     for _ in known:
-        more = {n for n, t in graph.items() if (t and t <= pure) or (not t and "numpy" in texts[n])} | pure
+        more = {n for n, t in graph.items() if (t and t <= pure) or (not t and "numpy" in sources[n])} | pure
         if more == pure:
             break
         pure = more
@@ -183,7 +227,7 @@ def main() -> None:
         n for n in known
         if len(importers[n]) == 1 and known[n].name != "__init__.py" and not is_plugin(n) and n not in pure
     ]  # fmt: skip
-    longest = sorted(((text.count("\n"), name) for name, text in texts.items()), reverse=True)
+    longest = sorted(((text.count("\n"), name) for name, text in sources.items()), reverse=True)
     round_trips = circles(graph)
     size = {name: n for n, name in longest}
     beside = {n: next(iter(importers[n])) for n in single}
@@ -192,6 +236,7 @@ def main() -> None:
         f"files                                   {len(known)}\n"
         f"lines                                   {sum(n for n, _ in longest)}\n"
         f"lines of code                           {total}\n"
+        f"texts outside of templates              {sum(map(texts, sources.values()))}\n"
         f"imports, share of these                 {importing / total:.1%}\n"
         f"longest file                            {longest[0][0]} {longest[0][1]}\n"
         f"circles, modules in them                {len(round_trips)}, {sum(map(len, round_trips))}\n"

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from html import escape
 from math import isfinite, isnan
 from textwrap import wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from coeflab.core.cards import html_by
 from coeflab.core.errors import PluginError
@@ -353,6 +353,11 @@ class Check:
     statistic: str
     rule: str
     comment: str
+
+    @classmethod
+    def of(cls, code: str, subject: str, severity: Severity, **facts: Any) -> Check:
+        """A check by the code of its words, which begins with its name; facts as `Finding.of` takes them."""
+        return as_check(code.partition(".")[0], Finding.of(code, subject, severity, **facts))
 
     def __repr__(self) -> str:
         return in_angles(self, f"{self.severity}, {self.name}: {self.subject}: {self.statistic}")

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check
 from coeflab.core.types import brief, locking
 from coeflab.law.force_law import CONTROLS
 from coeflab.law.rigid_body import ideal_quadratics
@@ -153,11 +153,10 @@ def _driving(p: ParameterFile) -> Iterator[Check]:
         total = sum(x for _, x in terms)
         if total > 0.0 and any("u" in t.variables for t, _ in terms):
             unit = f"{'N m' if c in 'KMN' else 'N'}/({'m/s' if m in LINEAR else 'rad/s'})"
-            yield Check(
-                NAME, ", ".join(primed(t.symbol) for t, _ in terms), Severity.FAIL,
-                f"d{c}/d{m} = {total:.3g} {unit} at {p.conditions.speed:g} m/s", "below zero",
-                "It drives the motion that it should damp: a sign is wrong.",
-            )  # fmt: skip
+            yield as_check(NAME, Finding.of(
+                "expected_signs.drives", ", ".join(primed(t.symbol) for t, _ in terms), Severity.FAIL, component=c, motion=m, total=total,
+                unit=unit, speed=p.conditions.speed,
+            ))  # fmt: skip
 
 
 def _length(p: ParameterFile, added: Array, i: int, j: int) -> float:
@@ -210,15 +209,12 @@ def _places(p: ParameterFile, s: Slopes) -> Iterator[Check]:
             if fits:
                 continue
             names = ", ".join(primed(t.symbol) for t, _ in terms)
-            words = f"With the other sign it acts {_where(other, length)}: is the sign wrong?" if turned else (
-                f"Check its sign, its point and the {'side' if force == 'Y' else 'normal'} force of {v}."
-            )  # fmt: skip
             sure = turned and m == v
-            yield Check(
-                NAME, names, Severity.FAIL if sure else Severity.WARN,
-                f"d{c}/d{m} = {stated:.3g} at {p.conditions.speed:g} m/s, by the added mass {potential:.3g}: the rest acts {_where(x, length)}",
-                rule, words,
-            )  # fmt: skip
+            yield as_check(NAME, Finding.of(
+                "expected_signs.place", names, Severity.FAIL if sure else Severity.WARN, component=c, motion=m, stated=stated,
+                speed=p.conditions.speed, potential=potential, rest=_where(x, length), rule=rule, turned="yes" if turned else "no",
+                other=_where(other, length), force="side" if force == "Y" else "normal", of=v,
+            ))  # fmt: skip
 
 
 def _where(x: float, length: float) -> str:
@@ -242,29 +238,25 @@ def _controls(p: ParameterFile, s: Slopes) -> Iterator[Check]:
             slope = p.conditions.speed * float(s.motion[i, MOTIONS.index(v)] - s.ideal[i, MOTIONS.index(v)])
             share = abs(push / slope) if abs(slope) > NOTHING * added[i, i] * p.conditions.speed**2 else None
             if share is not None and not PER_SLOPE[0] <= share <= PER_SLOPE[1]:
-                yield Check(
-                    NAME, f"{force}{name}'", Severity.WARN, f"{push:.3g} N/rad, {share:.2g} of the slope of {v} times U",
-                    f"{PER_SLOPE[0]:g} to {PER_SLOPE[1]:g}", "Is it per degree, or multiplied by 57? Controls are in rad.",
-                )  # fmt: skip
+                yield as_check(NAME, Finding.of(
+                    "expected_signs.control", f"{force}{name}'", Severity.WARN, push=push, share=share, motion=v, least=PER_SLOPE[0],
+                    most=PER_SLOPE[1],
+                ))  # fmt: skip
     alike = added[1, 1] > 0.0 and abs(added[1, 1] - added[2, 2]) <= ALIKE * added[1, 1]
     if alike and len(sizes) == 2 and max(sizes) > UNLIKE * min(sizes):
-        yield Check(
-            NAME, "Ydr', Zds'", Severity.WARN, f"{sizes[0]:.3g} and {sizes[1]:.3g} N/rad", f"within a factor of {UNLIKE:g}",
-            "The hull has one added mass in both planes. Is one of them per degree, or of another speed?",
-        )  # fmt: skip
+        yield as_check(NAME, Finding.of(
+            "expected_signs.controls", "Ydr', Zds'", Severity.WARN, one=sizes[0], other=sizes[1], factor=UNLIKE
+        ))  # fmt: skip
 
 
 def _lever(pair: str, name: str, x: float, length: float, turn: float, sign: float) -> Iterator[Check]:
     if not turn:
         return
-    way = "opposite signs" if sign > 0.0 else "one sign"
     off, close = abs(x) > REACH * length, abs(x) < NEAREST * length
     if name == "db" and not (off or close):
         return
     if off or close or x > 0.0:
-        stern = f"A stern {'rudder' if sign > 0.0 else 'plane'} has {way} in them: is one wrong?"
-        yield Check(
-            NAME, pair, Severity.WARN, f"acts {_where(x, length)} of the centre",
-            f"{'aft, ' if name != 'db' else ''}{NEAREST:g} to {REACH:g} L from it",
-            "Is one of them per degree, or about another point?" if off or close else stern,
-        )  # fmt: skip
+        yield as_check(NAME, Finding.of(
+            "expected_signs.lever", pair, Severity.WARN, place=_where(x, length), aft="" if name == "db" else "aft, ", nearest=NEAREST,
+            reach=REACH, reason="off" if off or close else "rudder" if sign > 0.0 else "plane",
+        ))  # fmt: skip

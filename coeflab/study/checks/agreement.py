@@ -39,15 +39,9 @@ def check(study: Study) -> Sequence[Check]:
             difference, combined = abs(c.value - d.value), float(np.hypot(c.u95, d.u95))
             agree = difference <= combined
             both_cfd = kinds.get(a.campaign) == kinds.get(b.campaign) == "cfd"
-            causes = f"Reynolds number, {'' if both_cfd else 'rig, '}grid or modelling error"
-            out.append(
-                Check(
-                    "agreement",
-                    f"{primed(c.symbol)} {a.campaign}, {b.campaign}",
-                    Severity.PASS if agree else Severity.WARN,
-                    f"{plus_minus(c.value, c.u95)} and {plus_minus(d.value, d.u95)}, difference {difference:.2g}",
-                    f"within the combined U95 {combined:.2g}",
-                    "Agree." if agree else f"The difference exceeds the combined U95. The cause may be {causes}.",
-                )
-            )
+            cause = "agree" if agree else "cfd" if both_cfd else "tests"
+            out.append(Check.of(
+                "agreement.value", f"{primed(c.symbol)} {a.campaign}, {b.campaign}", Severity.PASS if agree else Severity.WARN,
+                one=plus_minus(c.value, c.u95), other=plus_minus(d.value, d.u95), apart=difference, u95=combined, cause=cause,
+            ))  # fmt: skip
     return out

@@ -17,13 +17,9 @@ summary = "mass of a vehicle from its shape against its displacement"
 citations = ("sname1950",)
 
 APART = 0.20
-LIGHT = "Unit of the mass or of the mesh? Rooms that flood: [[mass]] with flooded = true in its body.toml."
-HEAVY = "Unit of the mass or of the mesh? A mesh of the pressure hull alone? Water in the hull: [[mass]] with flooded = true."
 
 
 STEEP = float(np.radians(5.0))  # of trim or list at rest
-AS_BALLASTED = "As if ballasted to neutral at the centre of buoyancy. "
-LEVEL_IT = "Move the centre of gravity below the centre of buoyancy: masses, or ballast away from it."
 
 
 def check(study: Study) -> Sequence[Check]:
@@ -43,11 +39,10 @@ def _trim(shape: FromShape) -> list[Check]:
     if angles is None or max(map(abs, angles)) <= STEEP:
         return []
     pitch, roll = np.degrees(angles)
-    statistic = (
-        f"at rest it hangs with pitch {pitch:+.1f} deg (bow {'up' if pitch > 0.0 else 'down'}), roll {roll:+.1f} deg"
-    )
-    comment = f"{AS_BALLASTED if weighed.at_rest is None else ''}{LEVEL_IT}"
-    return [Check("trim_at_rest", weighed.body.name, Severity.WARN, statistic, "within 5 deg", comment)]
+    return [Check.of(
+        "trim_at_rest.angles", weighed.body.name, Severity.WARN, pitch=float(pitch), roll=float(roll), bow="up" if pitch > 0.0 else "down",
+        ballast="assumed" if weighed.at_rest is None else "known",
+    )]  # fmt: skip
 
 
 def _mass(shape: FromShape) -> list[Check]:
@@ -59,8 +54,7 @@ def _mass(shape: FromShape) -> list[Check]:
         return []
     apart = mass.mass / displaced - 1.0
     bad = abs(apart) > APART
-    statistic = f"{mass.mass:.4g} kg in {displaced:.4g} kg of displacement, {100.0 * apart:+.0f} %"
-    comment = (LIGHT if apart < 0.0 else HEAVY) if bad else ""
-    return [
-        Check("buoyancy", weighed.body.name, Severity.WARN if bad else Severity.PASS, statistic, "within 20 %", comment)
-    ]
+    return [Check.of(
+        "buoyancy.mass", weighed.body.name, Severity.WARN if bad else Severity.PASS, mass=mass.mass, displaced=displaced,
+        apart=100.0 * apart, match="good" if not bad else "light" if apart < 0.0 else "heavy",
+    )]  # fmt: skip

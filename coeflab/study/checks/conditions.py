@@ -23,11 +23,6 @@ citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
 AIR = (0.5, 1.6)  # kg/m^3: hot and high, cold and dense
-EXPECTED = {
-    "density": f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water, or a source that says air",
-    "speed": f"at most {FASTEST:g} m/s in water",
-    "length": f"{LENGTHS[0]:g} to {LENGTHS[1]:g} m",
-}
 REYNOLDS = 0.05  # what LOA in the place of LBP makes
 
 
@@ -43,12 +38,11 @@ def _water(name: str, low: float, high: float) -> Iterator[Check]:
     if not (AIR[0] <= low and high <= AIR[1]):
         good = WATER[0] <= low and high <= WATER[1]
         found = f"{low:.5g} kg/m^3" if low == high else f"{low:.5g} to {high:.5g} kg/m^3"
-        slugs = " 1.94 slug/ft^3 and 62.4 lb/ft^3 are 1000 kg/m^3: write the unit." if low < WATER[0] / 10.0 else ""
-        yield Check(
-            "conditions", f"{name} density", Severity.PASS if good else Severity.WARN, found,
-            f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water",
-            "" if good else f"Coefficients of dimensional forces go with 1/density.{slugs}",
-        )  # fmt: skip
+        match = "good" if good else "slugs" if low < WATER[0] / 10.0 else "bad"
+        severity = Severity.PASS if good else Severity.WARN
+        yield Check.of(
+            "conditions.density", f"{name} density", severity, found=found, least=WATER[0], most=WATER[1], match=match
+        )
 
 
 def _sizes(t: ForceTable) -> Iterator[Check]:
@@ -66,19 +60,18 @@ def _sizes(t: ForceTable) -> Iterator[Check]:
         if why := doubtful_size(key, number, in_air):
             found, _, advice = why.partition(": ")
             what = key.partition(".")[2]
-            yield Check("conditions", f"{t.campaign} unit of {what}", Severity.WARN, found, EXPECTED[what],
-                        f"{advice[:1].upper()}{advice[1:]} in campaign.toml.")  # fmt: skip
+            yield Check.of(
+                "conditions.unit", f"{t.campaign} unit of {what}", Severity.WARN, found=found, what=what, fastest=FASTEST,
+                advice=f"{advice[:1].upper()}{advice[1:]} in campaign.toml.", least=WATER[0], most=WATER[1],
+                shortest=LENGTHS[0], longest=LENGTHS[1],
+            )  # fmt: skip
 
 
 def _carried(t: ForceTable) -> Iterator[Check]:
     """A balance that turns with its model and is declared not to carry it: to be known, not to be warned of again."""
     turns = any(np.any(np.asarray(t.motion[m]) != 0.0) for m in ANGULAR)
     if turns and t.source.kind == "experiment" and not any(n.startswith(TAKEN_OUT) for n in t.notes):
-        yield Check(
-            "conditions", f"{t.name} inertia", Severity.NOTE, "declared: contains_inertia = false in an experiment that turns",
-            "forces from which the model's inertia was taken out",
-            "A balance on a rotating arm carries it. If the forces contain it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] subtract it.",
-        )  # fmt: skip
+        yield Check.of("conditions.inertia", f"{t.name} inertia", Severity.NOTE)
 
 
 def _found(t: ForceTable) -> Iterator[Check]:
@@ -87,13 +80,14 @@ def _found(t: ForceTable) -> Iterator[Check]:
     yield from _sizes(t)
     point = t.reference_point if t.measured_about is None else t.measured_about
     if why := beyond_ends(t.datum.id, float(point[0]), t.scaling.length):
-        yield Check("conditions", f"{t.campaign} reference point", Severity.WARN, f"{t.datum.id} {point[0]:+.2f} m",
-                    "a point of the body", f"{why[:1].upper()}{why[1:]}.")  # fmt: skip
+        yield Check.of(
+            "conditions.point", f"{t.campaign} reference point", Severity.WARN, datum=t.datum.id, x=float(point[0]),
+            advice=f"{why[:1].upper()}{why[1:]}.",
+        )  # fmt: skip
     if at.viscosity is not None and at.reynolds is not None:
         own = at.speed * t.scaling.length / at.viscosity
         good = abs(own / at.reynolds - 1.0) <= REYNOLDS
-        yield Check(
-            "conditions", f"{t.campaign} Reynolds number", Severity.PASS if good else Severity.WARN,
-            f"{own:.3g} from speed, {t.scaling.length_name} and viscosity, stated {at.reynolds:.3g}", f"within {REYNOLDS:.0%}",
-            "" if good else "Speed, length or viscosity is not that of the tests.",
+        yield Check.of(
+            "conditions.reynolds", f"{t.campaign} Reynolds number", Severity.PASS if good else Severity.WARN, own=own,
+            length=t.scaling.length_name, stated=at.reynolds, share=REYNOLDS, match="good" if good else "bad",
         )  # fmt: skip

@@ -37,14 +37,9 @@ def _points(s: Sweep, status: Status) -> Check:
     n = len(s.x)
     subject = f"{s.campaign} {primed(s.symbol)}"
     if status is Status.TOO_FEW_POINTS:
-        return Check("coverage", subject, Severity.WARN, f"{n} points, {s.reason}", "three settings", status.advice)
-    severity = Severity.PASS if n >= FEW else Severity.NOTE
-    comment = (
-        "Enough points to distinguish forms."
-        if n >= FEW
-        else "Few points: intervals rest on very few degrees of freedom."
-    )
-    return Check("coverage", subject, severity, f"{n} points", f"at least {FEW}", comment)
+        return Check.of("coverage.too_few", subject, Severity.WARN, advice=status.advice, n=n, why=s.reason)
+    severity, size = (Severity.PASS, "enough") if n >= FEW else (Severity.NOTE, "few")
+    return Check.of("coverage.points", subject, severity, n=n, least=FEW, size=size)
 
 
 def _sides(s: Sweep) -> Check | None:
@@ -52,33 +47,12 @@ def _sides(s: Sweep) -> Check | None:
         return None
     subject = f"{s.table} {s.variable}'"
     if s.symmetry:
-        return Check(
-            "coverage",
-            subject,
-            Severity.PASS,
-            f"all points on one side, the other by declared {s.symmetry} symmetry",
-            "points on both sides of zero, or a declared symmetry",
-            "The declaration fixes the parity; mirrored rows add no degree of freedom.",
-        )
+        return Check.of("coverage.declared", subject, Severity.PASS, symmetry=s.symmetry)
     if s.one_sided:
-        return Check(
-            "coverage",
-            subject,
-            Severity.WARN,
-            "all points on one side",
-            "points on both sides of zero",
-            "Even and odd parts cannot be separated; the body is assumed symmetric.",
-        )
+        return Check.of("coverage.one_sided", subject, Severity.WARN)
     low, high = float(s.x.min()), float(s.x.max())
     if min(-low, high) < 0.5 * max(-low, high):
-        return Check(
-            "coverage",
-            subject,
-            Severity.NOTE,
-            f"settings from {low:.3g} to {high:.3g}",
-            "both sides within a factor of two",
-            "The sweep is not symmetric about zero.",
-        )
+        return Check.of("coverage.uneven", subject, Severity.NOTE, low=low, high=high)
     return None
 
 
@@ -89,15 +63,10 @@ def _extrapolation(s: Sweep, tables: Sequence[ForceTable]) -> Check | None:
         return None
     moved = [t.primed_motion(s.variable, t.scaling.length) for t in tables if t.name == s.table]
     has_zero = bool(s.symmetry) and any(np.any(np.abs(x) <= AT_REST) for x in moved)
-    at_zero = f": the run at zero gives no slope, as it is zero by declared {s.symmetry} symmetry" if has_zero else ""
-    return Check(
-        "coverage",
-        f"{s.table} {s.variable}'",
-        Severity.WARN,
-        f"smallest |{s.variable}'| = {size.min():.3g}, largest {size.max():.3g}",
-        "a run within a quarter of the range from zero",
-        f"The value at the origin is extrapolated{at_zero}. Run smaller angles or rates.",
-    )
+    return Check.of(
+        "coverage.extrapolated", f"{s.table} {s.variable}'", Severity.WARN, variable=f"{s.variable}'", least=float(size.min()),
+        most=float(size.max()), zero="there" if has_zero else "none", symmetry=s.symmetry,
+    )  # fmt: skip
 
 
 def _repeated(s: Sweep) -> list[Index]:
@@ -132,17 +101,10 @@ def replicates(s: Sweep, groups: int) -> list[Check]:
         largest = float(np.max(np.abs(s.y[group] - s.y[group].mean()))) * (k / (k - 1.0)) ** 0.5
         p = float(t_probability(largest / spread, f.freedom)) * (k if k > 2 else 1) if spread else 0.0
         if p < REPLICATE_LEVEL / groups and gap > 1e-9 * float(np.max(np.abs(s.y))):
-            names = ", ".join(s.labels[i] for i in group)
-            out.append(
-                Check(
-                    "replicates",
-                    f"{s.campaign} {primed(s.symbol)}",
-                    Severity.WARN,
-                    f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
-                    f"largest deviation in a group, probability {REPLICATE_LEVEL:g} over {groups} groups",
-                    "One of them may be a bad run; all are in the fit.",
-                )
-            )
+            out.append(Check.of(
+                "replicates.differ", f"{s.campaign} {primed(s.symbol)}", Severity.WARN, points=", ".join(s.labels[i] for i in group),
+                gap=gap, deviations=gap / spread if spread else np.inf, level=REPLICATE_LEVEL, groups=groups,
+            ))  # fmt: skip
     return out
 
 
@@ -156,12 +118,9 @@ def _moment_of_the_other_plane(t: ForceTable) -> Check | None:
         if not moving or any(moves[m] for m in still) or own in t.forces or other not in t.forces:
             continue
         if trend(t.forces[other], t.motion, moving):
-            return Check(
-                "coverage", f"{t.name} {other}", Severity.WARN, f"{other} follows {moving}, and there is no {own}",
-                f"{own}, the moment of that plane",
-                f"{other} of the body does not depend on {moving}: is its column {own}, about another axis of the file? "
-                f"Map it as the moment about that axis, with its sign.",
-            )  # fmt: skip
+            return Check.of(
+                "coverage.other_plane", f"{t.name} {other}", Severity.WARN, other=other, moving=moving, own=own
+            )
     return None
 
 
@@ -170,16 +129,7 @@ def _bodies(study: Study) -> list[Check]:
     found = "; ".join(f"{', '.join(map(primed, symbols))}: {body}" for body, symbols in study.by_body.items())
     if not found:
         return []
-    return [
-        Check(
-            "coverage",
-            " and ".join(study.by_body),
-            Severity.WARN,
-            found,
-            "coefficients of one body",
-            "If these are one body, give its campaigns one campaign.body: an import writes the folder's name.",
-        )
-    ]
+    return [Check.of("coverage.bodies", " and ".join(study.by_body), Severity.WARN, found=found)]
 
 
 def check(study: Study) -> Sequence[Check]:

@@ -326,10 +326,9 @@ def _together(table: ForceTable, tables: Sequence[ForceTable], length: float, ro
             )
     components = listed([c for c in table.forces if any(c in given.components for given in rows.values())])
     where = [str(table.lines[i]) if table.lines else table.labels[i] for i in sorted(rows)]
-    return Check(
-        "data_gate", table.name, Severity.WARN,
-        "; ".join([f"{len(rows)} rows do not belong to their sweep, in {components}: line {_some(where)}", *values]),
-        "at most one false alarm in fifty clean campaigns", ADVICE,
+    return Check.of(
+        "data_gate.rows", table.name, Severity.WARN, count=len(rows), components=components, lines=_some(where),
+        values="".join(f"; {v}" for v in values),
     )  # fmt: skip
 
 
@@ -348,9 +347,7 @@ def _open_ends(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows: dic
         if cell.seen.open_end[cell.at] and row not in rows:
             found.setdefault(row, []).append(_cell_text(table, component, row, cell))
     return [
-        Check("data_gate", _where(table, row), Severity.NOTE, "; ".join(texts), "the last setting of a sweep on one side",
-              "A curve that changes its slope here, as in stall, or a wrong reading: run a setting before it.")
-        for row, texts in found.items()
+        Check.of("data_gate.open_end", _where(table, row), Severity.NOTE, readings="; ".join(texts)) for row, texts in found.items()
     ]  # fmt: skip
 
 
@@ -360,16 +357,12 @@ def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
     if again.any():
         where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(again)]
         several = again.sum() > 1 or len(table.forces) > 1
+        severity, count = Severity.WARN if several else Severity.NOTE, int(again.sum())
         out.append(
-            Check("data_gate", table.name, Severity.WARN if several else Severity.NOTE,
-                  f"{int(again.sum())} {'row repeats' if again.sum() == 1 else 'rows repeat'} an earlier row to the last digit: line {_some(where)}", "rows differ",
-                  "Copies are not repeats: they narrow intervals without new data. Delete them.")
+            Check.of("data_gate.copies", table.name, severity, count=count, rows="one" if count == 1 else "many", lines=_some(where))
         )  # fmt: skip
     if _is_mirrored(table, again):
-        out.append(
-            Check("data_gate", table.name, Severity.NOTE, "every row has its exact mirror image", "two sides measured",
-                  "One half is the other with signs changed: no new data, and no check by symmetry.")
-        )  # fmt: skip
+        out.append(Check.of("data_gate.mirrored", table.name, Severity.NOTE))
     return out
 
 
@@ -397,27 +390,16 @@ def _astern(table: ForceTable, ahead: NDArray[np.bool_]) -> list[Check]:
     if not 0 < np.count_nonzero(~ahead) <= 0.2 * len(table):
         return []
     where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(~ahead)]
-    return [
-        Check("data_gate", f"{table.name} line {_some(where)}", Severity.WARN, "moves astern (u <= 0) while the others move ahead",
-              "u > 0", "An angle beyond 90 degrees: a slip of the decimal point?")
-    ]  # fmt: skip
+    return [Check.of("data_gate.astern", f"{table.name} line {_some(where)}", Severity.WARN)]
 
 
 def _summary(campaign: str, readings: int, missed: int, found: Sequence[Check]) -> Check:
     grave = sum(c.severity is Severity.WARN for c in found)
-    words = f"{readings - missed} of {readings} readings predicted from their sweep, {grave} warnings"
-    if missed:
-        return Check("data_gate", campaign, Severity.NOTE, words, "every reading in a sweep of at least five",
-                     f"{missed} readings are in no sweep of five in which one variable alone changes: not checked.")  # fmt: skip
-    severity = Severity.NOTE if grave else Severity.PASS
-    return Check(
-        "data_gate",
-        campaign,
-        severity,
-        words,
-        "every reading in a sweep of at least five",
-        "Each is compared with the others.",
-    )
+    severity = Severity.NOTE if missed or grave else Severity.PASS
+    return Check.of(
+        "data_gate.readings", campaign, severity, predicted=readings - missed, readings=readings, grave=grave, missed=missed,
+        all="no" if missed else "yes",
+    )  # fmt: skip
 
 
 def check(study: Study) -> Sequence[Check]:

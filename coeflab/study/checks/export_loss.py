@@ -19,11 +19,9 @@ citations = ("fossen2011",)
 def check(study: Study) -> Sequence[Check]:
     """A warning for each export with such a component; an export that loses less is told of beside its files."""
     return [
-        Check(
-            "export_loss", f"{result.parameters} for {result.target}", Severity.WARN,
-            f"rms error exceeds the rms force: {listed(result.loss.worse_than_nothing)}",
-            "a difference smaller than the force itself",
-            f"Do not use these components of the {result.target} file. Its loss report gives their sizes.",
+        Check.of(
+            "export_loss.worse", f"{result.parameters} for {result.target}", Severity.WARN, target=result.target,
+            components=listed(result.loss.worse_than_nothing),
         )
         for result in study.exports
         if result.loss is not None and result.loss.worse_than_nothing

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 summary = "where the fins of a vehicle from its shape stand along its hull"
 citations = ("sname1950",)
 
-REVERSED = "Is the mesh x aft? Of a mesh with x aft and z up write --axes CFD. Fins ahead of the middle turn the vehicle round."
-
 
 def check(study: Study) -> Sequence[Check]:
     """A warning where all fins stand ahead of the middle of the hull."""
@@ -26,5 +24,5 @@ def check(study: Study) -> Sequence[Check]:
     if (found := fins_along(seen)) is None:
         return []
     severity = Severity.WARN if found.ahead else Severity.PASS
-    comment = REVERSED if found.ahead else ""
-    return [Check("fins", study.shape.weighed.body.name, severity, found.words, "fins behind the middle", comment)]
+    place = "ahead" if found.ahead else "aft"
+    return [Check.of("fins.place", study.shape.weighed.body.name, severity, words=found.words, place=place)]

@@ -62,11 +62,9 @@ def _as_check(campaign: str, sweep: Sweep, shorter: Sensitivity) -> Check:
     severity = Severity.WARN if apart > MOVED * abs(sweep.value or 0.0) else Severity.NOTE
     name, at = primed(sweep.symbol), _setting(sweep, shorter.cap)
     reach = _setting(sweep, float(np.max(np.abs(sweep.x))))
-    return Check(
-        "fitted_range", f"{campaign} {name}", severity,
-        f"{name} = {plus_minus(sweep.value, sweep.u95)} fitted up to {reach}, {plus_minus(shorter.value, shorter.u95)} up to {at}",
-        f"settings beyond {at} leave {name} within its U95 there, and U95 below {WIDER:g} times that",
-        "The curve changes beyond the shorter range. The value in use is fitted to the whole sweep. `coeflab fit --symbol` shows every range.",
+    return Check.of(
+        "fitted_range.moved", f"{campaign} {name}", severity, symbol=name, value=plus_minus(sweep.value, sweep.u95), reach=reach, at=at,
+        shorter=plus_minus(shorter.value, shorter.u95), wider=WIDER,
     )  # fmt: skip
 
 

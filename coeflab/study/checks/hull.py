@@ -36,20 +36,13 @@ def check(study: Study) -> Sequence[Check]:
         alike = likeness(hull, file.body, stated, own_file=study.body is not None and study.body.files == hull.files)
         if not alike.same:
             severity = Severity.NOTE if alike.same is None else Severity.WARN
-            out.append(
-                Check("hull", f"{name}: {hull.name}", severity, f"the forces belong to {file.body}; {alike.words}", "one body",
-                      "The potential parts belong to another shape: give the reason, or the body itself.")
-            )  # fmt: skip
+            out.append(Check.of("hull.other_body", f"{name}: {hull.name}", severity, body=file.body, words=alike.words))
     return out
 
 
 def _held(subject: str, what: str, ours: float, theirs: float, unit: str, limit: float) -> Check:
     apart = abs(ours / theirs - 1.0)
     severity = Severity.PASS if apart <= limit else Severity.FAIL if apart > ABSURD else Severity.WARN
-    comment = {
-        Severity.PASS: "The body fits the vehicle.",
-        Severity.WARN: "Is this the body that was towed?",
-        Severity.FAIL: "This is another vehicle: its added mass does not apply to these forces.",
-    }[severity]
-    statistic = f"{ours:.4g} {unit} against {theirs:.4g} {unit}, {what}"
-    return Check("hull", subject, severity, statistic, f"within {limit:.0%}", comment)
+    return Check.of(
+        "hull.size", subject, severity, ours=ours, theirs=theirs, unit=unit, what=what, limit=limit, match=str(severity)
+    )

@@ -53,11 +53,7 @@ def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one
     if not found:
         return []
     bad = Severity.FAIL if one else Severity.WARN
-    comment = "Two added masses in one file: what an export calls viscous is their difference."
-    return [
-        Check(
-            "ideal_fluid", parameters.name, bad if apart else Severity.PASS,
-            listed(apart) if apart else f"{listed(found)} as the added mass gives them",
-            "value = potential" if one else "value = potential within U95", comment if apart else "",
-        )
-    ]  # fmt: skip
+    return [Check.of(
+        "ideal_fluid.one_matrix", parameters.name, bad if apart else Severity.PASS, apart=listed(apart), symbols=listed(found),
+        match="bad" if apart else "good", within="" if one else " within U95",
+    )]  # fmt: skip

@@ -21,23 +21,17 @@ def check(study: Study) -> Sequence[Check]:
     for fit in study.fits:
         if fit.differences:
             out.append(
-                Check("poolability", fit.campaign, Severity.NOTE, " ".join(fit.differences), "campaigns of one kind",
-                      "The joint fit assumes one law for these campaigns.")
-            )  # fmt: skip
+                Check.of("poolability.kinds", fit.campaign, Severity.NOTE, differences=" ".join(fit.differences))
+            )
         for p in fit.poolings:
             if len(p.shares) < 2:
                 continue
-            severity, words = {
-                None: (Severity.NOTE, "The rows cannot show whether one law fits all campaigns."),
-                False: (Severity.PASS, "The campaigns do not contradict one law."),
-                True: (
-                    Severity.WARN,
-                    f"The campaigns disagree. {p.values_alone} U95 does not include their difference.",
-                ),
-            }[p.rejected]
+            severity, case = {
+                None: (Severity.NOTE, "unknown"), False: (Severity.PASS, "one"), True: (Severity.WARN, "several"),
+            }[p.rejected]  # fmt: skip
             if p.doubtful:
-                severity, words = Severity.WARN, f"One law is neither contradicted nor shown. {p.values_alone}"
-            out.append(
-                Check("poolability", f"{fit.campaign} {p.response}'", severity, p.statistic, "p of 0.1 or more", words)
-            )
+                severity, case = Severity.WARN, "doubtful"
+            out.append(Check.of(
+                "poolability.law", f"{fit.campaign} {p.response}'", severity, found=p.statistic, case=case, alone=p.values_alone
+            ))  # fmt: skip
     return out

@@ -27,14 +27,6 @@ def check(study: Study) -> Sequence[Check]:
             continue
         if not isfinite(error) or not spread > 0.0 or error <= spread:
             continue
-        out.append(
-            Check(
-                "prediction",
-                f"{model.campaign} {model.response}",
-                Severity.WARN,
-                f"left-out rows are missed by {error / spread:.3g} of their own scatter",
-                "below 1",
-                "The form has too many terms for these rows, or one remote point dominates it.",
-            )
-        )
+        subject = f"{model.campaign} {model.response}"
+        out.append(Check.of("prediction.missed", subject, Severity.WARN, statistic=error / spread))
     return out

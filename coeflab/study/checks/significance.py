@@ -39,11 +39,8 @@ def check(study: Study) -> Sequence[Check]:
 def _row(those: Sequence[Coefficient], severity: Severity) -> Check:
     """Coefficients of one campaign and one status."""
     is_open = those[0].status is Status.SIGN_OPEN
-    return Check(
-        "significance",
-        f"{those[0].campaign} {', '.join(primed(c.symbol) for c in those)}",
-        severity,
-        ", ".join(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}" for c in those),
-        "|value| above U95",
-        those[0].status.advice if is_open else "Not distinguishable from zero: neither size nor sign is a result.",
-    )
+    return Check.of(
+        "significance.zero", f"{those[0].campaign} {', '.join(primed(c.symbol) for c in those)}", severity,
+        values=", ".join(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}" for c in those),
+        sign="open" if is_open else "unknown", advice=those[0].status.advice,
+    )  # fmt: skip

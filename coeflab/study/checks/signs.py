@@ -43,7 +43,7 @@ def check(study: Study) -> Sequence[Check]:
         out += [] if found is None else [found]
     for name, file in study.parameter_files.items():
         for stated in (c for c in file.coefficients if c.origin == "literature"):
-            found = _signed(name, stated, f"Stated in {stated.estimator}. ")
+            found = _signed(name, stated, f"Stated in {stated.estimator}.")
             out += [] if found is None else [found]
         out += _twins(name, file)
     return [*out, *(as_check("signs", found) for found in unseen_columns(study))]
@@ -86,9 +86,8 @@ def _inferred(c: Coefficient, angle: str) -> Check | None:
     """A sign that was used to find that of the angle proves nothing."""
     if c.value is None:
         return None
-    return Check(
-        "signs", f"{c.campaign} {primed(c.symbol)}", Severity.NOTE, f"{primed(c.symbol)} = {c.value:.3g}", "below zero",
-        f"Not independent: the sign of {angle} was inferred from it. State it from the source, and delete assumed under [axes].",
+    return Check.of(
+        "signs.inferred", f"{c.campaign} {primed(c.symbol)}", Severity.NOTE, symbol=primed(c.symbol), value=c.value, angle=angle
     )  # fmt: skip
 
 
@@ -100,22 +99,18 @@ def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:
     sure = c.u95 is not None and abs(c.value) > c.u95
     open_ = c.u95 is not None and not sure
     severity = Severity.PASS if good else Severity.FAIL if sure else Severity.NOTE if open_ else Severity.WARN
-    if good:
-        comment = f"As expected: {NEGATIVE[symbol]}."
-    elif c.status is Status.ESTIMATE:
-        comment = (
-            "An estimate of parts that oppose each other, or of parts that are not seen: `coeflab draw` shows what is."
-        )
-    elif open_:
-        comment = f"{source}Its interval contains zero: the data leave the sign open."
-    elif source:
-        comment = f"{source}Check its axes and the convention of its sign; {NEGATIVE[symbol]}."
-    else:
-        comment = (
-            "Check the declared axes and the sign of the angle; for Nr' and Mq' whether the force contains inertia."
-        )
-    found = f"{primed(symbol)} = {c.value:.3g}" + (f" +- {c.u95:.2g}" if open_ and not good else "")
-    return Check("signs", f"{owner} {primed(symbol)}", severity, found, "below zero", comment)
+    reason = (
+        "good" if good
+        else "estimate" if c.status is Status.ESTIMATE
+        else "open" if open_
+        else "printed" if source
+        else "fitted"
+    )  # fmt: skip
+    half = f" +- {c.u95:.2g}" if open_ and not good else ""
+    return Check.of(
+        "signs.negative", f"{owner} {primed(symbol)}", severity, symbol=primed(symbol), value=c.value, half=half, reason=reason,
+        expected=NEGATIVE[symbol], source=f"{source} " * bool(source),
+    )  # fmt: skip
 
 
 def _twins(name: str, file: ParameterFile) -> Iterator[Check]:
@@ -127,10 +122,9 @@ def _twins(name: str, file: ParameterFile) -> Iterator[Check]:
             continue
         apart = abs(one.value - other.value)
         good = apart <= max(MISTYPED * size, float(np.hypot(one.u95 or 0.0, other.u95 or 0.0)))
-        yield Check(
-            "signs", f"{name} {one.symbol}, {other.symbol}", Severity.PASS if good else Severity.WARN,
-            f"{one.value:.3g} and {other.value:.3g}", f"equal within {MISTYPED:.0%} of the diagonal {size:.3g}",
-            "An added mass is symmetric." if good else "An added mass is symmetric: one has a wrong sign or another point.",
+        yield Check.of(
+            "signs.twins", f"{name} {one.symbol}, {other.symbol}", Severity.PASS if good else Severity.WARN, one=one.value,
+            other=other.value, share=MISTYPED, diagonal=size, match="good" if good else "bad",
         )  # fmt: skip
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -72,14 +72,11 @@ def check(study: Study) -> Sequence[Check]:
         least = least_friction(table.conditions, scaling)
         large = {c: most for s, most in LARGEST.items() if (c := own.get(s)) and _at_least(c) > most}
         small = {c: p * least for s, p in OF_FRICTION.items() if (c := own.get(s)) and _at_most(c) < p * least}
-        length = f"{scaling.length_name} = {scaling.length:g} m"
-        speed = f"{table.conditions.speed:g} m/s"
-        if large:
-            out.append(_found(campaign, large, f"at most the number behind each, of a square plate of side {scaling.length_name}", (
-                f"Are forces in N declared as kN, is the speed {speed} too low, or {length} shorter than the body?")))  # fmt: skip
-        if small:
-            out.append(_found(campaign, small, "at least the number behind each, friction of a cylinder of 20 diameters", (
-                f"Are forces in kN declared as N, is the speed {speed} in kn or km/h, or {length} longer than the body?")))  # fmt: skip
+        at: dict[str, Any] = {"name": scaling.length_name, "length": scaling.length, "speed": table.conditions.speed}
+        for code, found in (("sizes.large", large), ("sizes.small", small)):
+            if found:
+                each = ", ".join(f"{primed(c.symbol)} = {c.value:.2g} ({limit:.2g})" for c, limit in found.items())
+                out.append(Check.of(code, campaign, Severity.WARN, each=each, **at))
     return out
 
 
@@ -92,10 +89,9 @@ def _rates(table: ForceTable, scaling: Scaling) -> list[Check]:
         primes = np.abs(table.primed_motion(rate, scaling.length))[ahead]
         if np.any(primes > TIGHTEST):
             largest = float(np.nanmax(primes))
-            out.append(Check(
-                "sizes", f"{table.name} {rate}'", Severity.WARN, f"largest |{rate}'| = {largest:.3g}: a circle of {1.0 / largest:.2g} lengths in radius",
-                f"|{rate}'| = {rate} L / U at most {TIGHTEST:g}, half a length in radius",
-                f"Is {rate} in deg/s declared as rad/s (57 times too large), or the speed {table.conditions.speed:g} m/s too low?",
+            out.append(Check.of(
+                "sizes.tight", f"{table.name} {rate}'", Severity.WARN, rate=rate, largest=largest, radius=1.0 / largest, most=TIGHTEST,
+                speed=table.conditions.speed,
             ))  # fmt: skip
     return out
 
@@ -109,10 +105,9 @@ def _levers(table: ForceTable, scaling: Scaling) -> Iterator[Check]:
         f, m = (np.abs(table.primed_force(c, scaling.length))[rows] for c in (force, moment))
         lever = float(m.max() / f.max()) if m.size > 2 and f.max() > 0.0 else np.inf
         if 0.0 < lever < LEAST_LEVER:
-            yield Check(
-                "sizes", f"{table.name} {moment}'", Severity.WARN,
-                f"largest |{moment}'| = {lever:.1g} of the largest |{force}'|", f"at least {LEAST_LEVER:g} of it",
-                f"Are moments in kN m declared as N m, or {scaling.length_name} = {scaling.length:g} m in mm?",
+            yield Check.of(
+                "sizes.lever", f"{table.name} {moment}'", Severity.WARN, moment=f"{moment}'", force=f"{force}'", lever=lever,
+                least=LEAST_LEVER, name=scaling.length_name, length=scaling.length,
             )  # fmt: skip
 
 
@@ -124,8 +119,3 @@ def _at_least(c: Coefficient) -> float:
 def _at_most(c: Coefficient) -> float:
     """The largest size that the interval leaves; without limit where nothing is known of it."""
     return np.inf if c.value is None or c.u95 is None else abs(c.value) + c.u95
-
-
-def _found(campaign: str, sizes: Mapping[Coefficient, float], rule: str, comment: str) -> Check:
-    found = ", ".join(f"{primed(c.symbol)} = {c.value:.2g} ({limit:.2g})" for c, limit in sizes.items())
-    return Check("sizes", campaign, Severity.WARN, found, rule, comment)

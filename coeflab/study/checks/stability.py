@@ -66,11 +66,7 @@ def check(study: Study) -> Sequence[Check]:
 
 
 def _printed(i: PrintedIndex) -> Check:
-    return Check(
-        "printed_index", f"{i.reference} {i.name}", Severity.PASS if i.holds else Severity.FAIL,
-        f"{i.name} = {i.found:.6g} from its printed derivatives and m' of {i.parameter_file}, printed {i.printed:.7g}",
-        f"within {i.allowed:.2g}, the rounding of its digits",
-        "Printed derivatives, mass and length belong together."
-        if i.holds
-        else "A derivative, the mass, its density or the length is not that of the source.",
+    return Check.of(
+        "printed_index.value", f"{i.reference} {i.name}", Severity.PASS if i.holds else Severity.FAIL, index=i.name, found=i.found,
+        file=i.parameter_file, printed=i.printed, allowed=i.allowed, match="good" if i.holds else "bad",
     )  # fmt: skip

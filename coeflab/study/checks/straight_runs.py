@@ -61,14 +61,8 @@ def friction(r: StraightRuns, table: ForceTable) -> Iterator[Finding]:
 
 
 def _finding(r: StraightRuns, *, held: bool) -> Check:
-    if not r.has_trend:
-        comment = "Nothing varies but the speed: X0' follows, and no slope."
-    elif held:
-        comment = (
-            "One X0' does not hold for all speeds, as friction depends on the Reynolds number. U95 holds the change over these speeds; "
-            "at others X0' may lie outside it. Fit the runs near your speed alone for a closer one."
-        )
-    else:
-        comment = "U95 of X0' leaves the change out. slope_at_origin, the default fit, has it in U95."
+    trend = "none" if not r.has_trend else "held" if held else "left_out"
     severity = Severity.WARN if r.has_trend else Severity.NOTE
-    return Check("straight_runs", r.table, severity, f"{r.runs}: {r.changes}", f"p of a trend >= {DOUBTFUL:g}", comment)
+    return Check.of(
+        "straight_runs.speeds", r.table, severity, runs=r.runs, changes=r.changes, doubtful=DOUBTFUL, trend=trend
+    )

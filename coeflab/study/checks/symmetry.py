@@ -24,7 +24,6 @@ summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across a pla
 citations = ("wahba1990",)
 ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
 NOTHING, LARGE = 1e-3, 0.05
-RULE = f"zero within U95; a note from {100 * NOTHING:g} % of the largest, a warning from {100 * LARGE:g} %"
 
 
 def _intercept(sweep: Sweep) -> Check | None:
@@ -34,22 +33,17 @@ def _intercept(sweep: Sweep) -> Check | None:
     reach = float(abs(sweep.y).max())
     share = abs(value) / reach if reach else 0.0
     if abs(value) <= error:
-        severity, comment = Severity.PASS, "The force at zero angle is within its error of zero."
+        severity, size = Severity.PASS, "zero"
     elif share < NOTHING:
-        severity, comment = Severity.PASS, "The force at zero angle is negligible."
+        severity, size = Severity.PASS, "negligible"
     elif share < LARGE:
-        severity, comment = Severity.NOTE, "Model or rig bias; the intercept absorbs it."
+        severity, size = Severity.NOTE, "small"
     else:
-        severity, comment = Severity.WARN, "A large bias: look for a misaligned model, tare or angle offset."
-    return Check(
-        "symmetry",
-        f"{sweep.campaign} {sweep.component}0'",
-        severity,
-        f"{sweep.component}' at zero {_motion(sweep)} = {plus_minus(value, error)}, should be zero by symmetry; it is {100 * share:.1f} % of "
-        f"the largest {sweep.component}'",
-        RULE,
-        comment,
-    )
+        severity, size = Severity.WARN, "large"
+    return Check.of(
+        "symmetry.intercept", f"{sweep.campaign} {sweep.component}0'", severity, component=f"{sweep.component}'", motion=_motion(sweep),
+        value=plus_minus(value, error), share=100 * share, note=100 * NOTHING, warning=100 * LARGE, size=size,
+    )  # fmt: skip
 
 
 def _motion(sweep: Sweep) -> str:

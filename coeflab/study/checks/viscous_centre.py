@@ -191,19 +191,18 @@ def _placed(p: _Plane, x: float) -> str:
 
 
 def _passed(p: _Plane, c: Coefficient, x: float, rule: str) -> Check:
-    where = "Acts where flow separates and tails stand." if x <= 0.0 else "Acts on the body."
-    subject = f"{p.file.name} {c.symbol}"
-    return Check("viscous_centre", subject, Severity.PASS, f"viscous force {_placed(p, x)}", rule, where)
+    side = "aft" if x <= 0.0 else "ahead"
+    return Check.of(
+        "viscous_centre.sound", f"{p.file.name} {c.symbol}", Severity.PASS, place=_placed(p, x), rule=rule, side=side
+    )
 
 
 def _doubted(p: _Plane, c: Coefficient, found: str, rule: str, readings: Sequence[tuple[str, float]]) -> Check:
     """A warning with every reading of the value that would stand."""
-    own = f"{c.symbol} = {_value(c):.4g}"
-    comment = f"No other sign or inertia explains {own}: check it and its point."
-    if p.mass is None and c is p.rate:
-        comment = f"Check {own}, its sign and its point. The mass is not known here: does the force contain the model's inertia?"
-    if readings:
-        phrases = "; ".join(f"{words}, {c.symbol} = {value:.4g}" for words, value in readings)
-        held = f" m' = {p.mass:.4g}." if p.mass is not None and any("inertia" in w for w, _ in readings) else ""
-        comment = f"As it stands, {own}; {phrases}.{held}"
-    return Check("viscous_centre", f"{p.file.name} {c.symbol}", Severity.WARN, found, rule, comment)
+    case = "readings" if readings else "no_mass" if p.mass is None and c is p.rate else "none"
+    each = "; ".join(f"{words}, {c.symbol} = {value:.4g}" for words, value in readings)
+    inertia = p.mass is not None and any("inertia" in w for w, _ in readings)
+    return Check.of(
+        "viscous_centre.doubted", f"{p.file.name} {c.symbol}", Severity.WARN, found=found, rule=rule, case=case, symbol=c.symbol,
+        value=_value(c), each=each, mass=f" m' = {p.mass:.4g}." if inertia else "",
+    )  # fmt: skip
