@@ -11,8 +11,9 @@ import pickle
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,8 @@ if TYPE_CHECKING:  # a test of the core imports nothing above it by what stands 
 # How long an example takes says how busy the machine is, not whether it is right. New seeds are tried by tests/fuzz.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+
+LONGEST = Path(__file__).with_name("longest.txt")
 
 # Peak memory of a process itself in kB: ru_maxrss holds that of the process which it was forked from, too.
 PEAK_KILOBYTES = "int(next(line for line in open('/proc/self/status') if line.startswith('VmHWM')).split()[1])"
@@ -103,11 +106,15 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
     shutil.rmtree(folder)
 
 
+gc.disable()  # while modules are imported, which make no garbage
+
+
 def pytest_collection_finish() -> None:
     """What was imported is never garbage: a seventh of the processor time went into looking at it again and again."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(5_000, 20, 50)
+    gc.enable()
 
 
 def pytest_sessionfinish() -> None:
@@ -120,6 +127,44 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.slow)
+
+
+Longest = Sequence[tuple[float, tuple[str, ...]]]
+
+
+def longest() -> Longest:
+    """Rows of the file: seconds, and how the names begin of tests that one worker runs after each other."""
+    rows = (line.split() for line in LONGEST.read_text(encoding="utf-8").splitlines() if not line.startswith("#"))
+    return [(float(seconds), tuple(begins)) for seconds, *begins in rows]
+
+
+def dealt(names: Sequence[str], groups: Longest, workers: int) -> list[int]:
+    """An order of tests in which the share of every worker begins with some of the longest.
+
+    A worker gets the next of as many equal shares as there are workers without one; whoever is idle takes the end of another's.
+    """
+    first: list[list[int]] = [[] for _ in range(workers)]
+    seconds = [0.0] * workers
+    for long, begins in sorted(groups, key=lambda row: -row[0]):
+        if found := [k for begin in begins for k, name in enumerate(names) if name.startswith(begin)]:
+            least = seconds.index(min(seconds))
+            first[least] += found
+            seconds[least] += long
+    chosen = {k for own in first for k in own}
+    rest = iter([k for k in range(len(names)) if k not in chosen])
+    order: list[int] = []
+    for worker, own in enumerate(first):
+        share = (len(names) - len(order)) // (workers - worker)
+        order += own + list(islice(rest, max(0, share - len(own))))
+    return order
+
+
+@pytest.hookimpl(specname="pytest_collection_modifyitems", trylast=True)
+def longest_first(items: list[pytest.Item]) -> None:
+    """Else one of a minute and a half is begun when nothing else is left, and all workers but one wait."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if workers > 1:
+        items[:] = [items[k] for k in dealt([item.nodeid for item in items], longest(), workers)]
 
 
 @pytest.hookimpl(wrapper=True)

@@ -1,4 +1,4 @@
-"""start.py: what it says after a command that ended well, and gates of which the first that fails ends all."""
+"""start.py: what it says after a command that ended well, gates of which the first that fails ends all, and the order of tests."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
 import pytest
+
+from tests.conftest import dealt, longest
 
 FILE = Path(__file__).parents[1] / "start.py"
 GATE = """#!/bin/sh
@@ -70,3 +72,24 @@ def test_the_first_gate_that_fails_ends_all(
     lines = ran.read_text().splitlines()
     assert sum(last in line for line in lines) == 1
     assert ("-m mypy" in lines) is ("ruff" not in codes)
+
+
+def test_every_worker_begins_with_some_of_the_longest() -> None:
+    """As `worksteal` of xdist hands tests out: to each worker the next of equal shares."""
+    names = [f"a.py::{k}" for k in range(6)] + ["b.py::slow[1]", "b.py::slow[2]", "c.py::x", "d.py::y"]
+    order = dealt(
+        names, [(50.0, ("c.py",)), (60.0, ("d.py",)), (90.0, ("b.py::slow", "gone.py")), (99.0, ("gone.py",))], 2
+    )
+    assert [names[k] for k in order] == [
+        "b.py::slow[1]", "b.py::slow[2]", "a.py::0", "a.py::1", "a.py::2",
+        "d.py::y", "c.py::x", "a.py::3", "a.py::4", "a.py::5",
+    ]  # fmt: skip
+    assert sorted(dealt(names, [(1.0, ("a.py",))], 4)) == list(range(10))
+
+
+def test_the_longest_are_there_and_once() -> None:
+    begins = [begin for _, group in longest() for begin in group]
+    for begin in begins:
+        file, _, name = begin.partition("::")
+        assert f"def {name}" in (FILE.parent / file).read_text(encoding="utf-8"), begin
+        assert [b for b in begins if begin.startswith(b)] == [begin]
