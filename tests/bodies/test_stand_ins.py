@@ -21,37 +21,11 @@ from coeflab.bodies.simplify.simplify import simplify
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
+from tests.bodies.twelve import FORWARD, Mesh, at, ducted_quadrotor, ellipsoid, triple_hull, united
 
 RHO, COARSE, FINE = 1000.0, 1200, 2000
-FORWARD = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0.0, 1.0, 0.0])
 DOWN = np.diag([1.0, -1.0, -1.0])
 SILENT = 1e-3  # of the largest of its kind: motions about an axis of revolution, which facets make of nothing
-Mesh = trimesh.Trimesh
-
-
-def at(mesh: Mesh, *place: float) -> Mesh:
-    return mesh.apply_translation(place)
-
-
-def ellipsoid(*axes: float) -> Mesh:
-    return icosphere(2).apply_scale(axes)
-
-
-def united(*parts: Mesh) -> Mesh:
-    return trimesh.boolean.union(parts, engine="manifold")
-
-
-def ducted_quadrotor() -> Mesh:
-    parts = [box((0.5, 0.2, 0.15))]
-    for x in (0.35, -0.35):
-        for y in (0.35, -0.35):
-            duct, root = np.array([x, y, 0.0]), np.array([np.copysign(0.2, x), np.copysign(0.08, y), 0.0])
-            rim = duct - 0.14 * (duct - root) / np.linalg.norm(duct - root)
-            parts += [
-                at(annulus(0.13, 0.16, 0.1, sections=24), *duct),
-                cylinder(0.02, segment=[root, rim], sections=12),
-            ]
-    return united(*parts)
 
 
 def frame() -> Mesh:
@@ -61,11 +35,6 @@ def frame() -> Mesh:
         parts += [at(box((0.043, 0.037, 0.54)), x, y, 0.0) for x in (-0.45, 0.45)]
         parts += [at(box((0.047, 0.033, 0.53)), 0.01, y, 0.0)]
     return united(*parts)
-
-
-def triple_hull() -> Mesh:
-    sides = [at(ellipsoid(0.7, 0.1, 0.1), 0.0, y, 0.0) for y in (-0.35, 0.35)]
-    return united(ellipsoid(1.0, 0.15, 0.15), *sides, box((0.3, 0.7, 0.06)))
 
 
 def sphere_with_arms() -> Mesh:
