@@ -25,8 +25,6 @@ esac
 @pytest.fixture
 def start() -> ModuleType:
     spec = importlib.util.spec_from_file_location("start", FILE)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -38,7 +38,6 @@ def test_the_tour_imports_coeflab_and_nothing_below_it() -> None:
 def test_the_version_is_that_of_the_changelog() -> None:
     assert cf.__version__ == VERSION
     first = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
-    assert first is not None
     assert first[1] == VERSION
 
 
@@ -58,7 +57,6 @@ def test_the_lines_of_the_readme_run(tmp_path: Path, forks: Forks, monkeypatch: 
     block = re.search(
         r"```python\n(import coeflab as cf\n.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL
     )
-    assert block is not None
     assert forks.run(["new", "my_study"], tmp_path).returncode == 0
     monkeypatch.chdir(tmp_path)
     exec(compile(block[1], "README.md", "exec"), {})

@@ -174,7 +174,6 @@ def test_it_is_a_body_too() -> None:
     body, chain = read_body(FILE), puma()
     home, rigid = body.configurations[0].mass, kane.mass_matrix(dry(chain), chain.home)
     water = kane.mass_matrix(chain, chain.home) - rigid
-    assert home is not None
     assert home.mass == pytest.approx(rigid[0, 0])
     np.testing.assert_allclose(home.inertia_matrix, rigid[3:6, 3:6], atol=1e-9)
     found = ADDED_MASS.load("primitives").added_mass(body, 1000.0, {"cylinder_ends": "huuv"}).matrix

@@ -139,8 +139,6 @@ def test_python_equals_the_numeric_route_column_by_column(random: tuple[Chain, C
     ((name, content),) = written(form, "python", ORIGIN).items()
     (tmp_path / name).write_bytes(content)
     spec = importlib.util.spec_from_file_location("form", tmp_path / name)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
 

@@ -66,7 +66,6 @@ def test_completed_its_pairs_of_fins_are_rudder_and_stern_planes(tmp_path: Path)
     shape = found.require_shape()
     assert isinstance(shape, TriangleMesh)
     assert thruster.place == pytest.approx([shape.vertices[:, 0].min(), 0.0, 0.0], abs=1e-4)
-    assert found.outline is not None
     turning = {f.name: f for f in found.outline.foils if f.control}
     assert set(turning) == {"foil_upper", "foil_lower", "foil_starboard", "foil_port"}
     upper = turning["foil_upper"]  # half of the root chord lies a quarter of it behind the quarter chord
@@ -110,7 +109,6 @@ def test_the_other_command_and_the_masses_of_its_comments_are_read(tmp_path: Pat
     (thruster,) = found.thrusters
     assert (thruster.command, thruster.unit) == ("throttle", "%")
     assert thruster.curve.tolist() == [[0.0, 0.0], [100.0, 40.0]]
-    assert found.mass_model is not None
     assert np.linalg.eigvalsh(found.mass_model.inertia)[0] > 0.0
     assert found.mass_model.mass == pytest.approx(found.mass_model.density * found.mass_model.volume)
     assert rest

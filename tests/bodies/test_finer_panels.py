@@ -17,7 +17,6 @@ def matrix(share: float, method: str = "panel") -> AddedMass:
 
 def test_half_the_error_takes_four_times_the_panels() -> None:
     found = finer(matrix(0.08), {"panels": 6_000})
-    assert found is not None
     assert found.statistic == pytest.approx(0.08)
     assert found["panels"] == 24_000
     assert found["left"] == pytest.approx(0.04)
@@ -29,5 +28,4 @@ def test_no_line_below_one_percent_nor_of_other_methods_and_the_most_is_said() -
     assert finer(matrix(0.005), {}) is None
     assert finer(matrix(0.2, "strip"), {}) is None
     found = finer(matrix(0.2), {"panels": 32_000})
-    assert found is not None
     assert found.code == "added_mass.finest"

@@ -68,7 +68,6 @@ def test_shipped_vehicle_has_all_that_a_turn_needs(auv: Body) -> None:
     assert np.degrees([c.limit for c in auv.controls]) == pytest.approx([20.0, 20.0])
     assert [t.name for t in auv.thrusters] == ["propeller"]
     outline = auv.outline
-    assert outline is not None
     assert {f.name: f.control for f in outline.foils} == {
         "rudder_upper": "dr", "rudder_lower": "dr", "plane_starboard": "ds", "plane_port": "ds", "antenna": "",
     }  # fmt: skip
@@ -82,7 +81,6 @@ def test_hull_of_suboff_to_a_length(tmp_path: Path) -> None:
     """A uniform scale: volume goes with its cube."""
     full = suboff_meridian()
     found = body(tmp_path, GROVES, FIN.replace("trailing_edge = -0.05", "trailing_edge = -0.7")).outline
-    assert found is not None
     hull = found.hulls[0]
     assert hull.x[[0, -1]] == pytest.approx([1.0, -1.0])
     assert -np.trapezoid(hull.area, hull.x) == pytest.approx(full.volume * (2.0 / full.length) ** 3, rel=1e-3)
@@ -95,7 +93,6 @@ def test_duct_is_a_closed_ring_of_its_volume(tmp_path: Path) -> None:
     assert is_closed(piece.faces)
     assert piece.volume == pytest.approx(np.pi * 0.4 * 0.685 * 0.1 * 0.1**2, rel=0.01)
     outline = found.outline
-    assert outline is not None
     (ring,) = outline.rings
     assert ring.centre == pytest.approx([0.025, 0.0, 0.0])
     assert (ring.diameter, ring.chord, ring.thickness) == pytest.approx((0.4, 0.1, 0.1))
@@ -105,7 +102,6 @@ def test_plate_has_square_edges(tmp_path: Path) -> None:
     found = body(tmp_path, PLATE)
     assert found.require("by_mesh").volume == pytest.approx(0.07 * 0.3 * 0.004, rel=1e-6)
     outline = found.outline
-    assert outline is not None
     assert outline.foils[0].thickness == pytest.approx(0.004 / 0.07)
 
 

@@ -12,7 +12,6 @@ from tests.estimates.bodies import SAIL, box, outline, tail
 
 def test_fins_are_told_by_their_stations_from_the_bow() -> None:
     found = fins_along(outline(SAIL, *tail()))
-    assert found is not None
     assert found.words == (
         "1 fin at x = -1.2 m, 30 % of the length from the bow; 4 fins at x = -3.5 m, 88 % of the length from the bow"
     )
@@ -22,7 +21,6 @@ def test_fins_are_told_by_their_stations_from_the_bow() -> None:
 def test_fins_at_the_bow_are_all_ahead() -> None:
     forward = np.array([3.0, 0.0, 0.0])
     found = fins_along(outline(*(replace(f, root=f.root + forward, tip=f.tip + forward) for f in tail())))
-    assert found is not None
     assert found.ahead
 
 

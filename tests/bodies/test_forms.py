@@ -99,7 +99,6 @@ def test_a_revolution_has_no_fore_and_aft_symmetry_unless_it_is_one() -> None:
 
 def test_as_a_body_of_revolution_it_keeps_its_volume_turned_round() -> None:
     found = as_revolution(Parts((part(PROFILE, rotation(0.0, 0.0, np.pi)),)))
-    assert found is not None
     assert found.volume == pytest.approx(PROFILE.volume, rel=1e-12)
     assert float(np.max(found.x)) == pytest.approx(-PROFILE.stations[0], abs=0.05)
 

@@ -55,7 +55,6 @@ def test_beside_roddy() -> None:
     rows = (("hull_sail_as_printed", True, False, 3.1e-4), ("hull_planes_as_printed", False, True, -2.2e-4))
     for name, with_sail, with_planes, gap in rows:
         ours, his = appended(with_sail, with_planes), printed.require(name)
-        assert ours.volume is not None
         assert ours.volume / his.volume - 1.0 == pytest.approx(gap, abs=1e-5)
         assert ours.centre_of_buoyancy == pytest.approx(his.centre_of_buoyancy, abs=6e-4)
     bare = suboff_meridian().volume

@@ -64,7 +64,6 @@ def test_cylinder_and_parallel_axis(tmp_path: Path) -> None:
     """About the reference point .1 m ahead of the datum, .1 m behind the rod's centre."""
     found = body(tmp_path, ROD)
     mass = found.configurations[0].mass
-    assert mass is not None
     own = 12.0 * np.array([0.05**2 / 2.0, *[0.05**2 / 4.0 + 0.4**2 / 12.0] * 2])
     assert mass.centre == pytest.approx([0.1, 0.0, 0.0])
     assert mass.inertia_matrix == pytest.approx(np.diag(own + 12.0 * 0.1**2 * np.array([0.0, 1.0, 1.0])))
@@ -103,7 +102,6 @@ def test_ballast_makes_it_neutral_and_the_centre_hangs_below(tmp_path: Path) -> 
 def test_uncertainty_of_the_centre_by_moments(tmp_path: Path) -> None:
     found = model(tmp_path, SHELL, BALLAST)
     z = found.centre[2]
-    assert found.centre_u95 is not None
     assert found.centre_u95[2] == pytest.approx(np.hypot(3.0 * (0.0 - z), 0.4 * (0.3 - z)) / found.mass, rel=1e-3)
 
 
@@ -128,9 +126,7 @@ def test_upside_down_is_said() -> None:
 
 def test_shipped_vehicle_is_neutral_and_level() -> None:
     found = read_body(shipped("geometry") / "myring_auv" / "body.toml").mass_model
-    assert found is not None
     assert abs(found.net) < 1e-6
-    assert found.trim is not None
     assert abs(np.degrees(found.trim[0])) < 1.0
     assert json.loads(json.dumps(found.as_json()))["mass"]["value"] == pytest.approx(found.mass)
 
@@ -162,7 +158,6 @@ def test_what_is_no_mass(tmp_path: Path, table: str, column: str, said: str) -> 
 def test_water_that_nobody_stated_is_said(tmp_path: Path) -> None:
     for table, assumed in (("", True), ("[water]\ndensity = 1025.0\n", False)):
         made = body(tmp_path, SHELL, BALLAST, table).mass_model
-        assert made is not None
         assert made.assumed == assumed
         assert ("assumed: no [water] density" in made.words()[0]) == assumed
         assert made.as_json()["density_assumed"] == assumed

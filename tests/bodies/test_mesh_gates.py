@@ -221,7 +221,6 @@ def test_small_holes_are_filled_on_request_and_large_ones_are_not() -> None:
     with pytest.raises(InputError, match=r"not watertight.* --sheets") as caught:
         sound(vertices, faces[~cap], FILE, fill=True)
     share = re.search(r"not filled: a hole of ([\d.]+) % of the surface, above the limit of 1 %", str(caught.value))
-    assert share is not None
     assert float(share[1]) == pytest.approx(
         100.0 * 0.64 / (4.0 - 0.8), rel=0.05
     )  # the disc in the cap over what is left

@@ -73,7 +73,6 @@ def test_faces_are_turned_alike() -> None:
     mixed = np.where(rng.random(12)[:, None] < 0.5, CUBE_FACES, CUBE_FACES[:, ::-1])
     assert not topology.edges(mixed).sound
     found = topology.oriented(mixed)
-    assert found is not None
     assert topology.edges(found).sound
     assert found[0].tolist() == mixed[0].tolist()
 

@@ -40,7 +40,6 @@ def test_suboff() -> None:
     full = body.require("suboff_fully_appended")
     assert full.volume == pytest.approx(24.98991 * FOOT**3)
     assert full.volume == pytest.approx(0.7076, abs=5e-5)
-    assert full.centre_of_buoyancy is not None
     assert list(full.centre_of_buoyancy) == pytest.approx([-6.613906 * FOOT, 0.0, -0.006669 * FOOT])
 
 
@@ -50,9 +49,6 @@ def test_mass_of_suboff_is_its_displacement() -> None:
     lbp, density = Scaling(13.9792 * FOOT, "LBP"), 62.27456 * POUND / FOOT**3
     for configuration in body.configurations:
         mass, volume, centre = configuration.mass, configuration.volume, configuration.centre_of_buoyancy
-        assert mass is not None
-        assert volume is not None
-        assert centre is not None
         assert mass.mass == pytest.approx(density * volume, rel=2e-4)
         forward = centre[0] - body.reference_point[0]
         if configuration.name == "suboff_bare_hull":
@@ -61,7 +57,6 @@ def test_mass_of_suboff_is_its_displacement() -> None:
         else:
             assert mass.mass_moment / mass.mass == pytest.approx(forward, abs=3e-5)
     full = body.require("suboff_fully_appended").mass
-    assert full is not None
     assert full.mass == pytest.approx(1556.2363 * POUND, rel=1e-4)
     made = full.primed(lbp, density)
     assert (made.mass_prime, made.mass_moment_prime) == pytest.approx((0.018296, -0.127467e-4), rel=1e-12)
@@ -77,7 +72,6 @@ def test_primes_by_hand() -> None:
 def test_dimensional_mass(tmp_path: Path) -> None:
     (tmp_path / "body.toml").write_text(SYNTHETIC)
     mass = read_body(tmp_path / "body.toml").require("bare").mass
-    assert mass is not None
     assert mass.mass == pytest.approx(45.359237)
     assert mass.mass_moment == pytest.approx(45.359237 * FOOT)
     assert mass.inertia == 12.0
@@ -132,7 +126,6 @@ inertia_matrix = [[0.9, 0.0, "-0.1 kg*m^2"], [0.0, 12.0, 0.0], [-0.1, 0.0, 12.5]
 def test_centre_of_gravity_and_inertia_about_it(tmp_path: Path) -> None:
     (tmp_path / "body.toml").write_text(FULL)
     mass = read_body(tmp_path / "body.toml").configurations[0].mass
-    assert mass is not None
     kilograms = 100.0 * POUND
     assert mass.mass_moment == pytest.approx(0.1 * kilograms)
     assert list(mass.centre) == pytest.approx([0.1, 0.0, 0.02])

@@ -180,7 +180,6 @@ def test_ellipses_are_recognised_and_nothing_else() -> None:
     turn = np.array([[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]])
     contour = oval(3.0, 1.0, 60) @ turn + [5.0, 5.0]
     found = as_ellipse(contour, section_integrals([contour]))
-    assert found is not None
     assert found[:2] == pytest.approx([3.0, 1.0], rel=3e-3)
     assert np.tan(found[2]) == pytest.approx(np.tan(t), rel=1e-9)
     for other in (box(1.0, 1.0), box(3.0, 1.0), oval(1.0, 1.0, 8), finned(1.0, 1.1, 0.05, 2)):

@@ -20,7 +20,6 @@ def test_hull_under_fins_and_mast(turn: np.ndarray) -> None:
     mast = Manifold.cylinder(1.5, 0.08, 0.08, 48).translate((0.5, 0.0, 0.0))
     vertices, faces = surface(tailed_hull() + mast)
     found = round_hull(vertices @ turn.T + [1.0, 2.0, 3.0], faces)
-    assert found is not None
     assert abs(found.rotation[:, 0] @ turn[:, 0]) == pytest.approx(1.0, abs=1e-8)
     off = np.cross(found.point - [1.0, 2.0, 3.0], turn[:, 0])
     assert np.linalg.norm(off) < 1e-4 * HULL

@@ -145,8 +145,6 @@ def test_doubtful_cells_are_excluded_with_their_reasons(campaign: str) -> None:
 def converter() -> ModuleType:
     path = CFD_DATA / "convert_suboff.py"
     spec = importlib.util.spec_from_file_location("convert_suboff", path)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -29,8 +29,6 @@ NAMES = (
 def script() -> ModuleType:
     path = shipped("cfd_data") / "make_synthetic_vehicles.py"
     spec = importlib.util.spec_from_file_location("make_synthetic_vehicles", path)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)

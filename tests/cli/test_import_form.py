@@ -164,7 +164,6 @@ def test_area_and_length_of_coefficients_are_said_once(tmp_path: Path, monkeypat
     assert done.exit_code == 0, done.output
     assert 'CN = "N [coefficient A=0.2 m^2 L=4.0 m]"' in (tmp_path / "out" / "mapping.toml").read_text()
     table = table_of(tmp_path / "out")
-    assert table.arm_point is not None
     assert table.arm_point.tolist() == table.reference_point.tolist() == [0.0, 0.0, 0.0]
 
 
@@ -406,7 +405,6 @@ def test_a_yaw_moment_named_for_pitch_is_said() -> None:
         motion={"u": np.full(5, 2.0), "v": x, "w": 0.0 * x, "p": 0.0 * x, "q": 0.0 * x, "r": 0.0 * x},
     )  # fmt: skip
     found = coverage._moment_of_the_other_plane(table)
-    assert found is not None
     assert found.statistic == "M follows v, and there is no N"
     table.motion["w"] = x[::-1]
     assert coverage._moment_of_the_other_plane(table) is None

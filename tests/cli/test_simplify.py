@@ -152,7 +152,6 @@ def test_the_shipped_parts_against_the_dimensions_that_made_the_mesh() -> None:
 def test_the_mesh_is_what_its_script_makes() -> None:
     script = shipped("geometry") / "huuv" / "make_mesh.py"
     spec = importlib.util.spec_from_file_location("make_mesh", script)
-    assert spec is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     fused = module.hull() + module.mast() + module.elevator(1.0) + module.elevator(-1.0)

@@ -91,7 +91,6 @@ def file_of(name: str, request: pytest.FixtureRequest, lag: float | None = None)
 def moved(file: ParameterFile) -> Vehicle:
     """With the motions that programs move: those whose inertia the file states."""
     mass = file.mass
-    assert mass is not None
     turning = "pqr" if mass.inertia_matrix is not None else "qr" if mass.inertia is not None else ""
     return vehicle(file, free=tuple("uvw" + turning))
 
@@ -296,7 +295,6 @@ def by_xdyn(name: str, file: ParameterFile, folder: Path) -> np.ndarray:
     rows, said = in_xdyn(folder, text, STEP * len(orders), STEP / 5.0)
     assert len(rows), said
     mass = file.mass
-    assert mass is not None
     assert mass.centre is not None
     return rows[::5, 4:10] @ velocity_transfer(-np.array(mass.centre)).T
 
@@ -365,7 +363,6 @@ def test_mujoco_takes_it_or_it_is_refused(name: str, request: pytest.FixtureRequ
     (model_file,) = (n for n in written(file, "mujoco", tmp_path) if n.endswith(".xml"))
     model = mujoco.MjModel.from_xml_path(str(tmp_path / model_file))
     data = mujoco.MjData(model)
-    assert file.mass is not None
     assert model.body_mass.sum() == pytest.approx(file.mass.mass)
     data.qvel[0] = file.conditions.speed
     mujoco.mj_step(model, data, round(2.0 / model.opt.timestep))

@@ -99,7 +99,6 @@ def test_rows_are_the_same_under_slurm_and_a_run_goes_on_when_its_node_is_back(
     assert run.state is JobState.FINISHED
     assert run.resumed_from >= 10.0
     first = re.search(r"^Time = (\d+)", (tow.folder / "drift+4" / "log.simpleFoam").read_text(), re.MULTILINE)
-    assert first is not None
     assert float(first[1]) == run.resumed_from + 1.0
     for name in ("Y", "N"):
         one, other = ours["drift+4"], theirs["drift+4"]

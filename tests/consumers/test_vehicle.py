@@ -60,7 +60,6 @@ def test_mujoco_loads_it(estimated: ParameterFile, tmp_path: Path) -> None:
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (dependency group test)")
     model = mujoco.MjModel.from_xml_path(str(written(estimated, "mujoco", tmp_path, ".xml")))
     data = mujoco.MjData(model)
-    assert estimated.mass is not None
     assert np.isclose(model.body_mass.sum(), estimated.mass.mass)
     data.qvel[0] = speed = estimated.conditions.speed
     mujoco.mj_step(model, data, round(SECONDS / model.opt.timestep))

@@ -155,7 +155,6 @@ def test_files_of_the_case_alone_are_included(tmp_path: Path) -> None:
     )
     (inside / "0/link").symlink_to(tmp_path / "outside")
     top = case.read("0/U")
-    assert top is not None
     assert list(top.entries) == ["speed", "value"]
     assert case.value(top, "value") == (3, "0/U:9")
     assert codes(case) == [

@@ -16,8 +16,6 @@ ROOT = Path(__file__).resolve().parents[2]
 def house() -> ModuleType:
     """benchmarks/house.py as a module."""
     spec = importlib.util.spec_from_file_location("house", ROOT / "benchmarks" / "house.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -69,7 +69,6 @@ def test_all_six_of_both_planes_with_their_signs(appended: Estimates) -> None:
                          ("Yv|v|", -1), ("Zw|w|", -1), ("Nr|r|", -1), ("Mq|q|", -1), ("Ydr", 1), ("Ndr", -1), ("Yr", 0), ("Zq", 0)):  # fmt: skip
         c = appended.coefficients[symbol]
         assert c.value is not None
-        assert c.u95 is not None
         assert c.u95 > 0.0
         assert np.sign(c.value) == sign or not sign, symbol
         assert (c.status, c.origin, c.unit) == (Status.ESTIMATE, "estimate", "1")

@@ -62,7 +62,6 @@ def test_a_frame_is_one_bluff_part_however_it_is_meshed(tmp_path: Path, bar: flo
         assert body.shape is not None
         assert mirror_planes(body.shape)[1]
         outline = body.outline
-        assert outline is not None
         assert (outline.hulls, outline.foils) == ((), ())
         assert [part.name for part in outline.bluff] == ["body"]
         found.append(estimated(body, WATER))
@@ -73,7 +72,6 @@ def test_a_frame_is_one_bluff_part_however_it_is_meshed(tmp_path: Path, bar: flo
 def test_a_hull_with_fins_stays_one_however_it_is_meshed(tmp_path: Path) -> None:
     found = []
     for body in both_ways(torpedo(), tmp_path):
-        assert body.outline is not None
         assert len(body.outline.hulls) == 1
         names = {foil.name for foil in body.outline.foils}
         assert names == {"foil_upper", "foil_lower", "foil_port", "foil_starboard"}
@@ -87,7 +85,6 @@ def test_a_hull_with_fins_stays_one_however_it_is_meshed(tmp_path: Path) -> None
 def test_a_frame_is_between_shielded_and_not(tmp_path: Path) -> None:
     """Drag ahead: 1.05 on the mean of the silhouette and of half the faces' sum; U95 reaches both."""
     body, _ = both_ways(small_rov(), tmp_path)
-    assert body.outline is not None
     (part,) = body.outline.bluff
     assert part.areas == pytest.approx([0.0962, 0.2255, 0.2975], rel=2e-3)
     assert part.in_the_open == pytest.approx([0.1526, 0.3859, 0.3999], rel=2e-3)

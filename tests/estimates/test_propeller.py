@@ -166,7 +166,6 @@ def test_a_body_file_with_a_propeller(tmp_path: Path) -> None:
     curve = one.thrusts(1.0, 1000.0)
     assert curve[-1, 0] == pytest.approx(2000.0)
     seen = read_body(file).outline
-    assert seen is not None
     assert seen.propellers[0].diameter == pytest.approx(0.12)
 
 
@@ -218,7 +217,6 @@ def test_open_water_of_ones_own_gives_thrust_and_torque(tmp_path: Path) -> None:
     (thruster,) = _with(tmp_path, OPEN_WATER).thrusters
     made = parameter_thruster(thruster, np.zeros(3), Conditions(1000.0, 2.0))
     assert made.curve.at(1200.0) == pytest.approx(144.0)
-    assert made.torque_curve is not None
     assert made.torque_curve.at(1200.0) == pytest.approx(4.48)
     assert made.handedness == -1
     assert made.curve.at(599.0) == pytest.approx(0.0, abs=1e-9)  # J 1 at 600 rpm: nothing is known of what is slower

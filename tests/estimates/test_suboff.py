@@ -57,7 +57,6 @@ def test_signs_are_those_measured(found: tuple[Measured, ...]) -> None:
 def test_a_row_is_inside_by_the_estimates_own_u95(found: tuple[Measured, ...]) -> None:
     one = found[0]
     u95 = one.found.u95
-    assert u95 is not None
     assert replace(one, measured=one.value + 0.99 * u95).inside
     assert not replace(one, measured=one.value + 1.01 * u95).inside
 
@@ -95,7 +94,6 @@ def test_a_tow_by_estimates_from_table_to_report(tmp_path: Path) -> None:
     assert known is not None
     among = known(made.tank, made.body)
     for row in collected.six:
-        assert row.coefficient is not None
         assert row.coefficient.status is Status.ESTIMATE
         assert row.value == pytest.approx(among[row.symbol].value, rel=0.02, abs=1e-5)
         assert row.u95 == among[row.symbol].u95

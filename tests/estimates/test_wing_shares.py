@@ -51,7 +51,6 @@ def moved_and_own(names: tuple[str, ...], wing: str) -> tuple[Estimates, dict[st
         ):  # what the wing takes from a ring in its wake is its doing too, as its sidewash on foils is
             own += sum(sign * v for made, sign in ((large, 1.0), (small, -1.0))
                        for key, v in made.shares.get(symbol, {}).items() if key.startswith("ring"))  # fmt: skip
-        assert one.value is not None
         assert one.u95 is not None
         found[symbol] = (one.value - (before or 0.0), own, one.u95)
     return large, found

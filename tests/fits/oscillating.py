@@ -24,8 +24,6 @@ from coeflab.tables.reading import read_tables
 def law() -> ModuleType:
     """The script that makes the shipped campaign."""
     spec = importlib.util.spec_from_file_location("make_pmm_synthetic", shipped("cfd_data") / "make_pmm_synthetic.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)

@@ -146,7 +146,6 @@ def test_a_constant_angle_offset_only_moves_the_intercept_of_a_straight_line() -
 def test_linear_and_monte_carlo_agree_and_start_from_the_coefficient(shift: float) -> None:
     for b in found_by(EVERY, shift).values():
         m = b.monte_carlo
-        assert m is not None
         assert m.value == pytest.approx(b.value, rel=1e-9)
         assert m.linear == pytest.approx(np.sqrt(sum(p.linear**2 for p in b.inputs)))
         assert m.monte_carlo == pytest.approx(m.linear, rel=0.06)
@@ -256,7 +255,6 @@ def test_u95_never_shrinks_as_the_grid_study_gets_worse(error: float, row: int, 
         found = budgets_of(result, {moved.name: moved})
         b = next(b for b in found if b.symbol == "Yv")
         assert b.u95 is not None
-        assert b.grid is not None
         return b.u95, b.grid.convergence.convergence.converges, tuple(f.code for f in open_parts(found))
 
     before, converges, codes = judged(0.0)
@@ -294,8 +292,6 @@ def test_covariance_of_common_errors_cancels_in_the_centre_of_pressure() -> None
         whole = covariance(result.coefficients, found)
         assert np.min(np.linalg.eigvalsh(whole)) > -1e-12 * np.max(whole)
         x = centre_of_pressure(with_budget(result, found).coefficients, result.campaign)[0]
-        assert x.result is not None
-        assert bare.result is not None
         assert x.value == bare.value
         assert (x.result.linear == pytest.approx(bare.result.linear, rel=1e-4)) is same
         assert x.result.monte_carlo == pytest.approx(x.result.linear, rel=0.03)
@@ -350,12 +346,10 @@ HORIZONTAL = {"Yv'": (-0.028, 0.001), "Nv'": (-0.014, 0.0005), "Yr'": (0.005, 0.
 def test_the_stability_index_with_a_budget() -> None:
     (g,) = stability(parameters(HORIZONTAL))
     assert g.value == pytest.approx(1.0 - (-0.014 * (0.005 - 0.018)) / (-0.028 * -0.0045))
-    assert g.result is not None
     assert g.result.monte_carlo == pytest.approx(g.result.linear, rel=0.03)
     relative = np.array([0.001 / 0.028, 0.0005 / 0.014, 0.0005 / 0.013, 0.0002 / 0.0045])
     assert g.result.linear == pytest.approx((1.0 - g.value) * np.linalg.norm(relative))
     (wider,) = stability(parameters(HORIZONTAL | {"Yv'": (-0.028, 0.004)}))
-    assert wider.result is not None
     assert wider.result.linear > 1.5 * g.result.linear
 
 
@@ -407,12 +401,10 @@ def section(tmp_path: Path, text: str) -> InputUncertainty | None:
 def test_declared_input_uncertainties(tmp_path: Path) -> None:
     assert section(tmp_path, "") is None
     found = section(tmp_path, '[uncertainty]\nangle = "0.1 deg"\nspeed = 0.005\nreference_point = "5 mm"\n')
-    assert found is not None
     assert found.angle == pytest.approx(np.radians(0.1))
     assert found.reference_point == pytest.approx(0.005)
     assert found.declared == ("angle", "speed", "reference_point")
     by_cent = section(tmp_path, '[uncertainty]\nspeed = "0.5 %"\n')
-    assert by_cent is not None
     assert by_cent.speed == pytest.approx(0.005)
 
 
@@ -455,9 +447,7 @@ def test_a_campaign_declares_cells_and_uncertainty_for_its_tables(tmp_path: Path
     (folder / "campaign.toml").write_text(text + "\n[uncertainty]\nspeed = 0.01\n")
     campaign = read_campaign(folder / "campaign.toml")
     for t in declared(read_tables(PlannedTable(folder, (), {})), campaign):
-        assert t.uncertainty is not None
         assert t.uncertainty.declared == ("speed",)
-        assert t.cells is not None
         assert sorted(set(t.cells)) == [192998.0, 607541.0, 1169985.0]
 
 

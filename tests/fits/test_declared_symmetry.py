@@ -116,8 +116,6 @@ def test_one_side_is_enough_by_declaration(one_side: FitResult) -> None:
     assert sweep.at_rest == pytest.approx((0.0, 0.0), abs=1e-6)
     assert np.allclose(sweep.curve[1], -sweep.curve[1][::-1], atol=1e-9)
     value, u95 = values(one_side)["Yv"]
-    assert value is not None
-    assert u95 is not None
     assert abs(value + 0.02) < u95
     (check,) = sides(one_side)
     assert check.severity is Severity.PASS
@@ -286,6 +284,4 @@ def test_a_symmetry_that_the_points_rule_out_is_withdrawn(tables: Reader, consta
     assert found.sweep("Yv").symmetry == ("" if withdrawn else "port-starboard")
     assert found.sweep("Nv").symmetry == "port-starboard"
     value, u95 = values(found)["Yv"]
-    assert value is not None
-    assert u95 is not None
     assert abs(value + 0.02) <= u95

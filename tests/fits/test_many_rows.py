@@ -31,7 +31,6 @@ def test_means_of_a_strip_are_means_of_the_curve_too() -> None:
     """A strip of v|v| is not v|v| at its mean: without the nodes the slope of this curve is 0.5 % off."""
     x = np.linspace(-0.3, 0.3, 2001)
     few = condensed_rows(x, force(x))
-    assert few is not None
     assert len(few.x) == SETTINGS
     at_mean = prepare(few.x, few.variance)
     over = prepare(few.x, few.variance, strips=few.strips)
@@ -45,7 +44,6 @@ def test_replicates_of_few_settings_keep_their_settings() -> None:
     settings = np.linspace(-0.3, 0.3, 13)
     x = np.repeat(settings, 100)
     few = condensed_rows(x, force(x) + 1e-4 * RNG.standard_normal(len(x)))
-    assert few is not None
     assert few.x == pytest.approx(settings)
 
 
@@ -75,7 +73,6 @@ def test_stated_errors_weigh_the_rows() -> None:
     se = np.where(x > 0.0, 1e-5, 1e-3)
     y = force(x) + se * RNG.standard_normal(401)
     few = condensed_rows(x, y, se)
-    assert few is not None
     assert few.variance[few.x < -0.01].min() > 1e3 * few.variance[few.x > 0.01].max()
 
 

@@ -42,7 +42,6 @@ def test_a_filter_with_the_wrong_phase_turns_damping_into_added_mass(text: str) 
     wrong = Filter.read(text.format(lag=lag), campaign().runs[0].listed, "filter")
     filters = dict.fromkeys(campaign().filters, wrong) | {"motion": Filter()}
     found = fitted(*runs, filters=filters).coefficients["Yvdot"]
-    assert found.value is not None
     assert abs(found.value - truth("Yvdot")) > 0.1 * abs(truth("Yvdot"))
 
 

@@ -51,7 +51,6 @@ def same(found: np.ndarray, due: np.ndarray) -> None:
 @pytest.mark.parametrize("target", ["mss", "python_vehicle_simulator"])
 def test_tables_are_held(target: str, name: str) -> None:
     loss = export(of(name)[0], target).loss
-    assert loss is not None
     assert not any("C_D" in x.what for x in loss.lost)
     assert loss.forces.furthest[1] < 1e-9
     assert loss.rare.furthest[1] < 1e-9

@@ -139,7 +139,6 @@ def test_the_class_gives_thrust_limits_and_rates(tmp_path: Path) -> None:
 @pytest.mark.parametrize("target", ["mss", "python_vehicle_simulator", "xdyn", "c"])
 def test_what_is_held_is_no_loss(target: str) -> None:
     loss = export(file(), target).loss
-    assert loss is not None
     said = [x.what for x in loss.lost]
     assert not [s for s in said if "thruster" in s]
     assert [s for s in said if s.startswith("rates of dr")] == (

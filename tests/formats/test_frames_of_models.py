@@ -53,7 +53,6 @@ def stonefish(folder: Path, specs: str = "", right: str = "true"):
 def test_the_centre_of_gravity_of_stonefish_is_in_the_body_and_turns_its_moments(tmp_path: Path) -> None:
     """SolidEntity.cpp: T_CG2O is the inverse of <cg>; the shape's <origin> is none of it."""
     mass = stonefish(tmp_path).mass
-    assert mass is not None
     np.testing.assert_allclose(mass.centre, np.zeros(3), atol=1e-12)
     np.testing.assert_allclose(mass.inertia_matrix, np.diag([2.0, 1.0, 2.5]), atol=1e-12)
 
@@ -66,7 +65,6 @@ def test_a_thruster_of_stonefish_with_two_sides_or_a_turned_sign_is_left_out_by_
 ) -> None:
     (t,) = stonefish(tmp_path, ' torque_coeff="0.05"').thrusters
     unit = 1000.0 * 0.2**4 * 5.0 * abs(5.0)  # rho D^4 n|n| at 300 rpm
-    assert t.torque_curve is not None
     found = t.curve.at(300.0) * t.direction[0], t.torque_curve.at(300.0) * t.handedness * t.direction[0]
     assert found == pytest.approx((0.48 * unit, -0.05 * 0.2 * unit))
     assert {f["kind"] for f in stonefish(tmp_path).findings if f.code == "model.left_out"} >= {"rotors"}
@@ -84,5 +82,4 @@ def test_b_beside_a_mass_that_it_cannot_carry_is_a_breadth(tmp_path: Path) -> No
     assert read_vehicle_file(path).hydrostatics is None
     path.write_text(text.format(1500 * 9.81))
     floating = read_vehicle_file(path).hydrostatics
-    assert floating is not None
     assert floating.volume == pytest.approx(1500.0 * 9.81 / (1025.0 * 9.80665), rel=1e-2)

@@ -125,7 +125,6 @@ def test_hostile_names_of_thrusters_are_inert(name: str) -> None:
 def test_what_the_fins_hold_is_not_called_lost(target: str) -> None:
     """REMUS 100 states no limits: the one that is written is said, and where a command goes."""
     loss = export(read_parameter_file(Path("remus100")), target).loss
-    assert loss is not None
     assert [n for n in loss.not_held if n.startswith(("Ydr", "Ndr", "Zds", "Mds"))] == []
     said = " ".join(loss.changes)
     assert "0.6 rad" in said

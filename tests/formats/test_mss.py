@@ -71,7 +71,6 @@ def test_the_munk_moment_is_counted_once() -> None:
 
 def test_nothing_is_lost() -> None:
     loss = export(made.full(3), "mss").loss
-    assert loss is not None
     assert loss.lossless
     assert any("no C_A(nu)" in c for c in loss.changes)
 
@@ -117,7 +116,6 @@ def remus() -> ParameterFile:
 def test_the_loop_of_the_page_is_our_own_turn(tmp_path: Path) -> None:
     written(tmp_path, remus())
     loop = re.search(r'title="mss/loop.m"\n(.*?)^```', PAGE.read_text(encoding="utf-8"), re.S | re.M)
-    assert loop is not None
     north, east, heading, speed = octave(tmp_path, loop[1])
     turn = {"rudder": float(np.radians(10.0)), "turns": 5.0, "longest": 30.0}
     ours = simulate(remus(), "turning_circle", turn).trajectory

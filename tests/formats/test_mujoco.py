@@ -139,7 +139,6 @@ def test_what_it_takes_it_takes_exactly() -> None:
 
 def test_the_loss_is_said() -> None:
     loss = export(made.plain(), "mujoco").loss
-    assert loss is not None
     assert not loss.lossless
     assert "added inertia" in loss.not_held[0]
     assert {"Nr", "Zw", "Yvvv"} <= set(loss.not_held)
@@ -255,7 +254,6 @@ def test_a_lift_of_the_wrong_sign_is_left_out_for_those_who_accept_it() -> None:
         export(file, "mujoco")
     assert "fmi, xdyn, mss or gazebo. Or accept the loss" in caught.value.advice
     found = export(file, "mujoco", accept_loss=True)
-    assert found.loss is not None
     (left,) = (x for x in found.loss.lost if x.kind is Kind.LEFT_OUT)
     assert left.what.startswith("the lift of Yv: with it Zw does not keep its sign: at w' = 0.05")
     assert "Yv" in found.loss.not_held
@@ -284,7 +282,6 @@ def test_no_damping_is_ever_the_wrong_way_round(seed: int) -> None:
 
 def test_what_drives_a_turn_is_left_out_alone() -> None:
     loss = export(slender(Nr=4.4e-3), "mujoco", accept_loss=True).loss
-    assert loss is not None
     assert [x.what.partition(":")[0] for x in loss.lost if x.kind is Kind.LEFT_OUT] == ["Nr"]
     assert not {"X0", "Yv", "Nv"} & set(loss.not_held)
 

@@ -87,7 +87,6 @@ def test_the_munk_moment_is_counted_once() -> None:
 
 def test_nothing_is_lost() -> None:
     loss = export(made.full(3), "python_vehicle_simulator").loss
-    assert loss is not None
     assert loss.not_held == ()
     assert loss.relative.max() < 1e-9
     (said,) = loss.lost

@@ -179,7 +179,6 @@ def test_fins_of_uuv_simulator(tmp_path: Path, law: str) -> None:
     }
     for symbol, due in hand.items():
         c = p.coefficient(symbol) or p.coefficient(f"{symbol}|u|")
-        assert c is not None, symbol
         assert c.value * p.scaling.unit(c.symbol, RHO) == pytest.approx(due, rel=1e-5), symbol
     assert {s.control: (s.limit, s.rate) for s in p.surfaces} == {"dr": (0.5, None), "ds": (0.5, None)}
     assert found.left_out["late_fins"] == [f"0.2 s of {n}p" for n, _, _ in TAIL]

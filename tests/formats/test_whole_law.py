@@ -64,8 +64,6 @@ def test_the_states_of_a_loss_hold_astern_broadside_and_rest() -> None:
 
 def test_a_law_that_differs_astern_alone_is_not_lossless() -> None:
     made = export(torpedo(), "mss").loss
-    assert made is not None
-    assert made.rare is not None
     assert made.rare.furthest[1] <= LOSSLESS
     worse = replace(made, rare=replace(made.rare, worst=np.array([1.0, 0, 0, 0, 0, 0])))
     assert not worse.lossless
@@ -86,7 +84,6 @@ def test_a_target_without_tables_says_which_parts_it_lacks_and_writes_no_ideal_f
     except InputError:
         return  # it holds no such vehicle at all
     loss = made.loss
-    assert loss is not None
     assert not made.lossless
     held = " ".join(x.what for x in loss.lost if x.kind is Kind.NOT_HELD)
     assert all(f"{m.response} over alpha, beta" in held for m in file.models)

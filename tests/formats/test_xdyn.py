@@ -104,7 +104,6 @@ def test_negative_added_mass_is_refused() -> None:
 
 def test_nothing_is_lost() -> None:
     loss = export(torpedo(), "xdyn").loss
-    assert loss is not None
     assert loss.lossless
 
 

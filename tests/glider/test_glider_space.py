@@ -244,7 +244,6 @@ def test_lift_leans_a_dive_to_the_roller_s_side_and_a_climb_to_the_other(spiral)
 def test_without_roller_and_thrust_a_spiral_is_the_glide() -> None:
     (straight,) = steady_glides(GLIDER, GLIDER.phases[0])
     found = steady_spiral(SPACE, GLIDER.phases[0].setting, straight.speed, straight.alpha, straight.theta)
-    assert found is not None
     assert [found.speed, found.zeta] == pytest.approx([straight.speed, straight.zeta], abs=1e-9)
     assert found.turn == pytest.approx(0.0, abs=1e-12)
 

@@ -230,7 +230,5 @@ def test_damping_that_drives_is_called_so() -> None:
     """Along the motion positive: -0.048 N m s taken off in the equations drives at +0.048."""
     told = driving(TunedParameter("Nr", "N m s", 0.0, 0.048, 0.028, 0.0, OK))
     left_open = driving(TunedParameter("Nr|r|", "N m s^2", -1.0, 0.21, None, 0.0, OPEN))
-    assert told is not None
-    assert left_open is not None
     assert (told["case"], left_open["case"]) == ("told", "open")
     assert driving(TunedParameter("Nr", "N m s", 0.0, -0.033, 0.033, 0.0, SIGN)) is None

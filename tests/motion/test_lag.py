@@ -97,7 +97,6 @@ def test_the_program_goes_to_its_command_by_the_lag(tmp_path: Path) -> None:
 )
 def test_a_lag_that_a_target_has_no_place_for_is_a_loss(target: str, lost: int) -> None:
     loss = export(late(), target).loss
-    assert loss is not None
     assert len([x for x in loss.lost if x.what == "lag of left: commands are taken at once"]) == lost
 
 

@@ -28,7 +28,6 @@ def test_the_peak_of_a_parabola_is_exact(curvature: float, place: float) -> None
     found = extreme(t, y, largest=True, after=-1.0)
     if not inner:
         return
-    assert found is not None
     assert found == pytest.approx((place, 3.0), abs=1e-9)
     assert extreme(t, -y, largest=False, after=-1.0) == pytest.approx((place, -3.0), abs=1e-9)
 

@@ -44,7 +44,6 @@ def test_suboffs_rudder_amidships(suboff: Study) -> None:
     drift, rate = fsolve(balance, (0.1, 0.3))
     body = moved(file, "turning_circle")
     found = settled_turn(body, "r", body.speed)
-    assert found is not None
     assert (found.angle, found.rate) == pytest.approx((drift, rate), rel=1e-6)
     assert (degrees(drift), rate) == pytest.approx((7.6, 0.36), rel=0.01)
     plain = fsolve(lambda s: balance(s, carried=False), (0.1, 0.3))  # with m' r' in place of m' r' cos(beta)
@@ -58,14 +57,12 @@ def test_terms_in_v_end_a_turn_and_data_on_both_determine_it() -> None:
     """Before: not determined, since no term in r|r| stood in the file."""
     bare = moved(made(LIMITED), "turning_circle", free=("u", "v", "r"))
     found = settled_turn(bare, "r", bare.speed)
-    assert found is not None
     side = LIMITED["Yv"] * (v := -sin(found.angle)) + LIMITED["Yv|v|"] * v * abs(v)
     turn = LIMITED["Nv"] * v + LIMITED["Nv|v|"] * v * abs(v) + LIMITED["Nvvv"] * v**3 + LIMITED["Nr"] * found.rate
     mass = bare.mass / (0.5 * bare.density * bare.length**3)
     assert side + LIMITED["Yr"] * found.rate == pytest.approx(mass * found.rate * cos(found.angle), rel=1e-5)
     assert turn == pytest.approx(0.0, abs=1e-6)
     reason = open_turn(bare, "r", bare.speed)
-    assert reason is not None
     assert (reason["case"], reason["angle"]) == ("settles_bare", pytest.approx(degrees(found.angle)))
     for limits, open_ in (
         ({"drift": 1.1, "rate": 3.0}, False),
@@ -91,7 +88,6 @@ def test_a_steady_turn_by_the_equations_of_motion_is_that_of_the_balance() -> No
     out = simulate(file, "pull_out", {}, free=("v", "r"))
     body = moved(file, "pull_out", free=("v", "r"))
     found = settled_turn(body, "r", body.speed)
-    assert found is not None
     (right, _) = (f.value for f in out.figures)
     assert right == pytest.approx(found.rate * np.hypot(1.0, tan(found.angle)) * body.speed / body.length, rel=1e-3)
     assert asin(sin(found.angle)) == found.angle

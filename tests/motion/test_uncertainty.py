@@ -59,7 +59,6 @@ def steady_rate(carried: Carried) -> tuple[np.ndarray, float, np.ndarray]:
     at = parameters(LINEAR)
     speed, density = at.conditions.speed, at.conditions.density
     mass = with_mass(at, np.zeros(3)).mass
-    assert mass is not None
     m = mass.mass_prime
     length = at.scaling.length
     matrix = np.array([[LINEAR["Yv"], LINEAR["Yr"] - m], [LINEAR["Nv"], LINEAR["Nr"]]])
@@ -83,10 +82,6 @@ def test_a_linear_figure_has_the_analytic_interval() -> None:
     assert found.figure.value == pytest.approx(nominal, rel=1e-4)
     cells = np.diag([U95["Ydr'"], U95["Ndr'"]]) / 2.0
     u95 = 2.0 * float(np.sqrt(unit @ cells @ np.array([[1.0, 0.5], [0.5, 1.0]]) @ cells @ unit))
-    assert found.low is not None
-    assert found.high is not None
-    assert found.low_error is not None
-    assert found.high_error is not None
     assert found.low == pytest.approx(nominal - u95, abs=3.0 * found.low_error)
     assert found.high == pytest.approx(nominal + u95, abs=3.0 * found.high_error)
     assert found.low_error < 0.2 * u95
@@ -121,7 +116,6 @@ def test_indices_of_stability_are_those_of_the_draws() -> None:
     named = {s.figure.name: s for s in carried.spreads}
     deviations = dict(zip(carried.varied.symbols, carried.deviations.T, strict=True))
     file = uncertain_torpedo()
-    assert file.mass is not None
     yv, nv, yr, nr = (VALUES[s] + deviations.get(f"{s}'", 0.0) for s in ("Yv", "Nv", "Yr", "Nr"))
     index = 1.0 - nv * (yr - file.mass.mass_prime) / (yv * (nr - file.mass.mass_moment_prime))
     assert named["G_h"].median == pytest.approx(float(np.median(index)))
@@ -156,7 +150,6 @@ def scheduler() -> Iterator[str]:
     """Address of a Dask scheduler of our own, with one worker."""
     command = [sys.executable, "-c", CLUSTER]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
         yield process.stdout.readline().strip()
         process.communicate("")
 
@@ -255,10 +248,7 @@ def test_the_interval_of_g_h_is_that_of_the_report() -> None:
     file = uncertain_torpedo()
     found = next(s for s in uncertainty(file, replace(SHORT, members=100)).spreads if s.figure.name == "G_h")
     (report,) = [d for d in stability(file) if d.name == "G_h"]
-    assert report.result is not None
     assert found.figure.value == pytest.approx(report.value)
-    assert found.low is not None
-    assert found.high is not None
     assert found.low == pytest.approx(report.result.low, abs=4.0 * (found.low_error or 0.0))
     assert found.high == pytest.approx(report.result.high, abs=4.0 * (found.high_error or 0.0))
 

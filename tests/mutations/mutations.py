@@ -526,7 +526,6 @@ def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
             return validate_tank()
         case "estimates":
             return validate_estimates()
-    assert suboff_study is not None
     return suboff_study.verdicts()
 
 

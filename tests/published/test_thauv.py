@@ -187,7 +187,6 @@ def test_a_dive_s_parameter_file_goes_through_the_common_simulator(thauv: Accept
 def test_simulators_hold_the_whole_force_of_a_dive_and_the_thrusters(thauv: Acceptance, to: str) -> None:
     file = next(p for p in thauv.parameter_files if p.name == "thauv_case_02_dive_1")
     loss = export(file, to).loss
-    assert loss is not None
     assert loss.not_held == loss.lost == ()
     assert np.nanmax(loss.forces.relative) < 1e-9
     assert any("neither moving pistons, roller nor buoyancy engine" in note for note in file.provenance.notes)

@@ -79,7 +79,6 @@ def test_standard_errors_are_shown_over_the_largest_force_with_the_worst_row():
 
 def test_the_figure_has_one_line_a_variable_and_none_where_nothing_varies():
     drawn = settings_figure(planted(), "settings")
-    assert drawn is not None
     assert "7 levels from -8 to 8" in drawn.description
     assert settings_figure(planted([0.0, 0.0]), "settings") is None
 

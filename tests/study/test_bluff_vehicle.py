@@ -34,7 +34,6 @@ def file_of(study: Study) -> ParameterFile:
 @pytest.mark.slow
 def test_the_ideal_fluid_of_a_box_is_its_added_mass(rov: Study) -> None:
     p = file_of(rov)
-    assert p.added_mass is not None
     m = np.diag(p.added_mass.matrix)
     half, length = 0.5 * p.conditions.density, p.scaling.length
     for symbol, expected in (
@@ -43,7 +42,6 @@ def test_the_ideal_fluid_of_a_box_is_its_added_mass(rov: Study) -> None:
         ("Nuv'", (m[0] - m[1]) / (half * length**3)), ("Muw'", (m[2] - m[0]) / (half * length**3)),
     ):  # fmt: skip
         c = p.coefficient(symbol)
-        assert c is not None
         assert c.value == pytest.approx(expected, rel=1e-8), symbol
         assert c.potential == pytest.approx(expected, rel=1e-8), symbol
 
@@ -63,7 +61,6 @@ def test_values_that_leave_their_potential_part_are_found(rov: Study) -> None:
     wrong = tuple(replace(c, value=0.5 * c.value) if c.symbol == "Yur'" and c.value else c for c in p.coefficients)
     shares = {**rov.shape.estimates.shares} if rov.shape else {}
     shares["Yur"] = {k: 0.5 * v for k, v in shares["Yur"].items()}
-    assert rov.shape is not None
     off = replace(
         rov, parameter_files={p.name: p.model_copy(update={"coefficients": wrong})},
         shape=replace(rov.shape, estimates=replace(rov.shape.estimates, shares=shares)),

@@ -73,8 +73,6 @@ def test_the_shipped_files_raise_no_doubt(suboff: Study) -> None:
 def test_a_flipped_sign_is_found(suboff: Study, name: str, symbol: str, severity: str) -> None:
     file = suboff.parameter_files[name]
     stated = file.coefficient(symbol)
-    assert stated is not None
-    assert stated.value is not None
     found = one(suboff, changed(file, **{symbol: -stated.value}))
     assert severity in [c.severity.value for c in found if f"{symbol}'" in c.subject]
     if symbol in ("Yr", "Zq", "Nv", "Mw"):
@@ -85,7 +83,6 @@ def test_a_flipped_sign_is_found(suboff: Study, name: str, symbol: str, severity
 def test_a_sign_that_the_data_leave_open_is_a_note(suboff: Study, half: float | None, severity: str) -> None:
     fit = suboff.fits[0]
     slope = next(c for c in fit.coefficients.coefficients if c.symbol == "Yv")
-    assert slope.value is not None
     turned = replace(slope, value=-slope.value, u95=None if half is None else half * abs(slope.value))
     alone = replace(fit, coefficients=replace(fit.coefficients, coefficients=(turned,)))
     [found] = signs(replace(suboff, fits=(alone,), parameter_files={}, missing=()))
@@ -98,11 +95,6 @@ def test_what_a_wide_slope_leaves_open_is_not_doubted(suboff: Study, symbol: str
     """Yv' of the bare hull is known to 81 %: within that the force of either sign acts on the body. A narrow one tells."""
     file = suboff.parameter_files["suboff_bare_hull"]
     stated, slope = file.coefficient(symbol), file.coefficient("Yv")
-    assert stated is not None
-    assert stated.value is not None
-    assert slope is not None
-    assert slope.value is not None
-    assert slope.u95 is not None
     assert slope.u95 > 0.8 * abs(slope.value)
     assert one(suboff, changed(file, **{symbol: -stated.value})) == []
 
@@ -111,8 +103,6 @@ def test_what_a_wide_slope_leaves_open_is_not_doubted(suboff: Study, symbol: str
 def test_a_flipped_slope_from_literature_fails(suboff: Study, symbol: str) -> None:
     file = suboff.parameter_files["suboff_fully_appended"]
     stated = file.coefficient(symbol)
-    assert stated is not None
-    assert stated.value is not None
     other = replace(stated, value=-stated.value, origin="literature", estimator="Table 4")
     coefficients = tuple(other if c is stated else c for c in file.coefficients)
     found = one(suboff, file.model_copy(update={"coefficients": coefficients}))
@@ -123,8 +113,6 @@ def test_a_vehicle_with_its_fins_forward_is_not_doubted(suboff: Study) -> None:
     """Drift and turning both make their viscous force ahead."""
     file = suboff.parameter_files["suboff_fully_appended"]
     nv = file.coefficient("Nv")
-    assert nv is not None
-    assert nv.potential is not None
     assert [c for c in one(suboff, changed(file, Nv=nv.potential - 0.008, Yr=-0.006)) if "Yr'" in c.subject] == []
 
 

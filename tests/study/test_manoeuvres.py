@@ -115,7 +115,6 @@ def test_a_plan_chooses_accelerations_for_manoeuvres_and_exports(tmp_path: Path)
     assert made_of.vehicle.water.used == "computed"
     assert made_of.vehicle.water.source in made_of.statements
     ((exported,), _) = exports_of([replace(plan.exports[0], accept_loss=True)], [file], quiet)
-    assert exported.loss is not None
     assert exported.loss.water.used == "computed"
     path.write_text(PLAN + '[[export]]\nto = "mss"\naccelerations = "guessed"\n')
     with pytest.raises(InputError, match="guessed"):

@@ -107,7 +107,6 @@ def test_a_plan_is_taken_for_a_plan(tmp_path: Path) -> None:
     plan.write_text(text)
     for source in (plan, tmp_path):
         found = cf.next_tests(source, "Nv'", runs=1)
-        assert found.given is not None
         assert (found.given.subject, found.given["kind"], found.given["campaigns"]) == (
             "two",
             "plan",

@@ -122,7 +122,6 @@ def test_a_dive_s_file_from_the_sweep_moves_as_that_of_the_validation(carried_ou
 
 def test_the_polar_of_a_dive_goes_to_simulators_whole(carried_out: Callable[[str], Study]) -> None:
     loss = export(made(carried_out("thauv_synthetic"), "thauv_case_01_dive_1_fitted"), "mss").loss
-    assert loss is not None
     assert [str(lost) for lost in loss.lost if "thrusters" not in str(lost)] == []
     assert np.nanmax(loss.forces.relative) < 1e-9
 

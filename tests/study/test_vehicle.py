@@ -117,10 +117,7 @@ def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_pa
     assert {c.symbol.removesuffix("'"): c.u95 for c in back.coefficients} == pytest.approx(
         {s: SHARE * abs(v) for s, v in (VALUES | RUDDER).items()}
     )
-    assert back.hydrostatics is not None
     assert back.hydrostatics.volume == pytest.approx(DISPLACED / 998.2)
-    assert back.mass is not None
-    assert back.mass.centre is not None
     assert back.mass.centre.tolist() == [0.0, 0.0, 0.02]
     assert back.mass.inertia_matrix[2, 2] == pytest.approx(150.0, rel=1e-3)
 
@@ -155,7 +152,6 @@ def test_a_centre_of_gravity_ahead_hangs_the_bow_down_and_is_warned_of(
     steered: Study, share: float, ballasted: bool
 ) -> None:
     """tan(pitch) = -x / z of G from B: 4 mm ahead and 10 mm below it are 21.8 deg bow down, with any ballast at B."""
-    assert steered.shape is not None
     body = steered.shape.weighed.body
     middle = body.configurations[0].centre_of_buoyancy
     found = weighed(body, Stated(share * DISPLACED, middle + np.array([0.004, 0.0, 0.010])), 998.2)
@@ -178,7 +174,6 @@ def test_a_report_of_a_shape_has_its_command_the_name_of_what_is_missing_and_no_
     steered: Study,
 ) -> None:
     assert steered.shape is not None
-    assert steered.body is not None
     typed_so = typed(
         "work/hull 3.stl", {"unit": "mm", "mass": "34 kg", "cg": ""}, {"repair": True, "fill": False}, ["xdyn"]
     )
@@ -211,7 +206,6 @@ def test_a_mass_that_no_unit_makes_a_vehicle_is_refused(bare: Body, mass: float)
 
 @pytest.mark.parametrize(("share", "severity"), [(1.15, Severity.PASS), (1.3, Severity.WARN), (0.7, Severity.WARN)])
 def test_a_mass_far_from_the_displacement_is_warned_of(steered: Study, share: float, severity: Severity) -> None:
-    assert steered.shape is not None
     heavy = weighed(steered.shape.weighed.body, Stated(share * DISPLACED), 998.2)
     (found,) = buoyancy.check(replace(steered, shape=replace(steered.shape, weighed=heavy)))
     assert found.severity is severity
@@ -232,7 +226,6 @@ def test_the_inertia_of_displaced_water_is_that_of_the_spheroid(bare: Body) -> N
         volume / 5.0 * np.array([a**2, b**2, b**2])
     )
     mass = weighed(bare, Stated(500.0), 998.2).configuration.mass
-    assert mass is not None
     assert np.diag(mass.inertia_matrix) == pytest.approx(500.0 / 5.0 * np.array([2.0 * b**2, a**2 + b**2, a**2 + b**2]))
 
 
@@ -243,11 +236,9 @@ def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:
 
 def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: Body) -> None:
     found = from_shape(PLAN, bare)
-    assert found.shape is not None
     assert not any("drift" in s for s in found.shape.said)
     assert [m.manoeuvre.name for m in found.manoeuvres] == ["stop"]
     assert "coast-down" in {row[0] for row in manoeuvre_table(found.manoeuvres, ()).rows}
-    assert found.shape is not None
     missing = " ".join(found.shape.missing)
     assert "no rudder: write [[control]]" in missing
     assert "no thruster: write [[thruster]]" in missing
@@ -261,7 +252,6 @@ def test_added_mass_near_a_wall_goes_into_the_file(bare: Body, monkeypatch: pyte
     made = from_shape(PLAN, bare, wall="bottom", distances=(2.0, 0.5)).parameter_files
     write_all(tmp_path, parameter_files_rendered(made.values()))
     hull = read_parameter_file(next(tmp_path.glob("*.parameters.json"))).added_mass
-    assert hull is not None
     assert [(w.wall, w.distance) for w in hull.walls] == [("bottom", 0.5), ("bottom", 2.0)]
     close, far = (w.matrix[2, 2] / hull.matrix[2, 2] for w in hull.walls)
     assert close > 1.05 > far > 0.97
@@ -275,7 +265,6 @@ def test_a_rudder_turns_it_within_its_limit(steered: Study) -> None:
     assert turn.vehicle.free == ("u", "v", "r")
     assert not any("at once" in s for s in turn.statements)
     shown = from_shape(PLAN, with_rudder(read_body(SHAPE), None))
-    assert shown.shape is not None
     assert any(m.startswith("no limit and rate of dr") for m in shown.shape.missing)
 
 
@@ -292,17 +281,14 @@ def test_two_thrusters_turn_it_too(bare: Body) -> None:
 
 
 def test_shares_of_the_turn_name_the_estimates(steered: Study) -> None:
-    assert steered.shape is not None
     (made,) = steered.parameter_files.values()
     main = main_spread(steered.shape.carried)
-    assert main is not None
     assert main[0].figure.name == "tactical diameter"
     assert main[0].low < main[0].figure.value < main[0].high
     found = {row[0]: row for row in estimates_table(made, steered.shape.carried, steered.shape.estimates.shares).rows}
     assert found["Nv'"][4] == "estimate"
     assert found["Nv'"][-1] == "toy force 100 %"
     figure = shares_figure(made, steered.shape.carried, "shares")
-    assert figure is not None
     assert "Nr' estimate" in figure.description
 
 
@@ -326,7 +312,6 @@ def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     assert ("Missing", "no thruster") in [(c.name, c.text) for c in one.chips]
     assert "at 12 deg of rudder and 2 m/s (95 %" in first.sentence
     said = re.search(r"([\d.]+) m at 12 .*\(95 % ([\d.]+) to ([\d.]+)\)", first.sentence)
-    assert said is not None
     middle, low, high = (
         x.replace(".", "") for x in said.groups()
     )  # to one place, with two digits of half the interval
@@ -439,8 +424,6 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
     assert matrix[j, j] == pytest.approx((SHARE * 0.006 / 2.0) ** 2)
     assert matrix[i, j] == 0.0
     nv, before = made.parameters.coefficient("Nv"), base.coefficient("Nv")
-    assert nv is not None
-    assert before is not None
     assert nv.potential == before.potential != 0.0
     assert nv.value_si == pytest.approx(before.value_si * -0.014 / -0.012)
     with pytest.raises(InputError, match=r"estimates only in .*, nothing to replace others with"):
@@ -454,7 +437,6 @@ def test_numbers_of_another_length_are_converted_and_said(steered: Study) -> Non
     other = fitted(base, keep).model_copy(update={"scaling": longer})
     made = merged(base, other)
     found = made.parameters.coefficient("Yv")
-    assert found is not None
     assert found.value == pytest.approx(-0.025 * 4.0)  # Y / (rho U L^2 / 2): the same force on half the length
     for words in (str(longer), str(base.scaling), "scale model"):
         assert words in made.lengths
@@ -494,7 +476,6 @@ def test_a_coast_down_that_does_not_end_has_no_stopping_time_anywhere(
     """Of almost no resistance: `not reached` in the table, no figure in the headline, and why among what is missing."""
     monkeypatch.setitem(VALUES, "Xu|u|", -4e-6)
     found = from_shape(PLAN, bare, Stated(390.0))
-    assert found.shape is not None
     (figure,) = (f for f in found.manoeuvres[0].figures if f.name == "stopping time")
     assert (figure.value, figure.status) == (None, "not reached")
     assert found.shape.carried == ()
@@ -519,12 +500,10 @@ def test_rounding_does_not_turn_a_coast_down(bare: Body, tmp_path: Path, monkeyp
     times = []
     for one in found:
         (move,) = one.manoeuvres
-        assert one.shape is not None
         assert not np.any(move.trajectory.velocity[:, 1:])
         assert "straight ahead: sway and yaw are held" in move.statements
         assert any(s.startswith("the straight course is unstable") for s in move.statements)
         main = main_spread(one.shape.carried)
-        assert main is not None
         assert [(s, round(v, 2)) for s, v in main[1].known] == [("Xu|u|'", 1.0)]
         times.append(next(f.value for f in move.figures if f.name == "stopping time"))
     assert times[2] == pytest.approx(times[1], rel=1e-6)
@@ -535,7 +514,6 @@ def test_the_drift_from_which_the_law_pushes_ahead_is_said(bare: Body, monkeypat
     """X = -0.004 cos^2 + 0.02 sin^2 changes its sign at atan(sqrt(0.2)) = 24.1 deg."""
     monkeypatch.setitem(VALUES, "Xvv", 0.02)
     shape = from_shape(PLAN, bare).shape
-    assert shape is not None
     assert any(s.startswith("limit: from 25 deg of drift") for s in shape.said)
 
 

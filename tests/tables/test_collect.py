@@ -434,7 +434,6 @@ def test_the_error_proposes_the_pattern_and_speaks_of_signs(tmp_path: Path) -> N
         collect(tmp_path, names="drift_{beta:deg}")
     assert "{beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4" in str(caught.value)
     beta = collect(tmp_path, names="drift_{beta:deg:m=-,p=+}").table.meaning("beta")
-    assert beta is not None
     assert sorted(beta.values.tolist()) == pytest.approx([-12.0, 0.0, 4.0])
 
 
@@ -670,7 +669,6 @@ def test_killed_and_continued(tmp_path: Path, stub: Path) -> None:
         [sys.executable, script, tmp_path / "runs", state], stdout=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(stub), *sys.path])},
     )  # fmt: skip
-    assert process.stdout is not None
     for line in process.stdout:
         if line.startswith("read 9 "):
             break

@@ -25,7 +25,6 @@ def pooled(
 
 def test_slopes_behind_a_propeller_at_one_rate_are_those_of_each_speed() -> None:
     found = slopes_by_level(*pooled(lambda u: 0.0031 * (1.3 / u) ** 1.65))
-    assert found is not None
     assert found.levels == pytest.approx(SPEEDS)
     assert found.slopes == pytest.approx([0.0031 * (1.3 / u) ** 1.65 for u in SPEEDS], rel=1e-6)
     assert found.depends
@@ -35,7 +34,6 @@ def test_slopes_behind_a_propeller_at_one_rate_are_those_of_each_speed() -> None
 @pytest.mark.parametrize("exponent", [0.0, 0.05])
 def test_one_slope_and_the_trend_of_a_reynolds_number_are_no_dependence(exponent: float) -> None:
     found = slopes_by_level(*pooled(lambda u: 0.02 * u**-exponent))
-    assert found is not None
     assert not found.depends
 
 

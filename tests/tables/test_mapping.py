@@ -378,7 +378,6 @@ def test_cells_and_labels_and_standard_errors(tmp_path: Path) -> None:
     said = {"Case": "point", "Set": "label", "Drift": "beta", "Fy": "Y", "SE": "se_Y", "Grid": "cells"}
     table = read_raw_text(tmp_path, text, said, **{"table.select": '{ Set = "A", reason = "other grid" }'})
     assert table.labels == ("a", "b")
-    assert table.cells is not None
     assert table.cells.tolist() == [1e6, 2e6]
     assert table.errors["Y"].tolist() == [0.1, 0.1]
     assert [(e.row, e.reason) for e in table.exclusions] == [(1, "Set B: other grid")]

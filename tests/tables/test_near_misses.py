@@ -44,7 +44,6 @@ def planned(density: Any, datum: str = "nose") -> float:
         f'density = {written}\n[[table]]\ncampaign = "suboff_roddy_2"\nfits = ["slope_at_origin"]\n'
     )
     conditions = read_plan(place).conditions
-    assert conditions is not None
     return conditions.density
 
 

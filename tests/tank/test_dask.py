@@ -37,7 +37,6 @@ def scheduler(slow: None) -> Iterator[str]:
     with subprocess.Popen(
         [sys.executable, "-c", CLUSTER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as process:  # fmt: skip
-        assert process.stdout is not None
         yield process.stdout.readline().strip()
         kill_all(psutil.Process(process.pid))
 
@@ -63,7 +62,6 @@ def test_jobs_on_workers(scheduler: str, tmp_path: Path) -> None:
         """The worker that carries out the run, once."""
         if not killed and runs(run):
             worker = psutil.Process(read_progress(run.folder).process).parent()
-            assert worker is not None
             killed.append(worker.pid)
             worker.kill()
 

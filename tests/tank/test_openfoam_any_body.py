@@ -82,7 +82,6 @@ def test_any_body_is_meshed_with_every_patch_whole(
     remarks, why = mesh_ended(job)
     assert why == ""
     found = mesh_made(job.folder)
-    assert found is not None
     assert found.volume == pytest.approx(1.0, abs=0.02)
     for patch, share in found.surface.items():
         assert share == pytest.approx(1.0, abs=0.03), (patch, share, remarks)

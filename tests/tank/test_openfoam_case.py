@@ -183,7 +183,6 @@ def test_a_patch_in_the_half_is_itself_and_its_image_the_other_one(jobs: Jobs, t
     condition = towed.condition("drift_upper", towed.DRIFT, half=Half.UPPER)
     job = openfoam.jobs(towed.tank(condition), towed.with_rudders(), tmp_path)[1]
     control = FoamCase(job.folder).read("system/controlDict")
-    assert control is not None
     assert [n for n, _ in control.part("functions").parts()] == ["forces", "hull", "stern", "rudder_upper", "yPlus"]  # type: ignore[union-attr]
     run = openfoam.history(written(job.folder, 30, "forces", "hull", "stern", "rudder_upper"))
     found = {n: [c.values[-1] for c in t.columns if c.means in set("XYZKMN")] for n, t in run.patches.items()}

@@ -114,7 +114,6 @@ def test_wall_functions_of_a_hull_begin_at_sixty(body: TowedBody) -> None:
 def test_wall_functions_of_a_foil_begin_at_thirty(body: TowedBody) -> None:
     fast, (name, chord) = Conditions(1000.0, 10.0, 1e-6), next((n, c) for n, c in body.chord.items() if n != "hull")
     found = layers(body, name, 0.1, "functions", None, fast)
-    assert found is not None
     assert found.first / 2.0 / wall_unit(10.0, chord, 1e-6) == pytest.approx(30.0)
 
 
@@ -186,9 +185,7 @@ def test_the_dictionaries_are_read_and_say_what_was_chosen(body: TowedBody, tmp_
     for file in (made.folder / "system").iterdir():
         assert case.word(case.read(f"system/{file.name}"), "FoamFile", "object") == file.name
     snappy = case.read("system/snappyHexMeshDict")
-    assert snappy is not None
     regions = snappy.part("geometry", "body.stl", "regions")
-    assert regions is not None
     assert list(regions.entries) == list(body.patches)
     assert case.value(snappy, "addLayersControls", "layers", "hull", "expansionRatio")[0] == 1.3  # type: ignore[index]
     assert not case.notes
@@ -270,7 +267,6 @@ def test_it_is_sound_and_has_the_cells_expected(mesh: Job) -> None:
     before = json.loads((mesh.folder / "planned.json").read_text())["cells"]
     assert mesh_ended(mesh)[1] == ""
     made = mesh_made(mesh.folder)
-    assert made is not None
     assert made.cells == expected_cells(mesh.folder) == pytest.approx(before, rel=0.15)
     assert made.volume == pytest.approx(1.0, abs=0.01)
     assert set(made.surface) == {"hull", "rudder_upper"}  # the other rudder is below the cut

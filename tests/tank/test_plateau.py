@@ -116,7 +116,6 @@ def first_settled(y: np.ndarray) -> tuple[int, float] | None:
 @pytest.mark.parametrize("tau", [30.0, 100.0, 150.0])
 def test_a_smooth_approach_ends_where_its_last_quarter_stays_and_is_right(tau: float) -> None:
     found = first_settled(50.0 * (1.0 + 0.5 * np.exp(-np.arange(1000.0) / tau)))
-    assert found is not None
     assert found[0] < 7.0 * max(tau, 40.0)  # a plateau from the first half on takes 8 of them
     assert found[1] == pytest.approx(50.0, rel=0.005)
 

@@ -365,7 +365,6 @@ def few_rules(whole: ParameterFile) -> dict[str, tuple[ParameterFile, str, list[
     ):  # fmt: skip
         file = parameters(values)
         out[name] = file.model_copy(update={"mass": light.primed(file.scaling, 1000.0)}), rule, free
-    assert whole.hydrostatics is not None
     bow = thruster("bow", 0.1).model_dump()
     bow["curve"]["segments"] = [
         {"low": 0.0, "high": 10.0, "coefficients": [0.0, 1.0]},

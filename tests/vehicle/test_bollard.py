@@ -53,7 +53,6 @@ def test_all_keys() -> None:
         "main; bollard=60 N; rate=700; bollard_astern=30 N; dead_zone=50; place=-0.9,0,0.01; torque=2 N*m; handedness=-1; tilt_axis=0,2,0; tilt_limit=20 deg", WATER
     )  # fmt: skip
     assert [t.curve.at(n) for n in (-700.0, -49.0, 49.0, 350.0, 700.0)] == pytest.approx([-30.0, 0.0, 0.0, 15.0, 60.0])
-    assert t.torque_curve is not None
     assert t.torque_curve.at(350.0) == pytest.approx(0.5)
     assert (t.handedness, t.tilt_axis, t.position) == (-1, (0.0, 1.0, 0.0), (-0.9, 0.0, 0.01))
     assert t.tilt_high == -t.tilt_low == pytest.approx(np.radians(20.0))
@@ -63,7 +62,6 @@ def test_torque_astern_is_in_the_ratio_of_the_pulls() -> None:
     due = {"": -2.0, "; bollard_astern=30 N": -1.0, "; bollard_astern=0 N": 0.0}
     for astern, torque in due.items():
         curve = typed_thruster(f"main; bollard=60 N; rate=700; torque=2 N*m{astern}", WATER).torque_curve
-        assert curve is not None
         assert curve.at(-700.0) == pytest.approx(torque), astern
         assert curve.at(700.0) == pytest.approx(2.0)
 

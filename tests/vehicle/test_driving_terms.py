@@ -56,17 +56,11 @@ def test_a_driving_term_not_told_from_zero_is_written_as_zero_and_said(tmp_path:
     study = sweep(tmp_path / "few", 0.4, 1.0)
     (file,) = study.parameter_files.values()
     fitted = study.fits[0].coefficients["Xu"]
-    assert fitted.value is not None
-    assert fitted.u95 is not None
     assert 0.0 < fitted.value < fitted.u95
     written, quadratic = file.coefficient("Xu"), file.coefficient("Xu|u|")
-    assert written is not None
-    assert quadratic is not None
     assert (written.value, written.value_si) == (0.0, 0.0)
     assert written.u95 == pytest.approx(fitted.u95 + fitted.value)
     own = study.fits[0].coefficients["Xu|u|"].value
-    assert quadratic.value is not None
-    assert own is not None
     assert own < quadratic.value < 0.0
     at = file.covariance.symbols.index("Xu'")
     assert file.covariance.matrix[at][at] == pytest.approx((written.u95 / 2.0) ** 2)
@@ -83,8 +77,6 @@ def test_a_driving_term_told_from_zero_fails_in_run_as_in_params_check(tmp_path:
     study = sweep(tmp_path / "few", 8.0, 0.05)
     (file,) = study.parameter_files.values()
     written = file.coefficient("Xu")
-    assert written is not None
-    assert written.value is not None
     assert written.value > 0.0
     in_check = {c.statistic for c in plausibility(file) if c.severity is Severity.FAIL}
     assert in_check

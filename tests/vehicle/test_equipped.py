@@ -95,8 +95,6 @@ def test_masses_and_thrusters_of_a_plans_body(tmp_path: Path, of: str) -> None:
         assert [(f["lacks"], f.advice) for f in left_out] == [(("mass", "1 thruster"), 'campaign.body = "petrel"')]
         return
     assert left_out == []
-    assert file.mass is not None
-    assert file.hydrostatics is not None
     assert (file.mass.mass, tuple(file.mass.centre), file.hydrostatics.volume) == (
         3.1,
         (0.0, 0.0, 0.012),

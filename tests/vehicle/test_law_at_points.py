@@ -208,7 +208,6 @@ def test_covariance_joins_slopes_and_what_is_tied_to_them(whole: ParameterFile) 
     i, j = names.index("Yv'"), names.index("Yv|v|'")
     table = planted(TRUTH, {"v": V})
     tied = beyond(table, **SLOPES).tied
-    assert tied is not None
     row = whole.covariance.matrix[i]
     assert row[j] == pytest.approx(tied.moves[0, 0] * 0.0015**2, rel=1e-6)
     matrix = np.array(whole.covariance.matrix, dtype=float)

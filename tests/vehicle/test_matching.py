@@ -119,8 +119,6 @@ def test_merge_takes_the_number_under_the_name_of_the_base() -> None:
     assert symbols.count("Yuv'") == 1
     assert "Yv'" not in symbols
     yuv, nuv = done.coefficient("Yuv"), done.coefficient("Nuv")
-    assert yuv is not None
-    assert nuv is not None
     assert yuv.value == pytest.approx(-0.04)
     assert nuv.value == pytest.approx(-0.02 - 0.3 * -0.04)
 

@@ -57,12 +57,7 @@ def test_what_is_taken_whole_is_about_the_point_of_the_base() -> None:
     """From x = -1 to the nose, by hand: levers of -1 m."""
     done = merged(file("base", "Yv'=-0.05", "Nv'=-0.01", "Nr'=-0.01", about="nose"), whole(-1.0, 0.0, 0.0)).parameters
     hull, mass, afloat = done.added_mass, done.mass, done.hydrostatics
-    assert hull is not None
-    assert mass is not None
-    assert afloat is not None
-    assert mass.inertia_matrix is not None
     assert hull.density == DENSITY
-    assert hull.u95 is not None
     assert (hull.matrix[5, 5], hull.matrix[1, 5], hull.matrix[4, 4], hull.matrix[2, 4]) == pytest.approx(
         (13.0 + 50.0, -50.0, 12.0 + 55.0, 55.0)
     )
@@ -76,8 +71,6 @@ def test_what_is_taken_whole_is_about_the_point_of_the_base() -> None:
     assert afloat.centre_of_buoyancy == pytest.approx((-0.99, 0.0, 0.0))
     assert done.thrusters[0].position == pytest.approx((-1.9, 0.3, 0.0))
     nv, nr = done.coefficient("Nv"), done.coefficient("Nr")
-    assert nv is not None
-    assert nr is not None
     # Munk: N = -(m22 - m11) u v; and N by r takes m26 u r
     assert nv.potential == pytest.approx(-(50.0 - 3.0) / (0.5 * DENSITY * 2.0**3))
     assert nr.potential == pytest.approx(50.0 / (0.5 * DENSITY * 2.0**4))
@@ -94,7 +87,6 @@ def test_what_the_base_has_stays() -> None:
 def test_a_mass_off_its_axis_moves_with_its_centre_or_is_left_out_by_name() -> None:
     base, other = file("base", "Yv'=-0.05", about="nose"), whole(0.0, 0.0, -0.1)
     mass = merged(base, other).parameters.mass
-    assert mass is not None
     assert mass.inertia_matrix is not None
     assert mass.centre == pytest.approx(np.array([0.0, 0.0, -0.08]))
     assert np.diag(mass.inertia_matrix) == pytest.approx([1.0 + 46 * 0.08**2, 10.0 + 46 * 0.08**2, 11.0])

@@ -122,10 +122,8 @@ def test_a_file_of_them_holds_together_and_reads_back(tmp_path: Path) -> None:
     back = read_parameter_file(tmp_path / "own.parameters.json")
     assert back == made
     assert back.covariance.matrix == ((0.0015**2, None), (None, None))
-    assert back.mass is not None
     assert back.mass.mass_prime == pytest.approx(40.0 / (0.5 * 1000.0 * 8.0))
     assert back.mass.mass_moment == pytest.approx(4.0)
-    assert back.mass.inertia_matrix is not None
     assert back.mass.inertia_matrix[2, 2] == pytest.approx(12.0 + 40.0 * 0.01)
     assert back.mass.inertia_matrix[0, 2] == pytest.approx(-40.0 * 0.1 * 0.02)
 
@@ -254,7 +252,6 @@ def test_one_number_is_replaced_in_its_place_and_no_other_with_it() -> None:
     assert values == pytest.approx({"Yv'": -0.03, "Nv'": -0.012, "Yv|v|'": -300.0 / 2000.0, "Yvvv'": -0.2})
     assert [r.symbol for r in made.replaced] == ["Yv|v|'"]
     changed = made.parameters.coefficient("Yv|v|")
-    assert changed is not None
     assert (changed.origin, changed.status, changed.u95) == ("stated", Status.STATED, pytest.approx(0.01))
     rows = made.parameters.covariance
     assert rows.matrix[rows.symbols.index("Nv'")][rows.symbols.index("Nv'")] == 0.001**2

@@ -65,7 +65,6 @@ def test_a_sample_of_every_version_loads_and_is_written_back_as_it_is(version: s
 def test_the_first_version_means_what_it_meant() -> None:
     file = read_parameter_file(SAMPLE)
     yv = file.coefficient("Yv")
-    assert yv is not None
     assert yv.value == pytest.approx(-0.006, abs=0.001)
     assert (yv.law, yv.potential, file.models, file.added_mass) == ("motion", None, (), None)
 
@@ -74,15 +73,10 @@ def test_version_1_2_means_what_it_meant() -> None:
     """A spheroid's Munk moment in Nv', mass away from the reference point, intervals that hold declared inputs."""
     file = read_parameter_file(NEWEST)
     nv, yr = file.coefficient("Nv"), file.coefficient("Yr")
-    assert nv is not None
-    assert yr is not None
-    assert file.added_mass is not None
-    assert file.mass is not None
     matrix, density, length = file.added_mass.matrix, file.conditions.density, file.scaling.length
     assert nv.potential == pytest.approx((matrix[0][0] - matrix[1][1]) / (0.5 * density * length**3))
     assert yr.potential == pytest.approx(-matrix[0][0] / (0.5 * density * length**3))
     assert file.mass.centre == pytest.approx((0.01, 0.0, 0.02))
-    assert file.mass.inertia_matrix is not None
     assert file.mass.inertia_matrix[0][2] == pytest.approx(-0.01 - 40.0 * 0.01 * 0.02)
     assert file.models[0].holds == ("random", "angle beta", "speed")
 
@@ -94,9 +88,7 @@ def test_version_1_3_means_what_it_meant() -> None:
     assert [left.curve.at(c) for c in (-100.0, -10.0, 10.0, 100.0)] == pytest.approx([-14.2244, 0.0, 0.0, 14.2244])
     assert left.curve.at(150.0) == left.curve.at(100.0)
     assert (left.handedness, right.handedness, right.position[1]) == (1, -1, 0.1)
-    assert file.surfaces[0].rate is not None
     assert file.surfaces[0].limit / file.surfaces[0].rate == pytest.approx(4.0)
-    assert file.hydrostatics is not None
     assert file.hydrostatics.gravity == 9.81
 
 
@@ -174,13 +166,11 @@ def test_versions_are_ordered_by_their_numbers() -> None:
 def test_an_illegible_digit_stays_visible_without_a_value(suboff: Study, source: str) -> None:
     file = read_parameter_file(SAMPLE) if source == "sample" else suboff.parameter_files["suboff_bare_hull"]
     c = file.coefficient("Yvdot'")
-    assert c is not None
     assert (c.value, c.u95, c.value_si, c.status, c.origin) == (None, None, None, "not_determined", "literature")
     assert "-0.01327?" in c.estimator
     row = file.covariance.symbols.index("Yvdot'")
     assert set(file.covariance.matrix[row]) == {None}
     legible = file.coefficient("Yrdot'")
-    assert legible is not None
     assert legible.value == pytest.approx(0.000060)
 
 
