@@ -43,15 +43,15 @@ def mixture_quantiles(
     goal = np.stack([tail, np.full(len(tail), 0.5), 1.0 - tail], 1)
     reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - tail) / 4.0) * sd
     most = freedom.max()
-    tables = [_table(float(nu)) for nu in (most, most - 1.0)]
-    first = (freedom == most)[:, None]
+    kinds = [(some[:, None], _table(float(most - k))) for k, some in enumerate((freedom == most, freedom != most))]
 
     def below(z: Array) -> Array:
         u = (z[..., None] - mean[:, None]) / scale[:, None]
         u /= np.sqrt(freedom[:, None] + u * u)
-        share = np.interp(u, TABLE, tables[0])
-        if not first.all():
-            share = np.where(first, share, np.interp(u, TABLE, tables[1]))
+        share = np.empty_like(u)
+        for some, table in kinds:
+            chosen = np.broadcast_to(some, u.shape)
+            share[chosen] = np.interp(u[chosen], TABLE, table)
         return np.asarray((w[:, None] * share).sum(2))
 
     def bisected(short: Callable[[Array], NDArray[np.bool_]], low: Array, high: Array) -> Array:
