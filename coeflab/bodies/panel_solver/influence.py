@@ -478,14 +478,14 @@ class _Far:
     height : (4, n) array
         Of the plane over the target, times the panel's area.
     weighted : (n, 3) array
-        Normal times area. All but the first in single precision, as the angles that come of them are kept.
+        Normal times area. All between the first and this in single precision, as the angles that come of them are kept.
     """
 
     square: Array
     inverse: NDArray[np.float32]
     solid: NDArray[np.float32]
     height: NDArray[np.float32]
-    weighted: NDArray[np.float32]
+    weighted: Array
 
     @classmethod
     def of(cls, panels: Panels) -> _Far:
@@ -506,11 +506,11 @@ class _Far:
         height = np.hstack([-panels.normal, np.sum(panels.normal * c, axis=1)[:, None]]) * area
         inverse, solid = 0.5 * (spread - trace), 2.5 * spread - 1.5 * trace
         first, second, third = (np.ascontiguousarray(a.T, dtype=np.float32) for a in (inverse, solid, height))
-        return cls(np.ascontiguousarray(square.T), first, second, third, (panels.normal * area).astype(np.float32))
+        return cls(np.ascontiguousarray(square.T), first, second, third, panels.normal * area)
 
     def with_near(
         self, targets: Array, panels: Panels, reach: Array, work: _Work
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    ) -> tuple[NDArray[np.float32], Array]:
         """Solid angles (m, n) and the integrals of n / r (m, 3): far panels by their moments, near ones exactly.
 
         The angles lie in ``work``, for at least as many rows.
@@ -542,4 +542,5 @@ class _Far:
             i, j = np.divmod(place, n)
             flat[place], whole = exact_integrals(targets[i], panels.corners[j], panels.normal[j])
             layer[place] = whole / panels.area[j]
-        return solid, inverse @ self.weighted
+        np.copyto(away, inverse)  # a sum over thousands of panels in double precision is that of every library
+        return solid, away @ self.weighted
