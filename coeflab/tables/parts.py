@@ -29,7 +29,7 @@ from coeflab.tables.reading import importer_of, read_groups, read_raw, recognise
 from coeflab.tables.runs import NoRunsError
 from coeflab.tables.settings import Setting
 from coeflab.tables.settings_in_files import stated_settings
-from coeflab.tables.words.points import POINT_OF
+from coeflab.tables.words.points import POINT_FROM, POINT_OF
 
 Progress = Callable[[str], None]
 Value = TypeVar("Value")
@@ -442,6 +442,10 @@ def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
     if len(parts) < 2:
         return tuple(parts)
     stated = [dict(p.raw.stated) for p in parts]
+    if any(POINT_FROM in one for one in stated):  # a point by its name alone is one at no distance from it
+        for one in stated:
+            if (named := one.get("axes.datum")) and named.offered and not {POINT_FROM, POINT_OF} & set(one):
+                one[POINT_FROM] = replace(named, value=f"0 m {named.value}")
     for key in dict.fromkeys(k for one in stated for k in one):
         have = [(p, one[key]) for p, one in zip(parts, stated, strict=True) if key in one]
         if not all(s.offered for _, s in have):

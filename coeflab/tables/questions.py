@@ -32,6 +32,7 @@ PLACE_ASKED = (
 )
 ONCE = "once its unit is said"
 NO_POINT = "forces alone: no point matters"
+ANY_SIGN = "zeros throughout: any sign is right"
 SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {
     1: ("FRD", "FLU"),
@@ -205,8 +206,9 @@ def _of_axes(
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
-            why = "zeros throughout: any sign is right"
-            yield Question(f"axes.{name}", why, "", next(iter(ANGLE_SIGNS[name])), why, why, harmless=True)
+            yield Question(
+                f"axes.{name}", ANY_SIGN, "", next(iter(ANGLE_SIGNS[name])), ANY_SIGN, ANY_SIGN, harmless=True
+            )
             continue
         text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []

@@ -124,6 +124,24 @@ def test_words_of_two_sheets_that_differ_are_open_with_both(tmp_path: Path) -> N
     assert made["Attack.csv"].forces["M"][0] == pytest.approx(-95.0 + 2.0 * 40.0 * -1.0)  # moved to midships
 
 
+def test_a_point_by_a_distance_in_one_file_and_by_its_name_in_another_is_open_for_all(tmp_path: Path) -> None:
+    """Nr' about midships from moments about a point .3 m aft of it was outside its own U95."""
+    folder = tmp_path / "series"
+    folder.mkdir()
+    for name, words, rows_of in (
+        ("drift", "Moments about balance centre 2.3 m aft of nose", DRIFT),
+        ("attack", "moments about midships", ATTACK),
+        ("arm", "inertia subtracted", ARM),
+    ):
+        lines = [";".join(map(str, row)) for row in rows_of]
+        (folder / f"{name}.csv").write_text(
+            "\n".join((f"# {ABOVE[0]}", f"# {words}; x forward, y to starboard, z down", *lines))
+        )
+    form = invoke("import", folder, "--out", tmp_path / "out")
+    points = [f"{name}/axes.reference_point" for name in ("arm", "attack", "drift")]
+    assert [key for key in left_open(form) if key.endswith("reference_point")] == points, form.output
+
+
 def test_a_sheet_at_no_drift_leaves_the_sign_of_drift_to_the_others(tmp_path: Path) -> None:
     turns = [(r, 1.6, 0.0, np.degrees(1.6 / r), 100.0 / r, -320.0 / r) for r in (8.0, 10.0, 14.0)]
     arm = (("R (m)", "U (m/s)", "Drift (deg)", "r (deg/s)", "Fy (N)", "Mz (Nm)"), *turns)
