@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.evidence import Evidence
@@ -13,7 +15,7 @@ from coeflab.tables.interpretation import Interpretation, interpreted
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
 from coeflab.tables.questions import ANY_SIGN, Question
-from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
+from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, Settings, read_in
 from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.words.points import POINT_FROM, POINT_OF
@@ -22,18 +24,55 @@ from coeflab.tables.words.points import POINT_FROM, POINT_OF
 def interpreted_together(
     parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool = False
 ) -> tuple[Interpretation, ...]:
-    """`understood` of every part, by what is said of all and of it."""
-    out = []
-    for part in parts:
-        named = own(columns, part, parts)
-        if part.name:
-            known = {n for c in part.raw.columns for n in (c.name, *known_as(c))}
-            named = {name: one for name, one in named.items() if name in known}
-        found = interpreted(part.raw, named, own(settings, part, parts), accept)
-        if part.name:
-            found = replace(found, shows=tuple(_placed(part.name, e) for e in found.shows))
-        out.append(found)
+    """`interpreted` of every part, by what is said of all and of it; a part with half the drag of another asks for its half."""
+    out = [_interpreted(part, parts, columns, settings, accept) for part in parts]
+    for k, why in _half_by_drag(parts, out, settings).items():
+        if HALF_MODEL not in parts[k].raw.stated:
+            half = Stated("symmetry plane", why, offered=True, contradicted=why)
+            part = replace(parts[k], raw=replace(parts[k].raw, stated={**parts[k].raw.stated, HALF_MODEL: half}))
+            out[k] = _interpreted(part, parts, columns, settings, accept)
     return tuple(out)
+
+
+def _interpreted(
+    part: Part, parts: Sequence[Part], columns: Mapping[str, ColumnMap], settings: Settings, accept: bool
+) -> Interpretation:
+    named = own(columns, part, parts)
+    if part.name:
+        known = {n for c in part.raw.columns for n in (c.name, *known_as(c))}
+        named = {name: one for name, one in named.items() if name in known}
+    found = interpreted(part.raw, named, own(settings, part, parts), accept)
+    return replace(found, shows=tuple(_placed(part.name, e) for e in found.shows)) if part.name else found
+
+
+HALF = 0.02  # of a ratio of drags straight ahead: a grid or a wall moves a drag by more than that, and not to a half
+
+
+def _half_by_drag(parts: Sequence[Part], founds: Sequence[Interpretation], settings: Settings) -> dict[int, str]:
+    """Parts whose X straight ahead is half of that of another part at the same speed, by their places, with both forces."""
+    drags = [_straight_ahead(found) for found in founds]
+    speeds = [own(settings, p, parts).get("conditions.speed") for p in parts]
+    out = {}
+    for k, (x, u) in enumerate(drags):
+        for j, (whole, v) in enumerate(drags):
+            alike = bool(np.isfinite(u) and np.isfinite(v)) or (np.isnan(u) and np.isnan(v) and speeds[k] == speeds[j])
+            ratio = x / whole * (1.0 if np.isnan(u) else (v / u) ** 2) if alike and whole else np.nan
+            if abs(ratio - 0.5) <= HALF * 0.5:
+                out[k] = f"X straight ahead is {x:.4g} N, {ratio:.3f} of the {whole:.4g} N of {parts[j].name}"
+    return out
+
+
+def _straight_ahead(found: Interpretation) -> tuple[float, float]:
+    """X in N where nothing else moves, and U there or NaN without such a column; NaN where no row is so."""
+    data = {c.said.plain: c for c in found.columns}
+    if "X" not in data or data["X"].said.pure or "R" in data:
+        return np.nan, np.nan
+    moves = [c.values for c in found.columns if c.said.role in ("angle", "velocity", "control") and c.said.name != "u"]
+    still = np.all([np.abs(np.nan_to_num(m)) <= 1e-9 for m in moves], axis=0) if moves else np.zeros(0, dtype=bool)
+    if not np.any(still):
+        return np.nan, np.nan
+    speed = next((data[n] for n in ("U", "u") if n in data and not data[n].said.primed), None)
+    return float(np.median(data["X"].values[still])), np.nan if speed is None else float(np.median(speed.values[still]))
 
 
 def _placed(name: str, shows: Evidence) -> Evidence:

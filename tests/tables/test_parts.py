@@ -124,6 +124,22 @@ def test_words_of_two_sheets_that_differ_are_open_with_both(tmp_path: Path) -> N
     assert made["Attack.csv"].forces["M"][0] == pytest.approx(-95.0 + 2.0 * 40.0 * -1.0)  # moved to midships
 
 
+@pytest.mark.parametrize(("share", "asked"), [(0.5, True), (0.503, True), (0.47, False), (1.0, False)])
+def test_a_table_with_half_the_drag_of_another_asks_for_its_half(tmp_path: Path, share: float, asked: bool) -> None:
+    """A half model of runs in attack without Y, K, N monitors gave half of Zw' and Mw' without a word."""
+    folder = tmp_path / "series"
+    folder.mkdir()
+    angles = (-8.0, -4.0, 0.0, 4.0, 8.0)
+    for name, head, k, x in (
+        ("drift", "Drift (deg);Fx (N);Fy (N)", 15.0, -80.0),
+        ("attack", "Incidence (deg);Fx (N);Fz (N)", -5.0, -80.0 * share),
+    ):
+        lines = [f"{a};{x};{k * a}" for a in angles]
+        (folder / f"{name}.csv").write_text("\n".join((f"# {ABOVE[0]}", f"# {AXES[0]}", head, *lines)))
+    form = invoke("import", folder, "--out", tmp_path / "out")
+    assert ("attack/campaign.half_model" in left_open(form)) is asked, form.output
+
+
 def test_a_point_by_a_distance_in_one_file_and_by_its_name_in_another_is_open_for_all(tmp_path: Path) -> None:
     """Nr' about midships from moments about a point .3 m aft of it was outside its own U95."""
     folder = tmp_path / "series"
