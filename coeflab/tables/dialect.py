@@ -19,6 +19,7 @@ from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
 from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
+from coeflab.tables.vocabulary import folded, vocabulary
 
 SNIFFED = 1 << 16
 MOSTLY = 0.6  # of a row of units
@@ -121,6 +122,13 @@ _WORDS_BEHIND = re.compile(
     r"(?P<under>s(?:ec(?:ond)?)?|min|h|m\^?3|cm\^?3|l|ft\^?3)(?P<square>2|\^2)?|(?P<force>[kM]?N|lbf)_(?P<arm>mm|cm|m|ft|in)|(?P<one>deg(?:rees?)?|rad|[kM]?Nm|mps))"
 )
 _SEPARATORS = " _-:/"
+_INDICES = frozenset("ijn:")
+# Units in small letters behind a name in small letters, as programs write them: lift_n, speed_ms.
+_SMALL = {
+    "n": ("N", frozenset({"X", "Y", "Z", *WIND})),
+    "nm": ("N*m", frozenset("KMN")),
+    "ms": ("m/s", frozenset("Uuvw")),
+}
 
 
 _NO_UNIT = frozenset({"", "-", "–", "—", "/"})
@@ -138,6 +146,8 @@ def name_and_unit(text: str) -> tuple[str, str]:
     """Split ``Fy [N]``, ``Fy (N)``, ``Fy, N`` and ``Fy / N``; the unit is empty where none stands."""
     clean = " ".join(text.split())
     if m := _BRACKETS.fullmatch(clean):
+        if m["unit"].strip() in _INDICES:  # beta[i] of a program
+            return m["name"].rstrip(_SEPARATORS), ""
         return m["name"].rstrip(_SEPARATORS) or m["name"], m["unit"].strip()
     if (m := _PARENTHESES.fullmatch(clean)) and is_unit(_BETWEEN_UNITS.sub("·", m["unit"].strip()) or "-"):
         return m["name"].rstrip(_SEPARATORS) or m["name"], m["unit"].strip()
@@ -164,8 +174,16 @@ def names_and_units(texts: Sequence[str]) -> list[tuple[str, str]]:
 
     A unit of several words, as in ``r_rad_s``, is one wherever it stands.
     """
-    words = list(map(unit_in_words, texts))
+    words = [_in_small_letters(t) or unit_in_words(t) for t in texts]
     return [w if w[1] else p for w, p in zip(words, _by_last_word(texts, words), strict=True)]
+
+
+def _in_small_letters(text: str) -> tuple[str, str] | None:
+    """Name and unit of ``lift_n``, where the name is of what has that unit."""
+    name, _, end = text.strip().rpartition("_")
+    unit, meanings = _SMALL.get(end, ("", frozenset()))
+    words, bare = vocabulary(), folded(name)
+    return (name, unit) if {words.columns.get(bare, ""), words.flow.get(bare, "")} & meanings else None
 
 
 def _by_last_word(texts: Sequence[str], words: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -384,7 +402,7 @@ def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str
             split = [(n, u) if u else unit_in_words(n) for n, u in split]
             stand = "in the header"
         else:
-            split = names_and_units(texts)
+            split = names_and_units([n for n, _ in split])
             stand = "after an underscore" if any(u for _, u in split) else stand
     found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
     remarks = [*before, *remarks]

@@ -37,6 +37,7 @@ from coeflab.tables.mapping import (
 from coeflab.tables.proposals import (
     AREA,
     FEW_STRANGE,
+    PROPELLER,
     UNKNOWN,
     Proposal,
     coefficient_as_said,
@@ -51,7 +52,7 @@ from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.to_frd import columns_of
-from coeflab.tables.vocabulary import vocabulary
+from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
@@ -155,7 +156,7 @@ def interpreted(
             still.append((column, offer))
         else:
             mapping[column.name] = one
-    tentative = {c.name: _likely_map(o) for c, o in still}
+    tentative = {c.name: _likely_map(c, o) for c, o in still}
     said_of = mapping | tentative
     columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
     record = tuple(record_over_time(raw))
@@ -225,11 +226,13 @@ def _primes_by_name(
     return any(c.said.pure and not c.said.area for c in forces)
 
 
-def _likely_map(offer: Proposal) -> ColumnMap:
+def _likely_map(column: RawColumn, offer: Proposal) -> ColumnMap:
     """What a column is as far as questions hang on it: a force in a unit, or by an area, that nobody has said shows signs all the same."""
     if offer.whole:
         return read_column_map(offer.text)
     name, _, unit = offer.text.partition(" [")
+    if not name and "side" in (meanings := vocabulary().several.get(folded(column.name), "").split()):
+        name, unit = meanings[0], "coefficient"  # either shows the sign of beta
     if name.lstrip("-") not in (*FORCES, *ANGLES) or offer.unread:
         return ColumnMap("ignore")
     pure = unit.startswith("coefficient")  # a sign shows in any unit
@@ -252,6 +255,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     ):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
+    if "propeller" in roles and any(o.why == PROPELLER for o in offers):
+        return InputError(f"curves of a propeller alone: {names}", "forces of a body over settings", file=raw.path)
     over = clock(raw)
     words = vocabulary()
     unread = {

@@ -8,6 +8,7 @@ against a law for each. Arrays only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,9 @@ def slopes_by_level(x: Array, y: Array, level: Array) -> LevelSlopes | None:
     group = levels_of(level)
     selected = [g for g in np.unique(group) if np.unique(np.round(x[group == g], 9)).size >= FEWEST]
     if not 2 <= len(selected) <= MOST_LEVELS:
+        return None
+    reaches = sorted((x[group == g].min(), x[group == g].max()) for g in selected)
+    if all(low > before for (_, before), (low, _) in pairwise(reaches)):  # levels that follow x are no other setting
         return None
     rows = np.isin(group, selected)
     x, y, level, group = x[rows], y[rows], level[rows], np.searchsorted(selected, group[rows])

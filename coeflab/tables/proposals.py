@@ -36,11 +36,19 @@ from coeflab.tables.words.axes import BODY_AXES
 from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
+EITHER = "which of them the numbers are in"
+US = {"force": "lbf", "moment": "lbf*ft", "speed": "ft/s", "length": "ft"}
 UNKNOWN = "no known name"
 BESIDE_WIND = "lift, drag and moments are there as coefficients already"
+TURNED_WIND = "lift and drag turned by alpha, in every row"
+PROPELLER = "a coefficient of the propeller, by its name beside J"
+OF_PROPELLER = frozenset({"ct", "cp", "cq", "kt", "kq", "10kq"})
+SIDEWAYS = frozenset({"beta", "v", "r", "R", "dr", "Y", "side"})  # without which a Cn need not be a yaw moment
 PURE = ("", "-", "1")
 FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
+MOST_ASKED = 6  # of which more ask a person too much
 SAME = 0.1
+TURNED_APART = 0.02
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
@@ -123,6 +131,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         What the file or a person says; ``coefficients.area`` and ``coefficients.length`` complete a coefficient, an area "prime"
         makes primes, ``columns.units`` "SI" is the unit of columns without one.
     """
+    if not column.means and not column.is_text and len(column.values) and not np.any(np.isfinite(column.values)):
+        return Proposal("ignore", "blank throughout")
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
     unit = vocabulary().units.get(column.unit.casefold(), column.unit)
@@ -164,15 +174,16 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal("label", "text")
     said_of = stated or {}
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
-    one = _with_unit(column, given, why, certain, by)
-    if (
-        one.text.endswith(f"[{OPEN}]")
-        and not one.unread
-        and said_of.get(UNITS_OF) == "SI"
-        and given.dimension not in ("angle", "none")
-    ):
+    one, system = _with_unit(column, given, why, certain, by), said_of.get(UNITS_OF)
+    if one.text.endswith(f"[{OPEN}]") and not one.unread and system and given.dimension not in ("angle", "none"):
+        either = _either(unit, given.dimension)
+        units = {
+            "SI": either[0] or SI[given.dimension],
+            "US": either[1] or US.get(given.dimension, SI[given.dimension]),
+        }
         return Proposal(
-            f"{one.text.partition(' [')[0]} [{SI[given.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
+            f"{one.text.partition(' [')[0]} [{units[str(system)]}]",
+            f"{why.partition(';')[0]}; in {system} units, as said",
         )
     return one
 
@@ -232,7 +243,11 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     named = {n: why for p in parts for n, why, _ in [_whole_name(replace(column, name=error + p))] if n}
     if len(named) == 1:
         return (*named.popitem(), False)
-    if not named and (wind := vocabulary().of_flow(column.name)) and _fits(column.unit, "force"):
+    if (
+        not named
+        and (wind := vocabulary().of_flow(column.name))
+        and (_fits(column.unit, "force") or _either(column.unit, "force")[0])
+    ):
         return f"{error}{wind}", f"a word of its name, {TURNED.format(ACROSS[wind])}", False
     return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
 
@@ -315,11 +330,9 @@ def _words(name: str) -> list[str]:
 
 def _is_pure(name: str) -> bool:
     """Whether a name is that of a coefficient."""
-    bare = folded(name)
-    return not {*_words(name)}.isdisjoint(vocabulary().lists["coefficient"]) or not {
-        bare,
-        _OF_ALL.sub("", bare),
-    }.isdisjoint(vocabulary().coefficients)
+    bare, words = folded(name), {*_words(name)}
+    pure = not {bare, _OF_ALL.sub("", bare), *words}.isdisjoint(vocabulary().coefficients)
+    return pure or not words.isdisjoint(vocabulary().lists["coefficient"])
 
 
 def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
@@ -374,7 +387,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     is_coefficient = said.name in FORCES and (
         unit in ("-", "1") or counted or (not unit and _is_pure(column.name) and not certain)
     )
-    if is_coefficient and column.values.size and not np.any(np.nan_to_num(column.values)):
+    zeros = bool(column.values.size) and not np.any(np.nan_to_num(column.values))
+    if is_coefficient and zeros and said.name not in ("lift", "drag"):  # without drag nothing turns lift
         return Proposal("ignore", f"{why}; zeros throughout")
     if is_coefficient and by[0] == "prime":
         return Proposal(f"{name}' [{unit if counted else '-'}]", f"{why}; a prime, as said")
@@ -387,6 +401,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     except InputError:
         if column.name.strip().upper() in ("X", "Y", "Z") and _fits(unit, "length"):
             return Proposal("ignore", f"[{unit}] is a length: a position, no force")
+        if any(_either(unit, said.dimension)):
+            return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}")
         return _unread(name, said, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)
@@ -402,6 +418,17 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if said.dimension == "angle" and _whole_degrees(column.values):
         return Proposal(f"{name} [deg]", f"{why}; whole numbers", assumed=True)
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
+
+
+def _either(unit: str, dimension: str) -> tuple[str, str]:
+    """The SI and the US unit of a head that gives both, ``lb / N``, so that the numbers may be in either; empty elsewhere."""
+    words = vocabulary().units
+    pounds = {"lb": "lbf", "lbs": "lbf"} if dimension == "force" else {}
+    parts = [words.get(p.casefold(), pounds.get(p.casefold(), p)) for p in map(str.strip, unit.split("/"))]
+    if len(parts) != 2 or not all(_fits(p, dimension) for p in parts):
+        return "", ""
+    us = [bool({"lbf", "ft", "in"} & {*re.split(r"[^a-z]", p)}) for p in parts]
+    return (parts[us.index(False)], parts[us.index(True)]) if us[0] != us[1] else ("", "")
 
 
 def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
@@ -445,9 +472,14 @@ def proposals(
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}
+    turned = _turned_wind(raw.columns)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
+    names = {named_as(c.name).partition(" ")[0] for c in raw.columns}
     for column in raw.columns:
-        one = by_said_area(_of_company(proposed(column, stated), column, pure, frame, stated), known or {})
+        if column.name in turned:
+            one = Proposal("ignore", TURNED_WIND, note=TURNED_WIND)
+        else:
+            one = by_said_area(_of_company(proposed(column, stated), column, pure, names, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
@@ -522,8 +554,30 @@ def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[
         )
 
 
+def _turned_wind(columns: Sequence[RawColumn]) -> frozenset[str]:
+    """Names of the pure numbers that are lift and drag along the body, normal or axial, of either sign: no forces of their own."""
+    own = {named_as(c.name): c for c in reversed(columns) if not c.is_text and not c.means}
+    if not {"alpha", "lift", "drag"} <= {*own} or own["lift"].unit not in PURE:
+        return frozenset()
+    alpha, lift, drag = (own[name].values for name in ("alpha", "lift", "drag"))
+    if not np.any(np.nan_to_num(alpha)):
+        return frozenset()
+    angle = alpha if own["alpha"].unit == "rad" else np.radians(alpha)
+    normal, axial = lift * np.cos(angle) + drag * np.sin(angle), drag * np.cos(angle) - lift * np.sin(angle)
+    used = {own[name].name for name in ("alpha", "lift", "drag")}
+    others = [c for c in columns if c.unit in PURE and not c.is_text and c.name not in used]
+    return frozenset(c.name for c in others for force in (normal, axial) if _agree(np.abs(c.values), np.abs(force)))
+
+
+def _agree(one: Array, other: Array) -> bool:
+    """Whether two columns agree in every row where both are known, within `TURNED_APART` of the largest."""
+    both = np.isfinite(one) & np.isfinite(other)
+    largest = float(np.max(one[both], initial=0.0))
+    return bool(both.sum() > FEW_STRANGE) and float(np.max(np.abs(one - other)[both])) < TURNED_APART * largest
+
+
 def _of_company(
-    one: Proposal, column: RawColumn, pure: Set[str], frame: Axes | None, stated: Mapping[str, object]
+    one: Proposal, column: RawColumn, pure: Set[str], names: Set[str], frame: Axes | None, stated: Mapping[str, object]
 ) -> Proposal:
     """A column that the coefficients beside it make another thing than its name: M a Mach number, N a count, CN a normal force.
 
@@ -533,32 +587,48 @@ def _of_company(
     column : RawColumn
     pure : set of str
         Folded names of the coefficients of the table.
+    names : set of str
+        What all columns are by their names.
     frame : Axes or None
         Of the file, where they are known.
     stated : mapping
         As for `proposed`.
     """
-    known = column.values[np.isfinite(column.values)]
+    known, bare = column.values[np.isfinite(column.values)], folded(column.name)
+    if (
+        "J" in names
+        and bare in OF_PROPELLER
+        and column.unit in PURE
+        and not {"alpha", "beta", "lift", "cd"} & (names | pure)
+    ):
+        return Proposal("ignore", PROPELLER)
     if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
         is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
-    froude = folded(column.name) in ("fn", "fr") and column.unit in PURE
+    froude = bare in ("fn", "fr") and column.unit in PURE
     if froude and known.size and 0.0 < known.min() <= known.max() < FROUDE:
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
-        return Proposal("ignore", note, note=note * (folded(column.name) == "fn"))
+        return Proposal("ignore", note, note=note * (bare == "fn"))
     own = {vocabulary().coefficients.get(name) for name in pure}
     name = one.said.name if one.said else ""
-    twice = name in ("X", "Z") or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
+    place = column.name.strip() in ("Y", "y") and column.unit in PURE and not {"beta", "v", "r"} & names
+    twice = (
+        name in ("X", "Z") or place or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
+    )
     if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
         return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
     of_body = {"ca", "ct", "cn"} & pure if "cn" in pure else set()
-    if len(of_body) > 1 and folded(column.name) in of_body and {"cl", "cd"} <= pure:
+    if len(of_body) > 1 and bare in of_body and {"cl", "cd"} <= pure:
         return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
-    if {"ca", "cn"} <= pure and folded(column.name) in ("ca", "cn"):
-        axial = folded(column.name) == "ca"
+    if bare == "cn" and column.unit in PURE and "alpha" in names and not SIDEWAYS & names and not {"cll", "ca"} & pure:
+        return Proposal("", "N or -Z by its name: no column is of a motion sideways, so it may be the normal force")
+    if bare == "ct" and {"cn", "ct"} == of_body and "alpha" in names:
+        return Proposal("", "X or -X by its name beside Cn: positive forward or aft")
+    if {"ca", "cn"} <= pure and bare in ("ca", "cn"):
+        axial = bare == "ca"
         body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
         along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
         if not along:
@@ -577,8 +647,8 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
     Nothing is left out where no force or no setting is known without them.
     """
     strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
-    roles = {one.role for one in out}
-    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED):
+    roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
+    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
         return out
     settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
     plain = {c.name.strip() for c in raw.columns}
@@ -590,6 +660,8 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         or series[_counted(raw.columns[i].name)] > FEW_STRANGE
         or not _like_a_setting(raw.columns[i].values, settings)
     }
+    if roles.isdisjoint(VARIED) and len({*strange} - idle) > FEW_STRANGE:
+        idle = {*strange}
     return [
         replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
         for i, one in enumerate(out)

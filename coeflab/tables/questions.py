@@ -18,7 +18,7 @@ from coeflab.tables.column_map import ROLES
 from coeflab.tables.evidence import Evidence, along_x, centre_of, evidence
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import Assigned
-from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal
+from coeflab.tables.proposals import AREA, EITHER, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
 from coeflab.tables.settings_in_files import arm_by_words, point_by_words
@@ -134,9 +134,11 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
             "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length", assumed=True,
         )  # fmt: skip
     if any(map(without_unit, offers)):
+        both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
         yield Question(
-            UNITS_OF, "Unit of the columns that state none: SI is N, N m, m/s, rad/s and m; another one column by column, such as "
-            "Fy=Y [kN], and Fy=Y' [-] for a prime", "SI (N, N m, m/s, rad/s) for all; or Fy=Y [kN]",
+            UNITS_OF, "Unit of the columns that state none, or two: SI is N, N m, m/s, rad/s and m, US lbf, lbf ft, ft/s and ft; another one "
+            "column by column, such as Fy=Y [kN], and Fy=Y' [-] for a prime",
+            "; ".join([*both, "SI (N, N m, m/s, rad/s) or US (lbf, lbf ft, ft/s) for all; or Fy=Y [kN]"]),
         )  # fmt: skip
 
 

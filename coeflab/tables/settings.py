@@ -169,7 +169,7 @@ def _hull(said: Any) -> Any:
 READERS: dict[str, Callable[[Any], Any]] = {
     "coefficients.area": _area,
     "coefficients.length": lambda said: quantity(_measured("length")(said), "length"),
-    "columns.units": _one_of("SI"),
+    "columns.units": _one_of("SI", "US"),
     "axes.frame": lambda said: parse_axes(said).declared,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),

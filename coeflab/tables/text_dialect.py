@@ -41,6 +41,7 @@ _ENCODINGS = (
     "utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp437", "mac-roman", "shift_jis", "euc_kr", "gb18030",
 )  # fmt: skip
 SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
+FEWEST_SHORT = 2  # rows: one alone was cut
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
 _SPACES = re.compile(r"[ \t]+")
@@ -99,6 +100,7 @@ class TextDialect:
     remarks: tuple[str, ...] = ()
     stated: Mapping[str, Stated] = field(default_factory=dict)
     above: tuple[str, ...] = ()  # lines over the head
+    ragged: bool = False  # rows end before their last names
 
 
 def _comments(options: Options) -> tuple[str, ...]:
@@ -214,6 +216,25 @@ def _longest(rows: Rows, marks: Marks) -> tuple[int, int, int, float]:
     return best
 
 
+def padded(cells: list[str], width: int) -> list[str]:
+    """A row that ends before the last of its names, filled up with blanks where at least half of it is there."""
+    return cells + [""] * (width - len(cells)) if width <= 2 * len(cells) else cells
+
+
+def _ragged(rows: Rows, marks: Marks) -> Rows | None:
+    """The rows under names filled up; None where a long run of whole ones begins there, or fewer than two are short."""
+    out, width, short, named = list[Row](), 0, 0, False
+    for n, cells in rows:
+        if numeric(cells, marks):
+            named, short = False, short + (len(cells) < width <= 2 * len(cells))
+        elif len(cells) >= FEWEST_NAMED and is_name_row(cells, marks):
+            width, named = max(len(cells), width if named else 0), True
+        out.append((n, padded(cells, width)))
+    first = _longest(rows, marks)[0]
+    whole = first and len(rows[first][1]) == len(rows[first - 1][1]) and not numeric(rows[first - 1][1], marks)
+    return out if short >= FEWEST_SHORT and not whole else None
+
+
 def _hypotheses(text: str, options: Options) -> list[Marks]:
     """Marks that may be meant, the simplest first."""
     blank = any(b in text for b in (*BLANKS, " "))
@@ -243,6 +264,8 @@ def _delimiter(kept: list[tuple[int, str]], options: Options, path: Path) -> Fou
         if delimiter and (delimiter not in text and not (delimiter == " " and "\t" in text)) and not options.delimiter:
             continue
         rows = [(n, split_line(line, delimiter)) for n, line in kept]
+        if delimiter.strip(" ") and (ragged := _ragged(rows, hypotheses[0])):
+            rows = ragged
         run = max((_longest(rows, m) for m in hypotheses), key=lambda r: (r[1] - r[0]) * r[3])
         if run[1] and (run[2] > 1 or not delimiter or options.delimiter):
             found.append((delimiter, rows, run, (run[1] - run[0]) * run[3]))
@@ -470,6 +493,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
         phrases, tuple(remarks), words_above(over, marks),
         tuple(" ".join(filter(None, cells)) for _, cells in over),
+        any(len(split_line(lines[n - 1], delimiter)) < len(c) for n, c in rows[begin : run[1]] if delimiter),
     )  # fmt: skip
 
 

@@ -9,11 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.wording import listed
+from coeflab.law.symbols import ANGULAR
+from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 TIMES = ("t", "time", "zeit", "temps", "tempo", "timestamp", "seconds", "sec", "elapsed time", "simulation time")
 HEADINGS = ("psi", "heading", "yaw", "hdg", "kurs", "cap")
 FEWEST, MANY = 5, 50  # rows; of a file without names
+CHANGES = 0.5  # of the rows that have a rate of their own
 EVEN = 5.0  # largest over median step of a clock
 IDENTIFY = "coeflab identify fits coefficients to records over time, of any text by --columns."
 LIKE = (0.7, 1.4)  # median ratio of the speed over ground to that through the water, for a current or a slack clock
@@ -32,6 +36,15 @@ def record_over_time(raw: RawTable) -> Iterator[InputError]:
     time = next((by_name[name] for name in TIMES if name in by_name), None)
     if time is None:
         return
+    if moving := _in_motion(raw, time):
+        yield InputError(
+            f"a record over time: {moving} change in every row",
+            "forces of steady runs",
+            file=raw.path,
+            column=time.name,
+            advice=IDENTIFY,
+        )
+        return
     x, y, u, v = (by_name.get(name) for name in "xyuv")
     heading = next((by_name[name] for name in HEADINGS if name in by_name), None)
     if x is not None and y is not None and u is not None and _moves(time, x, y, u, v):
@@ -44,6 +57,16 @@ def record_over_time(raw: RawTable) -> Iterator[InputError]:
     yield InputError(
         f"a record over time: {found}", "forces of steady runs", file=raw.path, column=x.name, advice=IDENTIFY
     )
+
+
+def _in_motion(raw: RawTable, time: RawColumn) -> str:
+    """The rates of a flight or of a manoeuvre, two at least, of which hardly a row repeats another; empty for steady runs."""
+    rows = _rising(time)
+    if rows is None or len(rows) < MANY or np.max(steps := np.diff(time.values[rows])) > EVEN * np.median(steps):
+        return ""
+    rates = [c for c in raw.columns if not c.means and not c.is_text and named_as(c.name) in ANGULAR]
+    moved = [c.name for c in rates if np.unique(c.values[rows]).size > CHANGES * len(rows)]
+    return listed(moved) if len(moved) > 1 else ""
 
 
 def clock(raw: RawTable) -> str:

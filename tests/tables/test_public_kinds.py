@@ -13,6 +13,7 @@ from coeflab.cli import app
 from coeflab.core.errors import InputError
 from coeflab.fits.rows.straight_runs import _speeds
 from coeflab.tables.column_map import read_column_map
+from coeflab.tables.form import Group
 from coeflab.tables.imported import _table
 from coeflab.tables.level_columns import slopes_by_idle_columns
 from coeflab.tables.mapping import assigned, without_a_setting
@@ -252,12 +253,12 @@ def test_a_text_that_is_no_table_says_why(tmp_path: Path, text: str, words: str)
 
 def test_forces_in_units_of_nobody_are_named(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text(
-        "Yaw,Bal Drag,Bal Lift\nDegrees / Degrees,lb / N,lb / N\n"
+        "Yaw,Bal Drag,Bal Lift\nDegrees / Degrees,lb / Pa,lb / Pa\n"
         + "".join(f"{a},1.{i},0.{i}\n" for i, a in enumerate(ANGLES))
     )
     parts, _ = read_parts(tmp_path / "t.csv", "", {})
     (found,) = interpreted_together(parts, {}, {})
-    assert "Bal Drag [lb / N]" in found.complaints[0].found
+    assert "Bal Drag [lb / Pa]" in found.complaints[0].found
     assert "Bal Drag=drag [lbf]" in found.complaints[0].advice
 
 
@@ -270,3 +271,147 @@ def test_an_import_names_the_body_that_others_of_its_hull_take(tmp_path: Path, m
     ]  # fmt: skip
     assert "--set campaign.body=mine" in " ".join(CliRunner().invoke(app, typed).output.split())
     assert "Body:" not in CliRunner().invoke(app, [*typed, "--set", "campaign.body=hull", "--force"]).output
+
+
+def open_keys(path: Path, text: str) -> list[str]:
+    """What the first form of a text asks."""
+    path.write_text(text)
+    parts, _ = read_parts(path, "", {})
+    return [
+        line.key for line in form_together(parts, interpreted_together(parts, {}, {}), {}) if line.group is Group.OPEN
+    ]
+
+
+@pytest.mark.parametrize(("system", "drag", "moment"), [("SI", 1.0, 1.0), ("US", 4.4482216152605, 1.3558179483314)])
+def test_one_answer_says_which_of_two_units_in_a_head_the_numbers_are_in(
+    tmp_path: Path, system: str, drag: float, moment: float
+) -> None:
+    rows = [f"{a:g},{2 * a:g},{1 + 0.01 * a * a:g},{-a:g}" for a in ANGLES]
+    head = ("Alpha,Bal Lift,Bal Drag,Pitch moment", "Degrees / Degrees,lb / N,lb/N,ft-lb / N-m")
+    asked = open_keys(tmp_path / "t.csv", lines(*head, rows=rows))
+    assert asked.count("columns.units") == 1
+    assert len(asked) <= 6
+    raw = read_raw(tmp_path / "t.csv", "table")
+    said = {
+        c.name: read_column_map(p.text)
+        for c, p in zip(raw.columns, proposals(raw, {"columns.units": system}), strict=True)
+    }
+    found = {c.said.name: c.factor for c in assigned(raw, said)}
+    assert found["drag"] == pytest.approx(drag)
+    assert found["M"] == pytest.approx(moment)
+    assert sorted(found) == ["M", "alpha", "drag", "lift"]
+
+
+@pytest.mark.parametrize(
+    ("head", "rows", "blank"),
+    [
+        (
+            "alpha,CL,CD,CM,note",
+            ["-4,-.4,.02,.04", "-2,-.2,.02,.02", "0,0,.02,0", "2,.2,.02,-.02,bad", "4,.4,.02,-.04,bad"],
+            "note",
+        ),
+        ("alpha;CL;CD;CM", ["-4;-.4;.02;.04", "-2;-.2;.02", "0;0;.02;0", "2;.2;.02;-.02", "4;.4;.02"], "CM"),
+    ],
+)
+def test_rows_that_end_before_their_last_names_are_blank_there(
+    tmp_path: Path, head: str, rows: list[str], blank: str
+) -> None:
+    (tmp_path / "t.csv").write_text(lines(head, rows=rows))
+    raw = read_raw(tmp_path / "t.csv", importer_of(tmp_path / "t.csv"))
+    assert list(raw.column("alpha").values) == list(ANGLES)
+    assert list(raw.column("CL").values) == [-0.4, -0.2, 0.0, 0.2, 0.4]
+    short = [
+        i
+        for i, row in enumerate(rows)
+        if len(row.replace(";", ",").split(",")) < len(head.replace(";", ",").split(","))
+    ]
+    assert [i for i in short if not np.isfinite(raw.column(blank).values[i])] == short
+    assert any("no cells under the last names" in remark for remark in raw.remarks)
+
+
+def test_an_index_in_brackets_is_no_unit(tmp_path: Path) -> None:
+    rows = [f"{i},{a:g},{5 * a:g}" for i, a in enumerate(ANGLES)]
+    found = texts(tmp_path / "t.csv", lines("i,beta[i],Y[i]", rows=rows))
+    assert found == {"i": "point", "beta": "beta [deg]", "Y": "Y [?]"}
+
+
+def test_units_in_small_letters_are_those_of_what_they_stand_behind(tmp_path: Path) -> None:
+    rows = [f"{i},{a:g},2,{5 * a:g},{2 + 0.1 * a * a:g},{a:g},30" for i, a in enumerate(ANGLES)]
+    found = texts(tmp_path / "t.csv", lines("run_id,aoa_deg,speed_ms,lift_n,drag_n,pitch_moment_nm,gap_nm", rows=rows))
+    assert list(found.values())[:6] == ["point", "alpha [deg]", "U [m/s]", "lift [N]", "drag [N]", "M [N*m]"]
+    assert not found.get("gap", found.get("gap_nm", "?")).startswith("M")
+
+
+def test_a_polar_of_xfoil_is_in_degrees_and_has_no_settings_but_alpha(tmp_path: Path) -> None:
+    head = (" Calculated polar for: FOIL", "", " xtrf = 1.0 (top) 1.0 (bottom)", "",
+            "  alpha    CL   CD   CDp    CM   Top_Xtr  Bot_Xtr  Top_Itr  Bot_Itr", " ------ ---- ---- ------ ------ -------- -------- -------- --------")  # fmt: skip
+    rows = [f" {a:.3f} {0.11 * a:.4f} 0.0047 {-0.0002 + 1e-5 * (i // 3):.5f} {-0.001 * a:.4f} 0.2 0.4 {70 + i:.4f} {130 - i:.4f}"
+            for i, a in enumerate(np.linspace(0.1, 2.8, 12))]  # fmt: skip
+    found = texts(tmp_path / "polar.txt", lines(*head, rows=rows))
+    assert found["alpha"] == "alpha [deg]"
+    assert {found[n] for n in ("CDp", "Top_Xtr", "Bot_Xtr", "Top_Itr", "Bot_Itr")} == {"ignore"}
+    parts, _ = read_parts(tmp_path / "polar.txt", "", {})
+    assert not [e.text for e in interpreted_together(parts, {}, {})[0].shows if "rows of several" in e.text]
+
+
+def test_a_normal_force_beside_lift_and_drag_is_no_yaw_moment(tmp_path: Path) -> None:
+    turn = np.radians(ANGLES)
+    lift, drag = np.array([p[1] for p in POLAR]), np.array([p[2] for p in POLAR])
+    normal, axial = lift * np.cos(turn) + drag * np.sin(turn), drag * np.cos(turn) - lift * np.sin(turn)
+    columns = np.column_stack([ANGLES, lift, drag, normal, axial, 0.03 * lift])
+    rows = [",".join(f"{x:.5f}" for x in row) for row in columns]
+    found = texts(tmp_path / "t.csv", lines("Alpha,CL,CD,CN,CA total,CN_other", rows=rows))
+    assert (found["CN"], found["CA total"]) == ("ignore", "ignore")
+    short = [",".join(f"{x:.5f}" for x in row[[0, 1, 2, 5]]) for row in columns]
+    assert texts(tmp_path / "u.csv", lines("Alpha,CL,CD,CN", rows=short))["CN"] == ""
+    sideways = [f"{row},0.1" for row in short]
+    assert texts(tmp_path / "v.csv", lines("Alpha,CL,CD,Cn,CY", rows=sideways))["Cn"].startswith("N [coefficient")
+    both = [",".join(f"{x:.5f}" for x in row[[0, 3, 4]]) for row in columns]
+    assert set(texts(tmp_path / "w.csv", lines("alpha,Cn,Ct", rows=both)).values()) == {"alpha [deg]", ""}
+
+
+def test_places_beside_lift_and_drag_are_no_forces(tmp_path: Path) -> None:
+    rows = [f"{a:g},{0.1 * a:g},.02,{i},{0.5 * i:g}" for i, a in enumerate(ANGLES)]
+    found = texts(tmp_path / "t.csv", lines("alpha,CL,CD,X,Y", rows=rows))
+    assert (found["X"], found["Y"]) == ("ignore", "ignore")
+    assert texts(tmp_path / "u.csv", lines("beta,CL,CD,X,Y", rows=rows))["Y"] == "Y [?]"
+
+
+def test_what_gives_no_force_of_a_body_is_refused_by_its_reason(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("J,Thrust,Ct,Cp\n.2,30,.1,.05\n.4,20,.07,.04\n.6,10,.03,.02\n")
+    wave = [
+        f"{t:.2f},20,{np.sin(t):.5f},{np.cos(1.3 * t):.5f},{-3 + np.sin(t):.5f},{np.cos(t):.5f}"
+        for t in np.arange(0, 2, 0.02)
+    ]
+    (tmp_path / "f.csv").write_text(lines("time,airspeed,p,q,Fx,Fz", rows=wave))
+    for name, words in (("p.csv", "a propeller alone"), ("f.csv", "a record over time: p and q")):
+        parts, _ = read_parts(tmp_path / name, "", {})
+        assert words in interpreted_together(parts, {}, {})[0].complaints[0].found
+    steady = [f"{60 * i},20,{r:g},0,{-3 - r:g},{r:g}" for i, r in enumerate(np.repeat(np.linspace(-1, 1, 6), 10))]
+    (tmp_path / "s.csv").write_text(lines("time,airspeed,p,q,Fx,Fz", rows=steady))
+    parts, _ = read_parts(tmp_path / "s.csv", "", {})
+    assert not interpreted_together(parts, {}, {})[0].complaints
+
+
+def test_zeros_of_drag_turn_lift_and_a_blank_column_is_nothing(tmp_path: Path) -> None:
+    rows = [f"{a:g},{0.1 * a:g},0,{-0.01 * a:g}," for a in ANGLES]
+    found = texts(tmp_path / "t.csv", lines("alpha,CL,CD,CM,CS", rows=rows))
+    assert found["CD"].startswith("drag [coefficient")
+    assert found["CS"] == "ignore"
+
+
+def test_at_most_six_questions_of_a_file_with_many_strange_columns(tmp_path: Path) -> None:
+    """A turbine's 35 columns; a side force that may be of the body; numbers without a unit."""
+    strange = [f"q{k}x" for k in range(14)]
+    rows = [
+        ",".join([f"{i}", "1.0", f"{0.3 + 0.01 * i:.3f}", *(f"{(i % 3) + k}" for k in range(14))]) for i in range(9)
+    ]
+    assert (
+        len(open_keys(tmp_path / "t.csv", lines(",".join(["run", "mean_tow_speed", "mean_cd", *strange]), rows=rows)))
+        <= 6
+    )
+    kite = [f"7.4,{b:g},.7,{0.08 + 0.0005 * b * b:g},{0.015 * b:g},{0.01 * b:g}" for b in ANGLES]
+    asked = open_keys(tmp_path / "k.csv", lines("alpha,beta,CL,CD,CS,CMz", rows=kite))
+    assert "CS" in asked
+    assert "axes.beta" not in asked
+    assert len(asked) <= 6

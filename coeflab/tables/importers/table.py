@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +23,14 @@ from coeflab.tables import text_dialect
 from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
 from coeflab.tables.monitor_files import head, kind_of
+from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawTable
 
 summary = "any delimited text: delimiter, decimal mark, units and encoding detected and reported"
 citations = ()
 reads = "tables of delimited text"
 
+POLAR = "Calculated polar for"  # over a polar of XFOIL and XFLR5, whose alpha is in degrees
 _BLOCK = 1 << 20  # letters
 _COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
@@ -66,6 +68,7 @@ class _Body:
     rows: int = 0
     cut: list[tuple[int, str]] = field(default_factory=list)
     again: list[int] = field(default_factory=list)
+    short: list[int] = field(default_factory=list)
     known: dict[str, str] = field(default_factory=dict)
     titles: list[tuple[int, str]] = field(default_factory=list)
 
@@ -159,6 +162,9 @@ class _Body:
         if ended and self.is_title(cells):
             self.titles.append((n, " ".join(filter(None, cells))))
             return None
+        if d.ragged and ended and len(cells) < d.width:
+            cells = text_dialect.padded(cells, d.width)
+            self.short += [n] * (len(cells) == d.width)
         if len(cells) != d.width:
             self._leave_out(n, f"{len(cells)} of {d.width} cells", ended)
             return None
@@ -224,11 +230,13 @@ def _remarks(body: _Body) -> list[str]:
     out += [f"line {n}: words among the rows ({shown(text)})" for n, text in body.titles[:10]]
     if len(body.cut) > 10:
         out.append(f"{len(body.cut) - 10} more lines left out for the same reason")
-    if body.again:
-        words = listed([str(n) for n in body.again[:5]]) + (
-            f" and {len(body.again) - 5} more" if len(body.again) > 5 else ""
-        )
-        out.append(f"the header is repeated in line {words}; left out")
+    for lines, words in (
+        (body.again, "the header is repeated in line {}; left out"),
+        (body.short, "line {}: no cells under the last names, taken as blank"),
+    ):
+        if lines:
+            more = f" and {len(lines) - 5} more" * (len(lines) > 5)
+            out.append(words.format(listed([str(n) for n in lines[:5]]) + more))
     return out
 
 
@@ -280,6 +288,8 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         raise text_dialect.unread(path, why) from None
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
+    if any(POLAR in text for text in dialect.above):
+        columns = tuple(replace(c, unit="deg") if not c.unit and named_as(c.name) == "alpha" else c for c in columns)
     lines = np.concatenate(body.lines)
     titles = [Title(0, 0, text) for text in dialect.above]
     titles += [Title(int(np.searchsorted(lines, n)), n, text) for n, text in body.titles]
