@@ -36,7 +36,7 @@ def test_identify_covers_what_it_should_where_terms_are_given() -> None:
 
 @pytest.mark.slow
 def test_ten_series_anew() -> None:
-    """38 of 40 are expected; 33 or fewer would come once in some 1,600 tries."""
+    """38 of 40 are expected; 33 or fewer would come once in some 300 tries."""
     names, inside = covered(10)
     assert len(names) == 4
     assert np.sum(inside) >= 34
