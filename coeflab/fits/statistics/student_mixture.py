@@ -63,7 +63,7 @@ def mixture_quantiles(
 
     def excess(z: Array) -> Array:
         both = below(np.concatenate([value - z, value + z], 1))
-        return _normal(0.5 + 0.5 * (both[:, 1:] - both[:, :1])) - normal[:, 2:]
+        return np.asarray(_normal(0.5 + 0.5 * (both[:, 1:] - both[:, :1])) - normal[:, 2:])
 
     return ends, root(excess, sides[:, :1], sides[:, 1:], sides.mean(1, keepdims=True), sd[:, None])[:, 0], sd
 
