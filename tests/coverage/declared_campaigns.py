@@ -5,13 +5,17 @@
 - ``grows``: the bend grows with the angle. The slopes that sums of two sgn(t) (|t| - k)+^2 of one sign allow, by `one_signed.ends`;
 - ``bound``: |y - a - s x| <= M x^2. The linear estimate with the shortest interval of scatter and worst bias (Donoho 1994; Armstrong &
   Kolesar 2018), its weights by coordinate search over the price of bias;
-- ``odd``: no constant, as `slope_at_origin` has it, withdrawn by its own rule.
+- ``odd``: no constant, as `slope_at_origin` has it, withdrawn by its own rule;
+- ``sign``: the sign of the cross-flow, the bend's along the slope. Slopes at which nonnegative sums of `one_signed.curved` misfit no more
+  than the square of a Student quantile beyond the best;
+- ``turned``: `by_symmetry`, whose slope is that of rows of another plane. Nothing is run that could withdraw it.
 
-The first two are withdrawn where they and the interval without them are farther apart than both U95, or where no slope is allowed.
+The first two and ``sign`` are withdrawn where they and the interval without them are farther apart than both U95, or where no slope is allowed.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -34,6 +38,8 @@ CASES = (
     ("grows", "v|v|", True), ("grows", "slow power", False), ("grows", "saturating", False), ("bound", "half of M", True),
     ("bound", "M", True), ("bound", "twice M", False), ("odd", "one power", True), ("odd", "saturating", True),
     ("odd", "one power and a constant", False), ("odd", "saturating and a constant", False),
+    ("sign", "one power", True), ("sign", "saturating", True), ("sign", "one power, opposed", False), ("sign", "saturating, opposed", False),
+    ("turned", "one power", True), ("turned", "one power, 5 % apart", False), ("turned", "one power, 20 % apart", False),
 )  # fmt: skip
 HEADER = "declared,curve,true,noise %,campaigns,cover %,without it %,width,withdrawn %"
 Read = tuple[float, float, bool]  # value, U95, withdrawn
@@ -67,17 +73,36 @@ def by_bound(t: Array, y: Array, noise: float, bound: float) -> tuple[float, flo
     return float((start + found.x @ across) @ y), float(found.fun)
 
 
-def read(kind: str, t: Array, y: Array) -> tuple[Read, Read]:
+def by_sign(t: Array, y: Array, about: float, reach: float) -> tuple[float, float]:
+    """Middle and half of the slopes that a bend along them allows, of 201 within ``reach``; half of NaN where none."""
+    free = np.stack([np.ones_like(t), *([t * t] if t.min() < 0.0 else [])], 1)
+    columns = np.concatenate([free, -free, one_signed.curved(t)], 1)
+    slopes = about + reach * np.linspace(-1.0, 1.0, 201)
+    misfit = np.array([optimize.nnls(columns, y - s * t)[1] for s in slopes]) ** 2
+    freedom = len(t) - free.shape[1] - 2
+    allowed = misfit.min() * (1.0 + special.stdtrit(freedom, 0.975) ** 2 / freedom)
+    within = slopes[misfit <= allowed]
+    return 0.5 * float(within[0] + within[-1]), 0.5 * float(within[-1] - within[0])
+
+
+def read(kind: str, curve: str, t: Array, y: Array) -> tuple[Read, Read]:
     """With the declaration and without."""
     free = origin_slope.estimate(t, y)
     plain = (free.value, free.u95, False)
+    if kind == "turned":
+        apart = re.search(r"(\d+) % apart", curve)
+        ratio = 1.0 + (float(apart[1]) / 100.0 if apart else 0.0)
+        return (ratio * free.value, ratio * free.u95, False), plain
     if kind == "odd":
         declared = origin_slope.estimate(t, y, odd=True)
         at_rest, half = origin_slope.curve(free, np.zeros(1))
         apart = abs(declared.value - free.value) > np.hypot(declared.u95, free.u95)
         off = bool(apart or declared.u95 > 2.0 * free.u95 or abs(at_rest[0]) > half[0])
         return (plain[0], plain[1], True) if off else (declared.value, declared.u95, False), plain
-    value, u95 = by_onsets(t, y, free.noise) if kind == "grows" else by_bound(t, y, free.noise, BOUND)
+    if kind == "sign":
+        value, u95 = by_sign(t, y, free.value, 2.0 * free.u95)
+    else:
+        value, u95 = by_onsets(t, y, free.noise) if kind == "grows" else by_bound(t, y, free.noise, BOUND)
     if not abs(value - free.value) <= np.hypot(u95, free.u95):
         return (plain[0], plain[1], True), plain
     return (value, u95, False), plain
@@ -87,6 +112,7 @@ def campaigns(kind: str, curve: str, noise: float, count: int, seed: int) -> Ite
     """Settings and readings of curves with the slope one."""
     rng = np.random.default_rng((seed, [c[:2] for c in CASES].index((kind, curve)), NOISE.index(noise)))
     name, _, constant = curve.partition(" and a ")
+    name, _, opposed = name.partition(", ")
     for k in range(count):
         design = ("odd 7", "odd 12")[k % 2] if kind == "odd" else ("even 13", "one-sided")[k % 2]
         t = np.linspace(0.0, 1.0, 13)[1:] if design == "odd 12" else settings(design, rng)[0]
@@ -94,7 +120,8 @@ def campaigns(kind: str, curve: str, noise: float, count: int, seed: int) -> Ite
             bend = {"half of M": 0.5, "M": 1.0, "twice M": 2.0}[curve] * BOUND * power(t, 2.0)
         else:
             drawn = power(t, 2.0) if name == "v|v|" else BENT[name](rng, t)
-            bend = rng.choice([-1.0, 1.0]) * np.exp(rng.uniform(np.log(0.3), np.log(3.0))) * drawn
+            sign = (-1.0 if opposed else 1.0) if kind == "sign" else rng.choice([-1.0, 1.0])
+            bend = sign * np.exp(rng.uniform(np.log(0.3), np.log(3.0))) * drawn
         force = t + bend
         force = force + (rng.choice([0.02, 0.05, 0.1]) * np.abs(force).max() if constant else 0.0)
         yield t, force + noise * np.abs(force).max() * rng.standard_normal(len(t))
@@ -105,12 +132,12 @@ def main(count: int, seed: int) -> None:
     lines = [HEADER]
     for kind, curve, true in CASES:
         for noise in NOISE:
-            found = [read(kind, t, y) for t, y in campaigns(kind, curve, noise, count, seed)]
+            found = [read(kind, curve, t, y) for t, y in campaigns(kind, curve, noise, count, seed)]
             inside, plain = (100.0 * np.mean([abs(f[i][0] - 1.0) <= f[i][1] for f in found]) for i in (0, 1))
             width = np.median([declared[1] / without[1] for declared, without in found])
             off = 100.0 * np.mean([declared[2] for declared, _ in found])
             lines.append(
-                f"{kind},{curve},{'yes' if true else 'no'},{100 * noise:g},{count},{inside:.0f},{plain:.0f},{width:.2f},{off:.0f}"
+                f"{kind},{curve.replace(',', ':')},{'yes' if true else 'no'},{100 * noise:g},{count},{inside:.0f},{plain:.0f},{width:.2f},{off:.0f}"
             )
             TABLE.write_text("\n".join(lines) + "\n")
 

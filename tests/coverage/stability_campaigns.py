@@ -2,7 +2,9 @@
 
 ``python -m tests.coverage.stability_campaigns [HULLS] [SEED]`` writes ``stability_table.csv`` beside this file: 300 hulls a noise. A hull
 has slopes within a third of those of a torpedo, m' of .01 to .016, and in each sweep a bend of .1 to 1 times the linear part at the
-largest setting. U95 of each slope stands by itself, as the noise of Y and N is; the interval is that of a parameter file.
+largest setting. U95 of each slope stands by itself, as the noise of Y and N is; the interval is that of a parameter file. Where its width
+comes from: the root mean square of the errors over half of U95, of the four slopes and of G_h; and what the same draws cover where U95 of
+each slope is scaled to twice the errors that occurred.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ TABLE = Path(__file__).with_name("stability_table.csv")
 NOISE, HULLS, SEED = (0.01, 0.003), 300, 5
 SLOPES = np.array([-0.028, -0.013, 0.006, -0.0045])  # Yv', Nv', Yr', Nr'
 DRIFT, RATES = np.sin(np.radians(12.0)) * np.linspace(-1.0, 1.0, 13), 0.5 * np.linspace(-1.0, 1.0, 11)
-HEADER = "noise %,hulls,with interval,cover %,sign right of decided %,decided,mean half-width"
+HEADER = "noise %,hulls,with interval,cover %,sign right of decided %,decided,mean half-width,error of slopes,error,cover by errors %"
 
 
 def hulls(count: int, noise: float, seed: int) -> tuple[Array, Array, Array, Array]:
@@ -43,27 +45,45 @@ def hulls(count: int, noise: float, seed: int) -> tuple[Array, Array, Array, Arr
     return truth, mass, values, u95
 
 
+def indices(slopes: Array, mass: Array) -> Array:
+    """G_h of slopes (..., 4)."""
+    return np.asarray(stability_index(slopes[..., 0], slopes[..., 1], slopes[..., 2], slopes[..., 3], mass, 0.0))
+
+
+def intervals(mass: Array, values: Array, u95: Array) -> tuple[Array, Array]:
+    """G_h (n,) and its interval (n, 2) by the draws of a parameter file; NaN where none is given."""
+    middle, out = indices(values, mass), np.full((len(mass), 2), np.nan)
+    for i, (m, found, half) in enumerate(zip(mass, values, u95, strict=True)):
+        parts = [("Yv'", found[0], half[0]), ("Nr'", found[3], half[3])]
+        gradient = index_gradient(found[0], found[1], found[2], found[3], m, 0.0)
+
+        def moved(d: Array, at: Array = found, m: Array = m) -> Array:
+            return indices(at + d, m)
+
+        held = derived(
+            "G_h", "hull", float(middle[i]), moved, gradient, np.diag((half / 2.0) ** 2), parts, ["Yv'", "Nv'", "Yr'", "Nr'"], DRAWS, 1
+        )  # fmt: skip
+        if held.interval is not None:
+            out[i] = held.interval
+    return middle, out
+
+
 def row(count: int, noise: float, seed: int) -> str:
     """One line of the table."""
-    inside, right, widths, decided = [], [], [], 0
-    for slopes, m, found, half in zip(*hulls(count, noise, seed), strict=True):
-        true = float(stability_index(*map(np.asarray, slopes), m, 0.0))
-        held = derived(
-            "G_h", "hull", float(stability_index(*map(np.asarray, found), m, 0.0)),
-            lambda d, at=found, mass=m: stability_index(*(at + d).T, mass, 0.0), index_gradient(*found, m, 0.0), np.diag((half / 2.0) ** 2),
-            [("Yv'", found[0], half[0]), ("Nr'", found[3], half[3])], ["Yv'", "Nv'", "Yr'", "Nr'"], DRAWS, 1,
-        )  # fmt: skip
-        if held.interval is None:
-            continue
-        low, high = held.interval
-        inside.append(low <= true <= high)
-        widths.append((high - low) / 2.0)
-        if held.decided:
-            decided += 1
-            right.append((true > 0.0) == (low > 0.0))
+    truth, mass, values, u95 = hulls(count, noise, seed)
+    true, error = indices(truth, mass), np.sqrt(np.mean((2.0 * (values - truth) / u95) ** 2, axis=0))
+    middle, ends = intervals(mass, values, u95)
+    there = np.isfinite(ends[:, 0])
+    inside, right = ((ends[there, 0] <= true[there]) & (true[there] <= ends[there, 1])), (middle > 0.0) == (true > 0.0)
+    decided = there & (ends[:, 0] * ends[:, 1] > 0.0)
+    half = (ends[there, 1] - ends[there, 0]) / 2.0
+    off = np.sqrt(np.mean((2.0 * (middle - true)[there] / half) ** 2))
+    scaled = intervals(mass, values, u95 * error)[1]
+    some = np.isfinite(scaled[:, 0])
+    by_errors = (scaled[some, 0] <= true[some]) & (true[some] <= scaled[some, 1])
     return (
-        f"{100 * noise:g},{count},{len(inside)},{100 * np.mean(inside):.1f},{100 * np.mean(right) if right else np.nan:.1f},{decided},"
-        f"{np.mean(widths):.3f}"
+        f"{100 * noise:g},{count},{there.sum()},{100 * inside.mean():.1f},{100 * right[decided].mean():.1f},{decided.sum()},"
+        f"{half.mean():.3f},{' '.join(f'{e:.2f}' for e in error)},{off:.2f},{100 * by_errors.mean():.1f}"
     )
 
 

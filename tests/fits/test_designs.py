@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from coeflab.fits.statistics.designs import Response, designed, predicted_u95
 from coeflab.fits.statistics.origin_slope import estimate
 
+PAGE = (Path(__file__).parents[2] / "docs" / "next_tests.md").read_text()
 LEVELS = np.sin(np.radians(np.arange(1.0, 13.0)))
 RUNS = 7
 SCENARIOS = [(0.1, 0.002), (0.3, 0.002), (1.0, 0.002), (1.0, 0.006), (0.3, 0.006)]  # bend over slope; noise
@@ -19,7 +22,7 @@ def response(bend: float, noise: float) -> Response:
 
 @pytest.mark.slow
 def test_a_design_beats_equal_spacing_and_says_by_how_much() -> None:
-    """8 to 29 %; the best of all 364 symmetric designs of three of these lies at 2 to 16 %."""
+    """9 to 29 %, mean 17; the best of all 364 symmetric designs of three of these lies at 2 to 16 %."""
     gains = []
     for bend, noise in SCENARIOS:
         one = response(bend, noise)
@@ -27,8 +30,11 @@ def test_a_design_beats_equal_spacing_and_says_by_how_much() -> None:
         then, plain = (predicted_u95(one, x, 100, seed=5) for x in (found, equal))
         gains.append(1.0 - then / plain)
         assert predicted_u95(one, found) == pytest.approx(then, rel=0.15)
-    assert min(gains) > 0.05, gains
-    assert np.mean(gains) > 0.14, gains
+    assert min(gains) > 0.08, gains
+    assert np.mean(gains) > 0.15, gains
+    assert max(gains) > 0.25, gains
+    assert [f"{100.0 * g:.0f}" for g in gains] == ["9", "17", "29", "19", "9"]
+    assert "noise of 1 and 3 % of it: 9, 17, 29 and, noisier, 9 and 19 %; mean 17" in PAGE
 
 
 @pytest.mark.parametrize("bend", [0.0, 0.3])

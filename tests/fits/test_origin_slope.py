@@ -19,7 +19,7 @@ from coeflab.fits.statistics.slope_mixture import (
     prepare,
 )
 from coeflab.fits.statistics.slopes import by_largest
-from coeflab.fits.statistics.student_mixture import mixture_quantiles
+from coeflab.fits.statistics.student_mixture import STEPS, mixture_quantiles, root
 
 SLOPE = -0.028
 NOISE = 1e-4
@@ -318,3 +318,49 @@ def test_more_noise_leaves_a_smaller_tail_out() -> None:
     y = SLOPE * X + np.abs(SLOPE) * X[-1] * np.array([[1e-4], [3e-2]]) * SHOCKS
     s = estimate_many(replace(prepare(X), shapes=()), y, deletions=False)
     assert np.all(np.diff(s.u95 / s.sd) > 0.0)
+
+
+@pytest.mark.parametrize("freedom", [3.0, 12.0])
+def test_ends_and_half_of_random_mixtures_have_their_probabilities(freedom: float) -> None:
+    """Members far apart and a hundred times narrower than others among them; a part of the reach is up to 1e-4 of a narrow one."""
+    rng = np.random.default_rng(1)
+    for members in (1, 2, 5, 40):
+        b = 8
+        share, mean = (
+            rng.dirichlet(np.full(members, 0.5), b),
+            rng.normal(0.0, rng.choice([0.0, 1.0, 5.0]), (b, members)),
+        )
+        scale, tail = np.exp(rng.normal(0.0, 1.5, (b, members))), rng.uniform(0.005, 0.05, b)
+        ends, half, _ = mixture_quantiles(
+            np.log(np.maximum(share, 1e-300)), mean, scale, np.full_like(mean, freedom), tail
+        )
+
+        def below(z: Array, share: Array = share, mean: Array = mean, scale: Array = scale) -> Array:
+            return np.asarray((share * stats.t.cdf((z[:, None] - mean) / scale, freedom)).sum(1))
+
+        for end, goal in zip(ends.T, (tail, 0.5, 1.0 - tail), strict=True):
+            assert below(end) == pytest.approx(goal, abs=1e-4)
+        assert below(ends[:, 1] + half) - below(ends[:, 1] - half) == pytest.approx(1.0 - 2.0 * tail, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [np.tanh, lambda z: z**3, lambda z: np.where(z < 0.0, 1e-3 * z, 1e3 * z), lambda z: np.where(z < 0.3, -1.0, 1.0) + 0.1 * z, np.cbrt],
+    ids=["flat ends", "flat root", "kink", "step", "steep"],
+)  # fmt: skip
+def test_the_root_is_that_of_halvings(function: Callable[[Array], Array]) -> None:
+    """To a part of 2^22, whatever the shape, from any guess; one pair of ends without width stays."""
+    at, steps = np.array([[-0.71], [0.0], [0.33], [0.999]]), []
+
+    def excess(z: Array) -> Array:
+        steps.append(len(z))
+        return np.asarray(function(z - at))
+
+    low, high = np.array([[-1.0], [-1.0], [-1.0], [0.999]]), np.array([[1.0], [2.0], [30.0], [0.999]])
+    found = root(excess, low, high, np.full_like(at, 0.9), np.ones_like(at))
+    for _ in range(22):
+        z = 0.5 * (low + high)
+        right = excess(z) < 0.0
+        low, high = np.where(right, z, low), np.where(right, high, z)
+    assert found.ravel() == pytest.approx((0.5 * (low + high)).ravel(), abs=31.0 / 2**22)
+    assert len(steps) - 22 < STEPS
