@@ -508,9 +508,7 @@ class _Far:
         first, second, third = (np.ascontiguousarray(a.T, dtype=np.float32) for a in (inverse, solid, height))
         return cls(np.ascontiguousarray(square.T), first, second, third, panels.normal * area)
 
-    def with_near(
-        self, targets: Array, panels: Panels, reach: Array, work: _Work
-    ) -> tuple[NDArray[np.float32], Array]:
+    def with_near(self, targets: Array, panels: Panels, reach: Array, work: _Work) -> tuple[NDArray[np.float32], Array]:
         """Solid angles (m, n) and the integrals of n / r (m, 3): far panels by their moments, near ones exactly.
 
         The angles lie in ``work``, for at least as many rows.
