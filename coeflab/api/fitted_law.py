@@ -11,7 +11,7 @@ from coeflab.api.questions import si
 from coeflab.core.errors import InputError, shown
 from coeflab.core.missed import suggesting
 from coeflab.core.types import in_angles
-from coeflab.fits.results.fitted_model import Extrapolation
+from coeflab.law.domain import Extrapolation
 from coeflab.law.symbols import CONTROLS
 
 if TYPE_CHECKING:

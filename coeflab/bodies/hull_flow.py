@@ -1,4 +1,4 @@
-"""Flow about a hull that several methods share: friction line, added mass of its sections, boundary layer."""
+"""Flow about a hull that several methods share: added mass of its sections, boundary layer."""
 
 from __future__ import annotations
 
@@ -9,20 +9,12 @@ import numpy as np
 from coeflab.bodies.closed_forms import lamb_end_correction
 from coeflab.bodies.outline import Sections
 from coeflab.core.types import Array, brief, locking
+from coeflab.law.friction_line import friction_line
 from coeflab.law.transforms import moved
 
 # Shape factors: one-seventh power law; halfway from 1.4, measured on flat plates, to 2.4 at separation.
 FLAT, STERN = 9.0 / 7.0, 1.9
 FALLING = 0.99  # of the largest section: from there aft the pressure rises
-LOWEST_REYNOLDS = 1e3  # the line is not defined at 100
-
-
-FRICTION_APART = 0.05  # of the friction line between two Reynolds numbers: more than drag is compared to
-
-
-def friction_line(reynolds: float) -> float:
-    """C_F of a smooth surface, ITTC 1957: 0.075 / (log10 Re - 2)^2."""
-    return float(0.075 / (np.log10(max(reynolds, LOWEST_REYNOLDS)) - 2.0) ** 2)
 
 
 def integral(values: Array, x: Array) -> Array:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+Offer = Callable[[str], list[str]]
 DIRECTIONS = (("forward", "aft"), ("starboard", "port"), ("down", "up"))
 
 
@@ -84,29 +85,16 @@ def inspected(incomplete: str) -> list[str]:
     return or_paths(shipped_ones, incomplete)
 
 
-def fits(incomplete: str) -> list[str]:
-    """Fits."""
-    return plugins("fits", incomplete)
+def _plugins(kind: str) -> Offer:
+    def offered(incomplete: str) -> list[str]:
+        return plugins(kind, incomplete)
+
+    return offered
 
 
-def importers(incomplete: str) -> list[str]:
-    """Importers of tables."""
-    return plugins("importers", incomplete)
-
-
-def exporters(incomplete: str) -> list[str]:
-    """Targets of an export."""
-    return plugins("exporters", incomplete)
-
-
-def manoeuvres(incomplete: str) -> list[str]:
-    """Manoeuvres."""
-    return plugins("manoeuvres", incomplete)
-
-
-def simulators(incomplete: str) -> list[str]:
-    """Simulators."""
-    return plugins("simulators", incomplete)
+fits, importers, exporters, manoeuvres, simulators = map(
+    _plugins, ("fits", "importers", "exporters", "manoeuvres", "simulators")
+)
 
 
 def methods(incomplete: str) -> list[str]:
@@ -128,36 +116,11 @@ def formats(incomplete: str) -> list[str]:
     return names({*kinds, *(name for registry in registries() for name in registry.usable())}, incomplete)
 
 
-def planes(incomplete: str) -> list[str]:
-    """Planes of a motion."""
-    return names(("horizontal", "vertical"), incomplete)
-
-
-def tables(incomplete: str) -> list[str]:
-    """Formats of a motion."""
-    return names(("csv", "parquet"), incomplete)
-
-
-def integrators(incomplete: str) -> list[str]:
-    """Integrators."""
-    return names(("adaptive", "rk4"), incomplete)
-
-
-def kernels(incomplete: str) -> list[str]:
-    """Kernels of many motions."""
-    return names(("auto", "compiled", "numpy"), incomplete)
-
-
 def accelerations(incomplete: str) -> list[str]:
     """Where coefficients of acceleration come from."""
     from coeflab.api.names import ACCELERATIONS
 
     return names(ACCELERATIONS, incomplete)
-
-
-def units(incomplete: str) -> list[str]:
-    """Units of a mesh file."""
-    return names(("m", "cm", "mm", "in", "ft"), incomplete)
 
 
 def axes(incomplete: str) -> list[str]:
@@ -199,6 +162,13 @@ def options_of(kind: str, name: str, begun: str) -> list[tuple[str, str]]:
     return [(option, typed[option]) for option in names(typed, begun)]
 
 
-def optimizers(incomplete: str) -> list[str]:
-    """Sparse regressions."""
-    return names(("stlsq", "sr3"), incomplete)
+def _words(*words: str) -> Offer:
+    def offered(incomplete: str) -> list[str]:
+        return names(words, incomplete)
+
+    return offered
+
+
+planes, tables = _words("horizontal", "vertical"), _words("csv", "parquet")
+integrators, kernels = _words("adaptive", "rk4"), _words("auto", "compiled", "numpy")
+units, optimizers = _words("m", "cm", "mm", "in", "ft"), _words("stlsq", "sr3")

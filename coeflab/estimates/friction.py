@@ -6,10 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import friction_line, hull_flow
+from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
+from coeflab.law.friction_line import friction_line
 
 summary = "friction of hulls and foils: ITTC 1957 line, roughness by Townsin; thickness of sections by Hoerner"
 citations = ("ittc1957", "townsin1990", "hoerner1965")

@@ -28,11 +28,12 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import Domain, residuals_in_words
+from coeflab.fits.results.fitted_model import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
+from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import wind_errors, wind_forces
@@ -236,7 +237,7 @@ def _fitted(rows: Rows, name: str, unit: str) -> FittedModel:
     terms = (Term(), Term(((angle, power, False),)))
     model = model_of(used, terms, symbols, form, unit="N*m/(m/s)^2" if name == "M" else "N/(m/s)^2")
     said = (*residuals_in_words(model, FREER), *model.statements)
-    return replace(model, domain=Domain.of(rows.x), x=used.x, statements=said)
+    return replace(model, domain=Domain.of(rows.x, Extrapolation.REFUSE), x=used.x, statements=said)
 
 
 def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:

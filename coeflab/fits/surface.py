@@ -16,11 +16,12 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.linear_model import nested_test, sharpened
+from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
 from coeflab.law.terms import Term, power_terms

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.formats.flat_law import RULES, flat_tables, place_at
-from coeflab.law.domain import Hull
+from coeflab.law.domain import Domain
 from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, Reading, place_of
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.force_law import motion_law
@@ -44,7 +44,7 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[A
     terms: list[ForceTerm] = []
     for k, t in enumerate(tables):
         names = tuple(BASE[int(v) - 1] for v in t["variables"])
-        hull = Hull(
+        hull = Domain(
             names,
             np.array(t["low"]),
             np.array(t["high"]),

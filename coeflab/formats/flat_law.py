@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief
-from coeflab.law.domain import SLACK, Hull
+from coeflab.law.domain import SLACK, Domain, Extrapolation
 from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -24,7 +24,7 @@ from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import known_mass, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
-RULES: tuple[Literal["clamp", "taper", "refuse"], ...] = ("clamp", "taper", "refuse")
+RULES = (Extrapolation.CLAMP, Extrapolation.TAPER, Extrapolation.REFUSE)  # by their number in the code
 MOST_CORNERS = 2_000_000
 Factors = tuple[tuple[int, int, bool], ...]
 
@@ -48,7 +48,7 @@ class FlatTable:
     name : str
     terms : tuple of ForceTerm
         SI coefficients.
-    hull : Hull
+    hull : Domain
     base : tuple of int
         Which of `coeflab.law.force_law.BASE` each variable is.
     prime : tuple of float
@@ -61,7 +61,7 @@ class FlatTable:
 
     name: str
     terms: tuple[ForceTerm, ...]
-    hull: Hull
+    hull: Domain
     base: tuple[int, ...]
     prime: tuple[float, ...]
     faces: Array
@@ -87,7 +87,7 @@ class FlatTable:
         return tuple((self.hull.variables.index(v), n, a) for v, n, a in term.term.factors)
 
 
-def feet(hull: Hull) -> tuple[Array, Array]:
+def feet(hull: Domain) -> tuple[Array, Array]:
     """Faces and maps of `FlatTable`.
 
     Raises

@@ -9,14 +9,17 @@ defined here, by the cubic step 1 - 3 t^2 + 2 t^3 of Hermite interpolation.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from coeflab.core.types import Array, brief, locking
+from coeflab.law.symbols import PORT_STARBOARD
+from coeflab.law.terms import Term
 
 SLACK = 1e-9
 FLAT = 1e-10
@@ -199,11 +202,19 @@ def taper_weight(points: Array, nearest: Array, low: Array, high: Array) -> Arra
     return np.asarray(1.0 - t**2 * (3.0 - 2.0 * t), dtype=np.float64)
 
 
+class Extrapolation(StrEnum):
+    """What a reader outside the data gets: no value; that of the nearest point of the hull; a blend into that."""
+
+    REFUSE = "refuse"
+    CLAMP = "clamp"
+    TAPER = "taper"
+
+
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("low high spaces")
-class Hull:
-    """The region of a table's data, and what a reader outside of it gets: the one reading of a domain.
+class Domain:
+    """The convex hull of the data of a table or model, and what a reader outside of it gets.
 
     Attributes
     ----------
@@ -212,15 +223,33 @@ class Hull:
         Bounding box.
     spaces : (m, d + 1) array
         Rows [a, b] with a . x + b <= 0 inside.
-    rule : {"refuse", "clamp", "taper"}
-        Outside: no value; that of the nearest point of the hull; a blend into that.
+    rule : Extrapolation
     """
 
     variables: tuple[str, ...]
     low: Array
     high: Array
     spaces: Array
-    rule: Literal["refuse", "clamp", "taper"] = "clamp"
+    rule: Extrapolation = Extrapolation.CLAMP
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Array], rule: Extrapolation, terms: Sequence[Term] = ()) -> Domain:
+        """The domain of some data, one column a variable.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+        rule : Extrapolation
+        terms : sequence of Term
+            Of the form. One that port-starboard symmetry leaves as it is, or turns around as a whole, holds the mirror images of
+            its data too.
+        """
+        points = np.column_stack(list(columns.values()))
+        sided = [v == "beta" or v in PORT_STARBOARD for v in columns]
+        turns = {sum(t.odd_in(v) for v, at in zip(columns, sided, strict=True) if at) % 2 for t in terms}
+        if any(sided) and len(turns) == 1:
+            points = np.vstack([points, np.where(sided, -points, points)])
+        return cls(tuple(columns), points.min(axis=0), points.max(axis=0), half_spaces(points), rule)
 
     @property
     def is_box(self) -> bool:
@@ -247,6 +276,6 @@ class Hull:
         The share is zero unless the rule is ``taper``; what ``refuse`` does with a point outside is its caller's.
         """
         nearest = clamped(points, self.spaces, self.low, self.high)
-        if self.rule != "taper":
+        if self.rule is not Extrapolation.TAPER:
             return nearest, np.zeros(len(points))
         return nearest, taper_weight(points, nearest, self.low, self.high)

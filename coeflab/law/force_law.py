@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief, locked
-from coeflab.law.domain import SLACK, Hull
+from coeflab.law.domain import SLACK, Domain
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import Term
@@ -81,7 +81,7 @@ class ForceTerm:
         Of the variables that are not read as they are.
     note : str
         U95 and origin, in words.
-    hull : Hull or None
+    hull : Domain or None
         Of the table's data.
     into : (3,) bool
         Of drag, side force and lift: which of X, Y and Z it acts in; sources along the body speak for the others.
@@ -98,7 +98,7 @@ class ForceTerm:
     potential: float | None = None
     readings: tuple[tuple[str, Reading], ...] = ()
     note: str = ""
-    hull: Hull | None = None
+    hull: Domain | None = None
     into: tuple[bool, bool, bool] = EVERYWHERE
 
     @property
@@ -226,7 +226,7 @@ class ForceLaw:
         object.__setattr__(self, "curved", any(r.together for r in self.regions))
 
     def _regions(self, variables: list[tuple[str, Reading]]) -> tuple[_Region, ...]:
-        hulls: dict[int, tuple[Hull, dict[str, Reading], list[int]]] = {}
+        hulls: dict[int, tuple[Domain, dict[str, Reading], list[int]]] = {}
         for i, t in enumerate(self.terms):
             if t.hull is not None:
                 hulls.setdefault(id(t.hull), (t.hull, {}, []))[1].update(t.readings)
@@ -387,7 +387,7 @@ def place_of(term: ForceTerm, wind: Sequence[tuple[bool, bool, bool]]) -> int:
 class _Region:
     """The hull of one table in a law: base row and prime of its variables, their rows where they are held together, its terms."""
 
-    hull: Hull
+    hull: Domain
     source: Ints
     prime: Array
     rows: Ints

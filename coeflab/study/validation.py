@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import FRICTION_APART, friction_line
 from coeflab.core.types import brief
 from coeflab.fits.uncertainty.budget import BOUND_ONLY
+from coeflab.law.friction_line import FRICTION_APART, friction_line
 from coeflab.law.symbols import derivative
 from coeflab.study.symmetry import zeros
 from coeflab.tables.force_table import STUDIES

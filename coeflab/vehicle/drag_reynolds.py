@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import FRICTION_APART, friction_line
 from coeflab.core.finding import Finding, Severity
+from coeflab.law.friction_line import FRICTION_APART, friction_line
 from coeflab.law.symbols import derivative, primed
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from coeflab.core.errors import InputError, shown
 from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive, RefusedError
 from coeflab.core.types import Array
-from coeflab.law.domain import Hull
+from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Factor, Term, design
@@ -152,11 +152,11 @@ class ParameterModel(Strict):
         return PLACES.get(self.response.removesuffix("'"), "")
 
     @property
-    def hull(self) -> Hull:
+    def hull(self) -> Domain:
         """Where it may be read, and what a reader gets outside."""
         d = self.domain
         spaces = np.array(d.half_spaces, dtype=np.float64).reshape(-1, len(self.names) + 1)
-        return Hull(self.names, np.array(d.low), np.array(d.high), spaces, d.extrapolation)
+        return Domain(self.names, np.array(d.low), np.array(d.high), spaces, Extrapolation(d.extrapolation))
 
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the convex hull of the data.

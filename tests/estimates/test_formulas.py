@@ -10,8 +10,9 @@ import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, spheroid_munk_slope
 from coeflab.bodies.fin_lift import fin_groups, foil_on_body, low_aspect_lift_slope
-from coeflab.bodies.hull_flow import FLAT, STERN, friction_line, hull_flow
+from coeflab.bodies.hull_flow import FLAT, STERN, hull_flow
 from coeflab.estimates import SEPARATED, bluff, crossflow, fins, form_drag, friction, hull_lift, ring_wing
+from coeflab.law.friction_line import friction_line
 from tests.estimates.bodies import (
     DOWN,
     LENGTH,

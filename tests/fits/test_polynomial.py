@@ -9,8 +9,8 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.fits import FITS
-from coeflab.fits.results.fitted_model import Extrapolation
 from coeflab.law.coefficient import Status
+from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.report.tables.nouns import window_text
@@ -157,7 +157,7 @@ def test_what_the_abscissae_leave_open_has_no_number():
 def test_the_rule_outside_is_the_one_asked_for():
     model = fit(sweep({"Y": cubic(DRIFT)}, v=DRIFT), variable="v", extrapolation="taper").models[0]
     assert model.domain.rule is Extrapolation.TAPER
-    assert model.domain.contains({"v": np.array([DRIFT.min(), 0.0, DRIFT.max() + 1e-6])}).tolist() == [
+    assert model.domain.contains(np.array([[DRIFT.min()], [0.0], [DRIFT.max() + 1e-6]])).tolist() == [
         True,
         True,
         False,

@@ -17,7 +17,7 @@ from coeflab.core.texts import words
 from coeflab.formats.c_program import program as c
 from coeflab.formats.exporting import export
 from coeflab.formats.flat_law import feet, flat_law
-from coeflab.law.domain import Hull
+from coeflab.law.domain import Domain
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.dynamics import restoring
 from coeflab.motion.vehicle import vehicle
@@ -198,7 +198,7 @@ def test_feet_of_a_hull_are_its_nearest_points() -> None:
 
     for d in (1, 2, 3):
         points = rng.normal(size=(12, d)) * np.array([1.0, 3.0, 0.2])[:d]
-        hull = Hull(tuple("vwr"[:d]), points.min(axis=0), points.max(axis=0), half_spaces(points))
+        hull = Domain(tuple("vwr"[:d]), points.min(axis=0), points.max(axis=0), half_spaces(points))
         faces, maps = feet(hull)
         outside = rng.normal(size=(50, d)) * np.array([3.0, 9.0, 0.6])[:d]
         nearest, size = hull.read(outside)[0], hull.high - hull.low

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.fits.results.fitted_model import Domain, Extrapolation, FittedModel
-from coeflab.law.domain import TAPER
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.law.domain import TAPER, Domain, Extrapolation
 from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.tables.importers import PlannedTable

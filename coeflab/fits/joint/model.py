@@ -21,7 +21,6 @@ from coeflab.fits.results.fit_result import CampaignShare, Pooling
 from coeflab.fits.results.fitted_model import (
     ROUNDING,
     UNLIKELY,
-    Domain,
     FittedModel,
     OutOfSample,
     chance,
@@ -35,6 +34,7 @@ from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, judged, left_out
 from coeflab.fits.statistics.stacked import fit_stacked, freed, influence, part_of, scatter, spread_by_run, stack
+from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.terms import Equation
 
 EVERY_THIRD = "Every third point left out"
@@ -303,7 +303,7 @@ def _several(
                 fit=replace(
                     part_of(fit, shares, common, y, p.matrix), aicc=fit.aicc if len(parts) == 1 else float("nan")
                 ),
-                domain=Domain.of(rows.x, terms=tuple(t.term for t in p.terms)),
+                domain=Domain.of(rows.x, Extrapolation.REFUSE, terms=tuple(t.term for t in p.terms)),
                 table=", ".join(rows.tables),
                 campaign=rows.campaign,
                 body=rows.body,

@@ -9,9 +9,8 @@ What a model is worth on rows that it has not seen, as a share of the response's
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from itertools import combinations
 from math import isnan
 from typing import Any
@@ -25,8 +24,8 @@ from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
 from coeflab.law.coefficient import Coefficient, Parts, Status
-from coeflab.law.domain import half_spaces, inside
-from coeflab.law.symbols import ANGULAR, MOTIONS, PORT_STARBOARD
+from coeflab.law.domain import Domain
+from coeflab.law.symbols import ANGULAR, MOTIONS
 from coeflab.law.terms import Term, canonical, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
@@ -78,63 +77,6 @@ def readmitted(table: ForceTable) -> ForceTable:
             for component in [e.component] if e.component else usable:
                 usable[component][e.row] = False
     return replace(table, usable=usable)
-
-
-class Extrapolation(StrEnum):
-    """What a reader outside the data is to do."""
-
-    REFUSE = "refuse"
-    CLAMP = "clamp"
-    TAPER = "taper"
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-@locking("low high spaces")
-class Domain:
-    """Where a model may be read.
-
-    Attributes
-    ----------
-    variables : tuple of str
-    low, high : (d,) array
-        Bounding box.
-    spaces : (m, d + 1) array
-        Half-spaces of the convex hull of the data.
-    rule : Extrapolation
-    """
-
-    variables: tuple[str, ...]
-    low: Array
-    high: Array
-    spaces: Array
-    rule: Extrapolation = Extrapolation.REFUSE
-
-    @classmethod
-    def of(
-        cls, columns: Mapping[str, Array], rule: Extrapolation = Extrapolation.REFUSE, terms: Sequence[Term] = ()
-    ) -> Domain:
-        """The domain of some data, one column a variable.
-
-        Parameters
-        ----------
-        columns : mapping of variable to (n,) array
-        rule : Extrapolation
-        terms : sequence of Term
-            Of the form. One that port-starboard symmetry leaves as it is, or turns around as a whole, holds the mirror images of
-            its data too.
-        """
-        points = np.column_stack(list(columns.values()))
-        sided = [v == "beta" or v in PORT_STARBOARD for v in columns]
-        turns = {sum(t.odd_in(v) for v, at in zip(columns, sided, strict=True) if at) % 2 for t in terms}
-        if any(sided) and len(turns) == 1:
-            points = np.vstack([points, np.where(sided, -points, points)])
-        return cls(tuple(columns), points.min(axis=0), points.max(axis=0), half_spaces(points), rule)
-
-    def contains(self, columns: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Whether points lie inside, shape (n,)."""
-        points = np.column_stack([columns[v] for v in self.variables])
-        return np.asarray(inside(self.spaces, points), dtype=bool)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,7 +238,11 @@ class FittedModel:
         joint = np.nan_to_num(self.covariance)
         spread = 2.0 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, joint, rows), 0.0))
         sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
-        return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
+        return (
+            values,
+            np.where(sure, spread, np.nan),
+            self.domain.contains(np.column_stack([columns[v] for v in self.domain.variables])),
+        )
 
     def __repr__(self) -> str:
         over = " ".join(self.domain.variables)

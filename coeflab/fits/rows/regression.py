@@ -12,8 +12,6 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fitted_model import (
     ROUNDING,
-    Domain,
-    Extrapolation,
     FittedModel,
     SetAside,
     in_words,
@@ -23,6 +21,7 @@ from coeflab.fits.results.fitted_model import (
 from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
+from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import incidence, wind_errors, wind_forces

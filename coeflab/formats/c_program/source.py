@@ -13,7 +13,7 @@ from coeflab.core.text.bounded import own_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.flat_law import RULES, FlatLaw, place_at
-from coeflab.law.domain import Hull
+from coeflab.law.domain import Domain
 from coeflab.law.force_law import AHEAD, BASE, ForceLaw, ForceTerm, Reading, place_of
 from coeflab.law.symbols import CONTROLS
 from coeflab.law.terms import Factor, Term
@@ -227,14 +227,14 @@ def law_of(text: str) -> ForceLaw:
     return ForceLaw(tuple(terms), ideal)
 
 
-def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Hull, tuple[tuple[str, Reading], ...]]:
+def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Domain, tuple[tuple[str, Reading], ...]]:
     size = a["DIMENSION"][k]
     at = slice(d * k, d * k + size)
     names = tuple(BASE[v] for v in a["VARIABLE"][at])
     rows = np.array(a["SPACES"][: w * a["SPACE_BEGIN"][a["TABLES"]]]).reshape(-1, w)[
         a["SPACE_BEGIN"][k] : a["SPACE_END"][k]
     ]
-    hull = Hull(
+    hull = Domain(
         names,
         np.array(a["LOW"][at]),
         np.array(a["HIGH"][at]),

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import FRICTION_APART
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import listed
 from coeflab.fits.uncertainty.budget import COUPLED
+from coeflab.law.friction_line import FRICTION_APART
 from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.tests import tests_of
 from coeflab.report.tables.motion import DEGREES

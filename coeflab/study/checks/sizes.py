@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
+from coeflab.law.friction_line import friction_line
 from coeflab.law.symbols import primed
 
 if TYPE_CHECKING:

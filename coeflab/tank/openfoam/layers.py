@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import friction_line
 from coeflab.core.declarations import one_of
+from coeflab.law.friction_line import friction_line
 from coeflab.law.scaling import Conditions
 from coeflab.tank.openfoam.features import foils
 
