@@ -66,3 +66,12 @@ def test_an_estimate_with_standard_errors_is_the_weighted_fit_of_statsmodels() -
     misfit = float(np.sum(((y[rows] - peer["HC2"].fittedvalues) / se[rows]) ** 2))
     assert found.lack_of_fit == pytest.approx(stats.chi2.sf(misfit, len(rows) - 3), rel=1e-8)
     assert found.window == np.abs(x[rows]).max()
+
+
+@pytest.mark.parametrize("rows", [41, 99])
+def test_rest_and_curvature_of_few_and_of_very_many_rows(rows: int) -> None:
+    """99 rows ended in an error of shapes: strips of the part over x beside rows."""
+    x = np.linspace(-0.22, 0.22, rows)
+    rest, curvature = slopes.rest_and_curvature(x, -0.5 + 2.0 * x - 3.0 * x**2)
+    assert rest == pytest.approx(-0.5, rel=1e-2)
+    assert curvature == pytest.approx(-3.0, rel=5e-2)

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from coeflab.cli import app
 from coeflab.core.errors import InputError
 from coeflab.fits.rows.straight_runs import _speeds
+from coeflab.fits.statistics.data_gate import _by_setting
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.form import Group
 from coeflab.tables.imported import _table
@@ -415,3 +416,10 @@ def test_at_most_six_questions_of_a_file_with_many_strange_columns(tmp_path: Pat
     assert "CS" in asked
     assert "axes.beta" not in asked
     assert len(asked) <= 6
+
+
+def test_rows_of_a_dense_sweep_are_settings_of_their_own() -> None:
+    """99 rows a quarter of a degree apart were one setting, and the data gate ended in an error of numpy."""
+    x = np.radians(np.arange(-12.75, 12.0, 0.25))
+    assert len(_by_setting(x, x[None])[0]) > 30
+    assert len(_by_setting(np.array([-1.0, -0.99, 0.0, 0.01, 1.0]), np.zeros((1, 5)))[0]) == 3

@@ -260,6 +260,8 @@ def _onset_at_end(x: Array, y: Array, expected: Array, row: int, parity: Parity)
     if parity is not Parity.ANY and np.any(np.abs(u + u[row]) <= SAME_SETTING * u[row]):
         return False
     settings, (means,), _ = _by_setting(x, expected[None])
+    if len(settings) < 2:  # rows of one setting have no slope
+        return False
     steepest = float(np.abs(np.diff(means) / np.diff(settings)).max())
     gap = u[row] - np.delete(u, row).max()
     return bool(abs(y[row] - expected[row]) <= KINK * steepest * gap)
@@ -341,7 +343,12 @@ def screen_many(x: Array, y: Array, limit: float) -> Screened:
 def _by_setting(x: Array, curves: Array) -> tuple[Array, Array, Index]:
     """Settings, curves (c, m) there, and the setting of every row; rows within 2 % of the range are one setting."""
     order = np.argsort(x, kind="stable")
-    steps = np.concatenate([[False], np.diff(x[order]) > SAME_SETTING * np.ptp(x)])
+    steps, first, reach = np.zeros(len(x), dtype=bool), float(x[order[0]]), SAME_SETTING * float(np.ptp(x))
+    for i, value in enumerate(
+        x[order].tolist()
+    ):  # from the first of a setting: neighbours of a dense sweep are no chain
+        steps[i] = value - first > reach
+        first = value if steps[i] else first
     at = np.empty(len(x), dtype=np.int64)
     at[order] = np.cumsum(steps)
     count = np.bincount(at)

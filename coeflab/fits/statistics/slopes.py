@@ -17,6 +17,7 @@ from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
 from coeflab.fits.statistics.least_squares import Factorised, Index, aicc, factorise, solve
 from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.many_rows import condensed_rows
 from coeflab.fits.statistics.origin_slope import OriginSlope
 
 NEAR_REST = 0.02  # of the largest setting: nearer rows say nothing of a curvature
@@ -207,7 +208,11 @@ def of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> Ori
 
 
 def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
-    """The force at rest and the curvature there of a sweep (n,), all rows used; None where a row is too few."""
+    """The force at rest and the curvature there of a sweep (n,), all rows used, of very many the means of their strips; None
+    where a row is too few.
+    """
+    if (few := condensed_rows(x, y)) is not None:
+        x, y = few.x, few.y
     origin = origin_slope.estimate(x, y)
     if origin.design is None:
         return None, None
