@@ -524,7 +524,7 @@ def proposals(
             out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
         if {"r", "R"} <= set(taken) and column.name == taken["R"]:
             out[i] = Proposal("ignore", f"r is {taken['r']} already, U over it")
-    return tuple(_without_a_doubled_flow(raw, out))
+    return tuple(_without_a_doubled_flow(raw, _without_lone_errors(out)))
 
 
 def _is_index(column: RawColumn) -> bool:
@@ -533,6 +533,16 @@ def _is_index(column: RawColumn) -> bool:
     steps = np.diff(column.values)
     unnamed = column.name == "column 1" or folded(column.name) in vocabulary().lists["index"]
     return unnamed and first in (0.0, 1.0) and bool(np.all((steps == 1.0) | (column.values[1:] == first)))
+
+
+def _without_lone_errors(out: Sequence[Proposal]) -> list[Proposal]:
+    """A standard error whose force is left out goes with it."""
+    valued = {m.name for one in out if (m := one.said) is not None and not m.error}
+    lone = [(m := one.said) is not None and m.error and m.name not in valued for one in out]
+    return [
+        Proposal("ignore", f"no column {one.said.name}") if o and one.said else one
+        for one, o in zip(out, lone, strict=True)
+    ]
 
 
 def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:

@@ -423,3 +423,11 @@ def test_rows_of_a_dense_sweep_are_settings_of_their_own() -> None:
     x = np.radians(np.arange(-12.75, 12.0, 0.25))
     assert len(_by_setting(x, x[None])[0]) > 30
     assert len(_by_setting(np.array([-1.0, -0.99, 0.0, 0.01, 1.0]), np.zeros((1, 5)))[0]) == 3
+
+
+def test_a_standard_error_goes_with_its_force(tmp_path: Path) -> None:
+    """The command that `inspect` printed for SU2 runs with CMx = 0 throughout ended in "se_K without K"."""
+    found = texts(
+        tmp_path / "t.csv", lines("alpha [deg],Z [N],se_Z [N],se_M [N*m]", rows=["-4,8,1,1", "0,0,1,1", "4,-8,1,1"])
+    )
+    assert (found["se_Z"], found["se_M"]) == ("se_Z [N]", "ignore")
