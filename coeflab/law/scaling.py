@@ -57,6 +57,8 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 LENGTHS = (0.05, 400.0)  # m, of models and ships
 WATERS = (950.0, 1060.0)  # kg/m^3, hot and fresh to cold and salt
 NU_OF_WATER = (0.7e-6, 2e-6)  # m^2/s: 37 deg C fresh to 0 deg C at sea (ITTC 7.5-02-01-03)
+NOBODYS = ("1 m", "unit length")  # names of lengths that are no body's
+MASSES = (1e-3, 10.0)  # of 1/2 rho L^3: a rod of water of 40 diameters, a box twice as broad and high as long
 FASTEST = 60.0  # m/s in water
 _AIR = re.compile(
     r"\b(?:air|airship|aircraft|luft|wind)\b|wind.?tunnel|windkanal|kinematic|rhoinf|openfoam", re.IGNORECASE
@@ -89,6 +91,26 @@ def doubtful_size(key: str, number: float, in_air: bool = False) -> str:
     if key == "conditions.speed" and number > FASTEST and not in_air:
         return f'{number:g} m/s is no speed in water: is it in mm/s? Then write "{number:g} mm/s"'
     return ""
+
+
+def doubtful_mass(mass: float, density: float, scaling: Scaling) -> str:
+    """Why a mass in kg is probably one in another unit; empty where a body of that length in this fluid can have it.
+
+    Parameters
+    ----------
+    mass, density : float
+        kg, kg/m^3. In a fluid lighter than water a body may be as heavy as it likes.
+    scaling : Scaling
+        Of a length that is no body's nothing is said.
+    """
+    if any(name in scaling.length_name for name in NOBODYS):
+        return ""
+    prime, (low, high) = mass / scaling.unit("m", density), MASSES
+    if prime >= low and (prime <= high or density < WATERS[0]):
+        return ""
+    no_body = f"m' = {prime:.2g} of 1/2 rho L^3 at {scaling.length_name} {scaling.length:g} m is that of no body ({low:g} to {high:g})"
+    unit = "t" if prime < low else "g"
+    return f'{no_body}: kg? If it is in {unit}, write "{mass:g} {unit}"'
 
 
 def require_hull(value: Any, key: str | None = None) -> None:

@@ -19,6 +19,7 @@ from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
+from coeflab.study.checks.sizes import UNITS_APART, masses_of_models
 from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
 from coeflab.study.study import Conversion, Plan, Study
 from coeflab.tables.reading import read_tables, table_at
@@ -133,6 +134,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
         return checked(_of_shape(plan, progress), progress)
     tables, fits, budgets, unfitted = _fits(plan, progress)
     body = _body(plan)
+    _require_kilograms(tables, body)
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits, plan)
     missing = tuple(c for g in groups for c in _missing(g, fits, tables, plan.wanted))
@@ -305,6 +307,16 @@ def _body(plan: Plan) -> Body | None:
     from coeflab.bodies.readers import read_body
 
     return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
+
+
+def _require_kilograms(tables: Sequence[ForceTable], body: Body | None) -> None:
+    """Refuse two masses of one body that only their units tell apart; `study.checks.sizes` says where they merely differ."""
+    for table, stated, ratio in masses_of_models(tables, body):
+        if not 1.0 / UNITS_APART < ratio < UNITS_APART:
+            raise InputError(
+                f"{table.model_mass:g} kg under [inertia] of {table.campaign}, {stated:g} kg in the body.toml", "one mass of one body, in kg",
+                column="inertia.mass", advice="kg? A mass in another unit has it behind the number: \"2.25 t\".",
+            )  # fmt: skip
 
 
 def _has_points(table: ForceTable) -> bool:

@@ -23,7 +23,7 @@ from coeflab.core.provenance import TABLE_KINDS, Source
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.wording import Verbatim
-from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.scaling import Conditions, Scaling, doubtful_mass
 from coeflab.tables.column_map import ColumnMap, Entry
 
 if TYPE_CHECKING:
@@ -470,6 +470,14 @@ class CampaignFile(takes.Declaration):
         if not self.table:
             raise InputError(
                 "no [[table]]", "at least one table", column="table", advice='Add [[table]] with file = "table.csv".'
+            )
+        density = self.conditions.density
+        if self.inertia is not None and (doubt := doubtful_mass(self.inertia.mass, density, self.scaling)):
+            raise InputError(
+                f"{self.inertia.mass:g} kg",
+                "the mass of a body of that length",
+                column="inertia.mass",
+                advice=f"{doubt}.",
             )
         halves = [("campaign", self.campaign.half_model)]
         halves += [(f"table[{i}]", t.half_model) for i, t in enumerate(self.table) if t.half_model is not None]

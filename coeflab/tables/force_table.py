@@ -169,6 +169,8 @@ class ForceTable:
         What is assumed of it or left out; they travel with every number that comes of it.
     propeller : dict of str to (n,) array
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
+    model_mass : float or None
+        Of the model, kg, where its campaign states an inertia to be subtracted.
     """
 
     name: str
@@ -204,6 +206,7 @@ class ForceTable:
     declared: Declared | None = None
     findings: tuple[Finding, ...] = ()
     propeller: Mapping[str, Array] = field(default_factory=dict)
+    model_mass: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors", "propeller"):

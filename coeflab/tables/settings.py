@@ -46,7 +46,8 @@ EACH = "each"  # in mapping.toml: keys of one table of several, by its name
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
-PLACE_KEYS = ("axes.reference_point", "inertia.centre_of_gravity", "table.arm_point", "table.reference_point")
+CENTRE_OF_GRAVITY = "inertia.centre_of_gravity"
+PLACE_KEYS = (POINT_OF, CENTRE_OF_GRAVITY, ARM_POINT, TABLE_POINT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,8 +235,8 @@ def is_reference(said: Any) -> bool:
 def read_settings(key: str, text: str) -> dict[str, Any]:
     """What a person types for a key; a point says its datum and a length its name with it.
 
-    ``axes.reference_point``, ``table.reference_point`` and ``table.arm_point`` take ``-2.1 from nose`` and ``midship``, the last also
-    ``reference point``;
+    Places, such as ``axes.reference_point`` and ``inertia.centre_of_gravity``, take ``-2.1 from nose`` and ``midship``,
+    ``table.arm_point`` also ``reference point``;
     ``scaling.length`` takes ``4.3 m LOA``.
 
     Raises
@@ -245,9 +246,7 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
     """
     if key == ARM_POINT and is_reference(text):
         return {key: REFERENCE}
-    if key in (POINT_OF, ARM_POINT, TABLE_POINT) and re.search(
-        r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)
-    ):
+    if key in PLACE_KEYS and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
         datum, at = _place_and_datum(text, key)
         return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
     if (
@@ -290,7 +289,7 @@ def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
         Naming both.
     """
     new, old = read.get("axes.datum"), known.get("axes.datum")
-    own = next((k for k in (ARM_POINT, TABLE_POINT) if any(key.endswith(k) for key in (*read, *known))), "")
+    own = next((k for k in PLACE_KEYS[1:] if any(key.endswith(k) for key in (*read, *known))), "")
     if own and new is not None and old is not None and not of_datum(str(old.value), str(new)):
         raise InputError(
             f"places from {shown(str(old.value))} and from {shown(str(new))}", "one point that all places count from",

@@ -247,6 +247,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         lines=columns.lines,
         density=columns.density,
         propeller=columns.propeller,
+        model_mass=None if campaign.inertia is None else campaign.inertia.mass,
         arm_point=table.arm_point,
         symmetry=campaign.symmetry,
         by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",

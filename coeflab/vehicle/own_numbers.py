@@ -24,7 +24,7 @@ from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, repeated
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.rigid_body import MassProperties, parallel_axis
-from coeflab.law.scaling import Conditions, Scaling, doubtful_size, powers_of
+from coeflab.law.scaling import Conditions, Scaling, doubtful_mass, doubtful_size, powers_of
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.from_shape import parameter_thruster
 from coeflab.vehicle.matching import one_slope
@@ -325,9 +325,12 @@ def typed_file(
         if not cg and about.strip() != "cg":
             raise InputError(f"a mass without its centre, about {about}", "X,Y,Z, m, FRD", column="--cg",
                              advice="Add --cg, or state the numbers about cg.")  # fmt: skip
+        heavy = positive_typed(mass, "mass", "--mass")
+        if doubt := doubtful_mass(heavy, conditions.density, scaling):
+            raise InputError(f"{heavy:g} kg", "a usual mass of what swims", column="--mass", advice=f"{doubt}.")
         one = [positive_typed(inertia, "inertia", "--inertia")] if inertia and "," not in inertia else []
         weighed = mass_of(
-            positive_typed(mass, "mass", "--mass"), np.array(three_typed(cg, "length", "--cg")) if cg else None,
+            heavy, np.array(three_typed(cg, "length", "--cg")) if cg else None,
             one or (three_typed(inertia, "inertia", "--inertia") if inertia else ()),
         )  # fmt: skip
     elif cg or inertia:

@@ -158,10 +158,12 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     """Signs, rates and axes; at least one finding about the signs, with what the file's format says of them."""
     own = _own_terms(p)
     out = _signs(own, signs, p)
-    if not own:
+    products = _products_with_u(p)
+    if not own and not products:
         out += _by_tables(p)
-    elif not any(c.severity is Severity.FAIL for c in out):
-        out.append(_damping_check("damping", Severity.PASS, f"{len(own)} terms of a motion on itself", "below zero"))
+    elif not any(c.severity is Severity.FAIL for c in out) and not any(t.coefficient > 0.0 for t in products):
+        several = f"{len(own) + len(products)} terms of a motion on itself"
+        out.append(_damping_check("damping", Severity.PASS, several, "below zero"))
     return [*out, *_rates(p, own), *_mirrored(p), *_partners(p), *_ideal_products(p)]
 
 
@@ -195,12 +197,22 @@ def _by_tables(p: ParameterFile) -> list[Check]:
     return out or [nothing]
 
 
+def _products_with_u(p: ParameterFile) -> list[ForceTerm]:
+    """Slopes of a motion on itself that go with the speed, such as Yuv; `sign_findings` judges their signs."""
+    return [
+        t for t in force_law(p).terms
+        if t.coefficient != 0.0 and t.kind != "potential" and t.term.degree == 2
+        and {v for v, _, _ in t.product.factors} == {"u", MOTIONS[COMPONENTS.index(t.component)]} != {"u"}
+    ]  # fmt: skip
+
+
 def _own_terms(p: ParameterFile) -> list[_Own]:
+    """Of X every term in u alone: a drag ahead, whether it turns with the course, as Xu|u|, or not, as Xuu."""
     out = []
     for t in force_law(p).terms:
         variables = {v for v, _, _ in t.product.factors}
         motion = MOTIONS[COMPONENTS.index(t.component)]
-        resistance = t.ahead
+        resistance = t.ahead or (t.component == "X" and variables == {"u"})
         if t.coefficient != 0.0 and (variables == {motion} or resistance):
             out.append(_Own(t, motion, t.product.odd_in(motion) or resistance))
     return out

@@ -13,6 +13,7 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.study.checks.signs import check as signs
+from coeflab.study.checks.sizes import check as sizes
 from coeflab.study.checks.viscous_centre import check as centres
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
@@ -141,7 +142,7 @@ def test_a_plan_with_flipped_literature_fails(tmp_path: Path) -> None:
     assert "Nr' - xG'm' is not negative: it drives the motion instead of damping it" in index.comment
 
 
-def arm(folder: Path, inertia: bool, declared: str, hull: str = "") -> Study:
+def arm(folder: Path, inertia: bool, declared: str, hull: str = "", mass: float = MASS) -> Study:
     """The computed rotating arm of the bare hull with drift, with or without the model's inertia in it."""
     source = shipped("cfd_data") / "suboff_cfd_barehull"
     campaign = folder / "suboff_cfd_barehull"
@@ -161,7 +162,7 @@ def arm(folder: Path, inertia: bool, declared: str, hull: str = "") -> Study:
     text = "\n".join(lines).replace(
         'file = "rotating_arm.csv"\ncontains_inertia = false', f'file = "rotating_arm.csv"\n{declared}'
     )
-    text += f"\n[inertia]\nmass = {MASS}\ncentre_of_gravity = [-2.004, 0, 0]\ninertia = [20, 1000, 1000]\n"
+    text += f"\n[inertia]\nmass = {mass}\ncentre_of_gravity = [-2.004, 0, 0]\ninertia = [20, 1000, 1000]\n"
     (campaign / "campaign.toml").write_text(text)
     (folder / "plan.toml").write_text(
         f'[study]\nname = "s"\nwanted = ["Yv"]\n[body]\npath = "{shipped("geometry") / "suboff" / "body.toml"}"\n'
@@ -269,3 +270,43 @@ def test_rates_without_their_point_enter_no_file(tmp_path: Path) -> None:
         run(read_plan(tmp_path / "plan.toml"))
     assert caught.value.column == "parameter_file.p.literature"
     assert caught.value.found == '"Roddy configuration 3" without reference_point'
+
+
+def test_a_mass_in_tonnes_is_refused(tmp_path: Path) -> None:
+    """697.7 kg of 4.26 m is m' = 0.018; 0.6977 is that of a rod of 1,000 diameters, and would turn the sign of Yr'."""
+    with pytest.raises(
+        InputError, match=r"inertia\.mass.*0\.69\d* kg.*m' = 1\.8e-05.*\(0\.001 to 10\): kg\?.*0\.69\d* t"
+    ):
+        arm(tmp_path, True, "contains_inertia = true", mass=MASS / 1000.0)
+
+
+@pytest.mark.parametrize(
+    ("factor", "subjects"), [(1.19, []), (1.25, ["suboff_cfd_barehull mass"]), (0.5, ["suboff_cfd_barehull mass"])]
+)
+def test_a_model_of_another_mass_than_its_body_is_doubted(tmp_path: Path, factor: float, subjects: list[str]) -> None:
+    study = arm(tmp_path, True, "contains_inertia = true", mass=factor * MASS)
+    found = [c for c in sizes(study) if c.subject.endswith(" mass")]
+    assert [c.subject for c in found] == subjects
+    assert all(c.severity is Severity.WARN and f"{factor:.3g} of it" in c.statistic for c in found)
+
+
+def test_masses_apart_by_a_unit_are_refused(tmp_path: Path) -> None:
+    """A hundred times the body's: within what a body of the length can have, and no mass of this one."""
+    with pytest.raises(InputError, match=r"70479\.7 kg under \[inertia\].*one mass of one body, in kg.*kg\?"):
+        arm(tmp_path, True, "contains_inertia = true", mass=101.0 * MASS)
+
+
+def test_a_rate_that_is_the_mass_of_the_model_has_a_note(tmp_path: Path) -> None:
+    """Yr' = -m' of a table without inertia, by its U95; none where it is three U95 away."""
+    study = arm(tmp_path, True, "contains_inertia = false")
+    (file,) = study.parameter_files.values()
+    u95 = file.coefficient("Yr").u95
+
+    def notes(yr: float) -> list[Check]:
+        mine = replace(study, parameter_files={file.name: changed(file, Yr=yr)})
+        return [c for c in centres(mine) if c.severity is Severity.NOTE]
+
+    (found,) = notes(0.9 * u95 - MASS_PRIME)
+    assert "what the mass of the model alone gives, -0.01807" in found.statistic
+    assert "contains_inertia = true" in found.comment
+    assert notes(3.0 * u95 - MASS_PRIME) == []

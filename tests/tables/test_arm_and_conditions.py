@@ -20,7 +20,7 @@ from coeflab.law.symbols import MOTIONS
 from coeflab.study.checks.grids import finer, in_use
 from coeflab.tables.assumptions import CODE
 from coeflab.tables.force_table import COARSER, FINER, ForceTable
-from coeflab.tables.settings import read_settings
+from coeflab.tables.settings import Setting, read_settings, require_one_datum
 from tests.conftest import SECTIONS
 
 Read = Callable[..., ForceTable]
@@ -459,3 +459,10 @@ def test_one_unit_behind_three_numbers_is_that_of_all(key: str) -> None:
     said = read_settings(key, "-6.9, 0, 0.5 ft")[key]
     found = [v if isinstance(v, float) else quantity(str(v), "length") for v in said]
     assert found == pytest.approx([-2.10312, 0.0, 0.1524], abs=1e-12)
+
+
+def test_a_centre_of_gravity_names_its_datum_as_a_reference_point_does() -> None:
+    expected = {"axes.datum": "nose", "inertia.centre_of_gravity": [-2.95, 0.0, 0.0]}
+    assert read_settings("inertia.centre_of_gravity", "-2.95 from nose") == expected
+    with pytest.raises(InputError, match='places from "midship" and from "nose"'):
+        require_one_datum({"axes.datum": Setting("midship", "confirmed")}, expected)

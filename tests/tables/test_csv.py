@@ -150,7 +150,7 @@ def test_inertia_of_a_rotating_arm_flips_the_sign_of_suboff(read_table: Read) ->
 def test_inertia_taken_out_is_newtons_law_of_particles(read_table: Read) -> None:
     """Rows contain -sum(m a) of point masses on a steady screw motion; without inertia nothing is left."""
     rng = np.random.default_rng(3)
-    masses, places = np.ones(2) * 3.0, np.array([[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]])
+    masses, places = np.ones(2) * 32.0, np.array([[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]])
     cg = np.array([-1.7, 0.1, 0.2])
     reference = np.array([-2.0, 0.0, 0.0])
     nu = rng.normal(size=(4, 6))
@@ -164,7 +164,7 @@ def test_inertia_taken_out_is_newtons_law_of_particles(read_table: Read) -> None
             force -= m * acceleration
             moment -= m * np.cross(arm, acceleration)
         rows.append([*v, *w, *force, *moment])
-    inertia = "mass = 6.0\ncentre_of_gravity = [-1.7, 0.1, 0.2]\ninertia = [0.0, 1.5, 1.5]"
+    inertia = "mass = 64.0\ncentre_of_gravity = [-1.7, 0.1, 0.2]\ninertia = [0.0, 16.0, 16.0]"
     table = read_table(as_csv(NAMES, UNITS, np.array(rows)), inertia=inertia, table="contains_inertia = true")
     for component in COMPONENTS:
         np.testing.assert_allclose(table.forces[component], 0.0, atol=1e-12)

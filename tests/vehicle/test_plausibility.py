@@ -12,6 +12,7 @@ from coeflab.core.finding import Severity
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
 from coeflab.study.study import Study
+from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.plausibility import plausibility, stated_matrix
@@ -170,3 +171,25 @@ def test_tables_damp_where_no_derivative_does(name: str) -> None:
     driven = found(file.model_copy(update={"models": tuple(turned)}), Severity.WARN)
     assert driven["damping"].startswith("The tables drive")
     assert found(file.model_copy(update={"models": ()}), Severity.WARN)["damping"] == "Nothing damps."
+
+
+def typed(*numbers: str) -> ParameterFile:
+    return typed_file("auv", numbers, length="2 m", length_name="LOA", speed="1.5 m/s", density="1000", about="cg")
+
+
+@pytest.mark.parametrize("symbol", ["Xuu", "Xu|u|"])
+def test_a_drag_ahead_is_below_zero_by_either_name(symbol: str) -> None:
+    """8.3 kg/m pushes ahead at any speed u > 0; what of Xuu drives astern is no reason to fail the one that resists ahead."""
+    assert "drives the motion" in found(typed(f"{symbol}=8.3 N/(m/s)^2"))[f"{symbol}'"]
+    assert found(typed(f"{symbol}=-8.3 N/(m/s)^2")) == {}
+
+
+def test_products_with_u_damp() -> None:
+    """Yuv and Nur are Yv and Nr ahead: two terms damp, where nothing damped; a moment of sway alone still damps nothing."""
+
+    def damping(*numbers: str) -> list[str]:
+        return [c.statistic for c in plausibility(typed(*numbers)) if c.subject == "damping"]
+
+    assert damping("Yuv'=-0.03", "Nur'=-0.003", "Nuv'=-0.01") == ["2 terms of a motion on itself"]
+    assert damping("Nuv'=-0.01") == ["none of X0', Xu, Yv, Zw, Kp, Mq, Nr"]
+    assert damping("Yuv'=0.03") == []  # its own finding fails

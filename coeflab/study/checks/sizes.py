@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,9 +10,11 @@ import numpy as np
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.law.friction_line import friction_line
+from coeflab.law.scaling import NOBODYS
 from coeflab.law.symbols import primed
 
 if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
     from coeflab.law.coefficient import Coefficient
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.study.study import Study
@@ -31,7 +33,8 @@ TIGHTEST = 2.0  # r' = L/R: the centre of the circle lies within the body's own 
 LEAST_LEVER = (
     0.002  # largest moment of a sweep over its largest force and the length; shipped campaigns have 0.005 and more
 )
-NOBODYS = ("1 m", "unit length")  # lengths that are no body's
+UNITS_APART = 100.0  # a thousand from a tonne or a gram to the kilogram, with room for a flooded body
+ONE_MASS = 1.2  # of the mass of a model and that of its body: more is another body, or another state of it
 
 
 def least_friction(conditions: Conditions, scaling: Scaling) -> float:
@@ -60,6 +63,12 @@ def check(study: Study) -> Sequence[Check]:
     acts moves along the body over a sweep, so that the largest moment of all rows has one.
     """
     out = []
+    for table, stated, ratio in masses_of_models(study.tables, study.body):
+        if max(ratio, 1.0 / ratio) > ONE_MASS:
+            out.append(Check.of(
+                "sizes.mass", f"{table.campaign} mass", Severity.WARN, model=table.model_mass, stated=stated, ratio=ratio,
+                body=table.body, most=ONE_MASS - 1.0,
+            ))  # fmt: skip
     for table in study.tables:
         scaling = study.plan.scaling or table.scaling
         out += [*_rates(table, scaling), *_levers(table, scaling)]
@@ -78,6 +87,20 @@ def check(study: Study) -> Sequence[Check]:
                 each = ", ".join(f"{primed(c.symbol)} = {c.value:.2g} ({limit:.2g})" for c, limit in found.items())
                 out.append(Check.of(code, campaign, Severity.WARN, each=each, **at))
     return out
+
+
+def masses_of_models(tables: Iterable[ForceTable], body: Body | None) -> Iterator[tuple[ForceTable, float, float]]:
+    """A table of each campaign whose model's mass the body.toml has too, that mass, kg, and the model's over it.
+
+    Parameters
+    ----------
+    tables : iterable of ForceTable
+    body : Body or None
+    """
+    for table in {t.campaign: t for t in tables}.values():
+        named = None if body is None else body.configuration(table.body)
+        if table.model_mass is not None and named is not None and named.mass is not None:
+            yield table, named.mass.mass, table.model_mass / named.mass.mass
 
 
 def _rates(table: ForceTable, scaling: Scaling) -> list[Check]:

@@ -46,6 +46,7 @@ class _Plane:
     mass: float | None
     centre: float | None
     taken_out: bool | None
+    model: float | None
 
     @property
     def reach(self) -> float:
@@ -79,7 +80,8 @@ def check(study: Study) -> Sequence[Check]:
     out: list[Check] = []
     for name, file in study.parameter_files.items():
         for plane in _planes(study, name, file):
-            out += [c for c in (_drift(plane), _turning(plane), _damping(plane)) if c is not None]
+            found = _drift(plane), _turning(plane), _damping(plane), _contained(plane)
+            out += [c for c in found if c is not None]
     return out
 
 
@@ -95,8 +97,9 @@ def _planes(study: Study, name: str, file: ParameterFile) -> Iterator[_Plane]:
         given = [c if c is not None and c.value is not None and c.law == "motion" else None for c in found]
         rotary = next((c for c in given[2:] if c is not None), None)
         yield _Plane(
-            file, given[0], given[1], given[2], given[3], sign, mass, centre, _inertia_taken_out(study, rotary)
-        )
+            file, given[0], given[1], given[2], given[3], sign, mass, centre, _inertia_taken_out(study, rotary),
+            mass if file.mass is not None else _modelled(study, file, rotary),
+        )  # fmt: skip
 
 
 def _displaced(study: Study, name: str, file: ParameterFile) -> float | None:
@@ -112,6 +115,14 @@ def _inertia_taken_out(study: Study, c: Coefficient | None) -> bool | None:
     """None where no table of the study gives the value."""
     notes = [t.notes for t in study.tables if c is not None and c.table and t.name == c.table]
     return any(n.startswith(TAKEN_OUT) for n in notes[0]) if notes else None
+
+
+def _modelled(study: Study, file: ParameterFile, c: Coefficient | None) -> float | None:
+    """M' of the model that the table of a value was run with, where its campaign states it; of the file's primes."""
+    table = next((t for t in study.tables if c is not None and c.table == t.name), None)
+    if table is None or table.model_mass is None:
+        return None
+    return table.model_mass / file.scaling.unit("m", table.conditions.density)
 
 
 def _value(c: Coefficient | None) -> float:
@@ -183,6 +194,23 @@ def _damping(p: _Plane) -> Check | None:
     rule = f"{primed(c.symbol[:-1])}/{p.slope.symbol if p.slope else ''} from 0 to {furthest**2:.2f} L^2"
     near = [(w, v) for w, v in p.readings(c, prime) if fits(v)]
     return _doubted(p, c, f"{_value(c):.4g}, with m' xG' = {prime:.3g}", rule, near)
+
+
+def _contained(p: _Plane) -> Check | None:
+    """Yr and Zq of a table that is declared to be without inertia, and that are just what the model's mass would give."""
+    c = p.rate
+    if (
+        c is None
+        or c.u95 is None
+        or p.taken_out is not False
+        or not p.model
+        or abs(_value(c) + p.sign * p.model) > c.u95
+    ):
+        return None
+    return Check.of(
+        "viscous_centre.contained", f"{p.file.name} {c.symbol}", Severity.NOTE, symbol=c.symbol, value=_value(c), u95=c.u95,
+        mass=-p.sign * p.model, without=_value(c) + p.sign * p.model,
+    )  # fmt: skip
 
 
 def _placed(p: _Plane, x: float) -> str:
