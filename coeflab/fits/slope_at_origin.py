@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.axes import point_in_words
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
@@ -283,10 +284,9 @@ def _no_symmetry(sweep: Sweep) -> Finding:
     )  # fmt: skip
 
 
-def _moved(shift: float) -> dict[str, str]:
-    if not shift:
-        return {}
-    return {"swept about": f"a point {shift:+.6g} m forward, where the rotating runs do not drift; then moved back"}
+def _moved(shift: float, table: ForceTable) -> dict[str, str]:
+    """Of a table about the point of its sweeps, ``shift`` forward of the point of the coefficients."""
+    return {"swept about": point_in_words(table.reference_point, table.datum)} if shift else {}
 
 
 def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
@@ -424,7 +424,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         own = np.nan if ahead.u95 is None else (ahead.u95 / 2.0) ** 2
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
-        "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift),
+        "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift, first),
         sweeps=tuple(sweeps), straight=straight, findings=tuple(_no_symmetry(s) for s in sweeps if s.withdrawn is not None),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

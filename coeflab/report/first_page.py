@@ -26,7 +26,7 @@ from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
 from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.sections.campaign import anchor
+from coeflab.report.sections.campaign import anchor, moved_from
 from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.sections.stability import from_literature, no_index
 from coeflab.report.tables.models import quality
@@ -386,10 +386,11 @@ def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
 
 
 def _slope(study: Study, made: Answer) -> Figure | None:
-    """Of the first row that comes from a sweep."""
+    """Of the first row that comes from a sweep about the study's point: points of another point do not end at its value."""
     for r in made.rows:
-        at = next((f.sweep(r.symbol) for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
-        if at is not None and r.value is not None:
+        f = next((f for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
+        at = None if f is None else f.sweep(r.symbol)
+        if f is not None and at is not None and r.value is not None and not moved_from(f, at):
             return slope_figure(at, r, made.compared, r.published[0] if r.published else None)
     return None
 

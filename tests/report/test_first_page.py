@@ -12,7 +12,7 @@ import pytest
 from coeflab.cli import show
 from coeflab.cli.show import plain_lines
 from coeflab.core.finding import Severity
-from coeflab.core.table import in_digits_of, percent
+from coeflab.core.table import in_digits_of, percent, with_u95
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import first_page
 from coeflab.report.acceptance import Basis
@@ -501,3 +501,27 @@ def test_the_chip_of_validation_fails_with_what_it_counts(second: float, shown: 
     rows = (*table.rows[:1], replace(table.rows[1], basis=Basis.VALIDATION), *table.rows[2:])
     chip = next(c for c in answer(replace(made, tables=(replace(table, rows=rows),))).chips if c.name == "Validation")
     assert (chip.text, str(chip.severity)) == (shown, severity)
+
+
+def test_numbers_of_a_section_are_about_one_point_or_both_are_named():
+    """The value of a sweep about x = -0.3 m stands beside that of the study's point, with both points."""
+    study = small_study(FULL)
+    (fit,) = study.fits
+    here = replace(
+        fit, coefficients=fit.coefficients.about(fit.coefficients.reference_point + np.array([0.3, 0.0, 0.0])),
+        settings={"swept about": "x = -0.3 m from nose"},
+    )  # fmt: skip
+    moved = replace(study, fits=(here,))
+    parts = {s.title: " ".join(s.paragraphs) for s in every(document(moved, full=True).sections)}
+    swept = fit.coefficients["Nv"]
+    ours = here.coefficients["Nv"]
+    assert abs(ours.value - swept.value) > 3.0 * swept.u95
+    value, u95 = with_u95(swept.value, swept.u95)
+    assert f"Nv' about x = -0.3 m from nose = {value} +- {u95}: the value of this sweep" in parts["Nv'"]
+    assert f"= {with_u95(ours.value, ours.u95)[0]} +- " in parts["Nv'"].partition(":")[0]
+    assert "the value of this sweep" not in parts["Yv'"]  # no shift forward moves it
+    drawn = answer(moved, drawn=True).slope
+    assert drawn is not None
+    assert drawn.title.startswith("Yv'")
+    rows = replace(moved, plan=replace(moved.plan, wanted=("Nv",)))
+    assert answer(rows, drawn=True).slope is None

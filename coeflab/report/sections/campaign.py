@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
+from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
 from coeflab.core.table import Table, coefficient, percent, plus_minus, with_u95
 from coeflab.core.wording import listed
@@ -97,8 +98,8 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     text += [r.in_words for r in fit.straight]
     if "swept about" in fit.settings:
         text.append(
-            f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
-            "the study's reference point."
+            f"The rotating runs do not drift at {fit.settings['swept about']}: sweeps are about it, with their figures and "
+            "estimators; the coefficients in the tables are about the study's reference point."
         )
     return Section(
         place,
@@ -176,13 +177,20 @@ def _about(table: ForceTable) -> list[str]:
 def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Section:
     c = fit.coefficients[sweep.symbol]
     name = primed(sweep.symbol)
+    there = moved_from(fit, sweep)
+    about = f" about {point_in_words(fit.coefficients.reference_point, fit.coefficients.datum)}" if there else ""
     if c.value is None:
         text = [f"{name} has no value. {c.estimator} {c.status.advice}"]
     else:
         text = [
-            f"{name} = {plus_minus(c.value, c.u95)} (U95, {percent(c.u95, c.value)}; covers {tables.covers(study, [c])}): random part "
+            f"{name}{about} = {plus_minus(c.value, c.u95)} (U95, {percent(c.u95, c.value)}; covers {tables.covers(study, [c])}): random part "
             f"{percent(c.parts.random, c.value)}, form {percent(c.parts.model_form, c.value)}. {c.status.advice}".strip()
         ]
+    if there:
+        text.append(
+            f"{name} about {there} = {plus_minus(sweep.value or 0.0, sweep.u95)}: the value of this sweep, before it is moved to "
+            "the study's point. All that follows here, figures and tables, is about that point."
+        )
     if sweep.one_sided:
         text.append("All points lie on one side of zero: even and odd parts cannot be told apart.")
     text += _caveats(sweep)
@@ -200,6 +208,13 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
         figures.append(estimator_figure(sweep, published, f"{place}-estimators"))
     shown = filled(sweep_tables.sensitivity(sweep), sweep_tables.left_out(sweep), sweep_tables.estimators(sweep))
     return Section(place, name, tuple(text), shown, tuple(figures))
+
+
+def moved_from(fit: FitResult, sweep: Sweep) -> str:
+    """The point of a sweep whose value another point changes, in words; empty where its value is that of the coefficient."""
+    c = fit.coefficients[sweep.symbol]
+    same = sweep.value is None or (c.value is not None and bool(np.isclose(c.value, sweep.value, rtol=1e-9, atol=0.0)))
+    return "" if same else fit.settings.get("swept about", "the point at which its runs do not drift")
 
 
 def _caveats(sweep: Sweep) -> list[str]:
