@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from coeflab.core.table import ABSENT, Table, with_u95
-from coeflab.law.symbols import primed
 from coeflab.report.acceptance import MEANING
 from coeflab.report.document import Answer, AnswerRow
 from coeflab.report.figures.first_page import share_text
@@ -37,7 +36,7 @@ def answer_table(found: Answer) -> Table:
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     many = len(found.columns) > MOST_COLUMNS
-    rows = tuple((primed(r.symbol), *_cells(r, many), *((_bar(r),) if is_judged else ())) for r in found.rows)
+    rows = tuple((r.name, *_cells(r, many), *((_bar(r),) if is_judged else ())) for r in found.rows)
     headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     defined = (HALF_WIDTH,) if any(r.u95 for r in found.rows) else ()

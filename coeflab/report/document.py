@@ -19,9 +19,11 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Table, as_printed
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.core.version import VERSION
+from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.bench import BenchData
 from coeflab.study.study import Plan, Study
+from coeflab.tables.assumptions import FLAG
 
 Range = tuple[float, float]
 
@@ -217,6 +219,8 @@ class AnswerRow:
         Of the section that derives it; empty without one.
     printed : tuple of str
         The published values with the digits of their sources, empty for None; without these, as `as_printed` has them.
+    assumed : tuple of str
+        Keys that the value hangs on and that no source states: its name bears a star.
     """
 
     symbol: str
@@ -229,6 +233,12 @@ class AnswerRow:
     agrees: bool | None = None
     anchor: str = ""
     printed: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The symbol with its prime, and a star where the value hangs on something that no source states."""
+        return f"{primed(self.symbol)}{FLAG * bool(self.assumed)}"
 
     @property
     def shown(self) -> tuple[str | None, ...]:

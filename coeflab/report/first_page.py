@@ -31,6 +31,7 @@ from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.sections.stability import from_literature, no_index
 from coeflab.report.tables.models import quality
 from coeflab.report.tables.own_cfd import NO_RESULT
+from coeflab.report.tables.results import assumed_of
 from coeflab.study.lines import MEANING as MEANING_OF_LINE
 from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
@@ -141,6 +142,7 @@ def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
     row = AnswerRow(
         symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
         c.campaign or "", published, anchor=_place(study, c), printed=printed,
+        assumed=tuple(dict.fromkeys(str(f["key"]) for f in assumed_of(study, c))),
     )  # fmt: skip
     mine = judged.get((symbol, c.campaign))
     return _judged(row, mine if mine is not None and mine.coefficient.value == c.value else None)

@@ -20,6 +20,7 @@ from coeflab.report.tables.sources import halves
 from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
+from coeflab.tables.assumptions import FLAG
 from coeflab.vehicle.reference import Reference, Relation
 
 MOST_LETTERS, MOST_NAMED = 240, 4
@@ -67,6 +68,8 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
         out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}.{by}{'.' * bool(by)}")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
+    if keys := list(dict.fromkeys(k for r in rows for k in r.assumed)):
+        out.append(f"{FLAG.strip()} assumed, not stated by the source: {listed(keys)} (see Checks).")
     out += [*halves(study), *lost_by_move(study)]
     own = [r for r in rows if r.source in towed_rows]
     if own:

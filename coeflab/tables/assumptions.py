@@ -9,6 +9,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOMENTS, MOTIONS, derivative, primed
 
 CODE = "assumed.key"
+FLAG = " *"  # behind a coefficient that hangs on something which no source states
 
 
 class Moves(NamedTuple):

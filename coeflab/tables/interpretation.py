@@ -281,7 +281,11 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
 
 def accepted_without_source(found: Interpretation, settings: Settings) -> tuple[str, ...]:
     """Keys, and columns with a guessed unit, that were accepted although neither a person nor the file states them."""
-    keys = [k for k, one in settings.items() if one.assumed and (k not in OF_ARMS or k in found.about)]
+    of_coefficients = any(one.pure and one.role == "force" for one in found.mapping.values())  # the others have units
+    keys = [
+        k for k, one in settings.items()
+        if one.assumed and (k not in OF_ARMS or k in found.about) and (of_coefficients or not k.startswith("coefficients."))
+    ]  # fmt: skip
     units = {o.text for o in found.proposals if o.assumed}
     columns = [
         f"columns.{one.name}" for name, one in found.mapping.items() if name in found.accepted and str(one) in units

@@ -31,6 +31,8 @@ from coeflab.study.checks import coverage
 from coeflab.study.lines import NAME, line
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
+from coeflab.tables.assumptions import assumed as key
+from coeflab.tables.assumptions import carried
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
 from tests.report.studies import ENDLESS, FEW, FULL, HALF, HOSTILE, LENGTH, small_study
 from tests.report.test_acceptance_document import DRAWN, found
@@ -525,3 +527,21 @@ def test_numbers_of_a_section_are_about_one_point_or_both_are_named():
     assert drawn.title.startswith("Yv'")
     rows = replace(moved, plan=replace(moved.plan, wanted=("Nv",)))
     assert answer(rows, drawn=True).slope is None
+
+
+def test_the_first_page_stars_what_no_source_states():
+    study = small_study(FULL)
+    (fit,) = study.fits
+    here = replace(
+        fit,
+        findings=carried(
+            [key("axes.beta", fit.coefficients["Nv"].table, "v = -U sin(beta)")], [fit.coefficients["Nv"]]
+        ),
+    )
+    found = answer(replace(study, fits=(here,)), drawn=True)
+    assert {r.symbol: r.name for r in found.rows} == {"Yv": "Yv'", "Nv": "Nv' *", "Nr": "Nr'"}
+    line = "* assumed, not stated by the source: axes.beta (see Checks)."
+    assert line in found.notes
+    shown = answer_table(found)
+    assert [row[0] for row in shown.rows] == ["Yv'", "Nv' *", "Nr'"]
+    assert not any(r.assumed for r in answer(study).rows)

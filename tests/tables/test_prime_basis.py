@@ -132,3 +132,17 @@ def test_a_slope_of_three_times_low_aspect_ratio_warns(tmp_path: Path) -> None:
     right = drift(tmp_path, "LOA = 4 m, draught 0.25 m; 1/2 rho U^2 L^2", 16.0)
     done = invoke("import", right, "--out", tmp_path / "right", *KNOWN, "--accept")
     assert "three times" not in " ".join(done.output.split())
+
+
+def test_only_tables_of_coefficients_hang_on_what_a_prime_was_divided_by(tmp_path: Path) -> None:
+    """Of two files of one campaign one has primes by their name alone, the other newtons: the second assumes no area."""
+    (tmp_path / "in").mkdir()
+    drift(tmp_path / "in", "LOA = 4 m", 16.0)
+    w = np.sin(np.radians(BETA))
+    rows = [f"{a:g},1.5,{-300.0 * x:.6g},{200.0 * x:.6g}" for a, x in zip(BETA, w, strict=True)]
+    (tmp_path / "in" / "pitch.csv").write_text("\n".join(["alpha [deg],U [m/s],Z [N],M [Nm]", *rows]) + "\n")
+    known = (*KNOWN, "--set", "conditions.density=1000")
+    done = invoke("import", tmp_path / "in", "--out", tmp_path / "out", *known, "--accept")
+    assert done.exit_code == 0, done.output
+    found = {t.file: t.assumed for t in read_campaign(tmp_path / "out" / "campaign.toml").tables}
+    assert found == {"drift.csv": ("coefficients.area",), "pitch.csv": ()}

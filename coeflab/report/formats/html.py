@@ -198,7 +198,7 @@ def row_of(row: AnswerRow) -> Row:
     verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
     share = share_text(row.u95 / row.value) if row.u95 is not None and row.value else ABSENT
     return Row(
-        primed(row.symbol),
+        row.name,
         own,
         share,
         row.status or "no data" * (row.value is None),

@@ -12,7 +12,6 @@ from typing import NamedTuple
 from coeflab.core.table import ABSENT, Table, percent, plus_minus, with_u95
 from coeflab.core.text.bounded import own_text
 from coeflab.core.version import VERSION
-from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Section
 from coeflab.report.notation import DOT, GREEK, Command, Factor, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.report.printable import shortened, visible
@@ -122,9 +121,9 @@ def _wanted(answer: Answer) -> Table:
 
 def _ours(row: AnswerRow) -> tuple[str, str, str]:
     if row.value is None:
-        return primed(row.symbol), row.status or "no data", ABSENT
+        return row.name, row.status or "no data", ABSENT
     words = " ".join(filter(None, (plus_minus(row.value, row.u95), row.status)))
-    return primed(row.symbol), words, percent(row.u95, row.value)
+    return row.name, words, percent(row.u95, row.value)
 
 
 def _published(row: AnswerRow, answer: Answer) -> tuple[str, ...]:

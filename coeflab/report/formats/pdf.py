@@ -14,7 +14,6 @@ from coeflab.core.errors import OutputError
 from coeflab.core.table import Table, percent, plus_minus, says_one
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
-from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
@@ -151,7 +150,7 @@ def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
     published = [*row.shown, *[None] * columns][:columns]
     within = percent(row.u95, row.value) if row.value is not None and row.u95 is not None else ""
     return {
-        "symbol": _text(primed(row.symbol)),
+        "symbol": _text(row.name),
         "ours": _text(ours or NO_DATA),
         "open": row.value is None,
         "within": _text(within or (row.status if row.value is not None else "")),

@@ -20,7 +20,7 @@ from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
 from coeflab.study.checks import CHECKS
-from coeflab.tables.assumptions import CODE, depends
+from coeflab.tables.assumptions import CODE, FLAG, depends
 
 if TYPE_CHECKING:
     from coeflab.core.finding import Finding
@@ -51,9 +51,6 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
         f"{FLAG.strip()} {f.subject}: {words(f).statement}." for f in dict.fromkeys(f for some in flags for f in some)
     )
     return Table(result.title, result.headers, rows, (*phrases, *result.notes), result.left)
-
-
-FLAG = " *"  # behind a coefficient that hangs on something which no source states
 
 
 def assumed_of(study: Study, c: Coefficient) -> tuple[Finding, ...]:
