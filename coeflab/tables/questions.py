@@ -310,8 +310,8 @@ def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> 
         yield Question(
             HALF_MODEL, "Half of the body, whose forces are doubled: upper or lower of a cut at z = 0 (X, Y, N; Z, K, M are left out), "
             "starboard or port of one at y = 0 (X, Z, M; Y, K, N are left out). false: the forces are of the whole body, as they are "
-            "doubled already or no symmetry plane cuts the body", f"{across}{'; ' * bool(across)}upper or lower (cut at z = 0) or "
-            "starboard or port (y = 0): forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
+            "doubled already or no symmetry plane cuts the body", f"{across}{'; ' * bool(across)}starboard or port (y = 0), "
+            "upper or lower (z = 0): forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
         )  # fmt: skip
     cut = cut_of(half.value) if half is not None else None
     if cut is not None and cut.symmetry == UP_DOWN:
