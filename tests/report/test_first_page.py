@@ -545,3 +545,11 @@ def test_the_first_page_stars_what_no_source_states():
     shown = answer_table(found)
     assert [row[0] for row in shown.rows] == ["Yv'", "Nv' *", "Nr'"]
     assert not any(r.assumed for r in answer(study).rows)
+
+
+def test_a_value_of_open_sign_does_not_squeeze_the_bars_of_the_others():
+    rows = (AnswerRow("Yv", -0.03, 0.003), AnswerRow("Nv", -0.01, 0.002), AnswerRow("Kv", 1e-9, 4e-8))
+    frame = forest_figure(rows, (), "").panels[0].across
+    assert frame == pytest.approx((0.8 - 0.06 * 0.4, 1.2 + 0.06 * 0.4))
+    alone = forest_figure(rows[2:], (), "").panels[0].across
+    assert alone == pytest.approx((-1.0 - 0.24, 3.0 + 0.24))

@@ -212,9 +212,9 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
 
 
 def _reach(kept: Sequence[tuple[AnswerRow, float]]) -> Range:
-    """Range of the quotients, bars included, about 1."""
+    """Range of the quotients, bars included, about 1; beside others a value of open sign over itself, whose bar has an arrow, sets none."""
     ends = [1.0]
-    for r, by in kept:
+    for r, by in [(r, by) for r, by in kept if by != r.value or abs(by) > (r.u95 or 0.0)] or kept:
         ends += [p / by for p in r.published if p is not None]
         if r.value is not None:
             ends += [(r.value + k * (r.u95 or 0.0)) / by for k in (-1.0, 1.0)]
