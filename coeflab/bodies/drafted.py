@@ -99,24 +99,36 @@ def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:
         f"#   {f.name}: x = {f.root[0]:.4g}, chord {f.root_chord:.3g}, span {f.span:.3g}, {_stands(f)}" for f in foils
     ]
     for name, (way, axis, sense) in CONTROLS.items():
-        mine = [f for f in foils if f.root[0] < middle and _stands(f) == way]
-        if not mine:
-            continue
-        hinge = np.array(
-            [np.mean([f.root[0] - 0.25 * f.root_chord for f in mine]), *np.mean([f.stand for f in mine], axis=0)]
-        )
-        lines += [
-            "#",
-            f"# {'A rudder' if name == 'dr' else 'Stern planes'}: take the # away and state hinge and limit; rate may stay a comment.",
-            "# [[control]]",
-            f'# name = "{name}"',
-            f"# parts = [{', '.join(quoted(f.name) for f in mine)}]",
-            f"# hinge = {_point(hinge, nothing)}  # m, a point on the hinge; here half of the root chord",
-            f"# axis = {axis}  # {sense}",
-            '# limit = "LIMIT deg"',
-            '# rate = "RATE deg/s"  # without one the angle is there at once',
-        ]
+        tail = [f for f in foils if f.root[0] < middle]
+        mine, oblique = ([f for f in tail if _stands(f) == w] for w in (way, "oblique"))
+        groups = ([(mine, axis)] if mine else []) + [([f], _along_span(f, name)) for f in oblique]
+        for k, (fins, hinge) in enumerate(groups):
+            lines += _control(name, fins, hinge, sense, nothing, first=k == 0)
     return "\n".join(lines) + "\n"
+
+
+def _control(name: str, fins: Sequence[Foil], axis: str, sense: str, nothing: float, *, first: bool) -> list[str]:
+    """Comments of one ``[[control]]``."""
+    at = np.mean([(f.root[0] - 0.25 * f.root_chord, *f.stand) for f in fins], axis=0)
+    what = "A rudder" if name == "dr" else "Stern planes"
+    return [
+        "#",
+        *([f"# {what}: take the # away and state hinge and limit; rate may stay a comment."] if first else []),
+        "# [[control]]",
+        f'# name = "{name}"',
+        f"# parts = [{', '.join(quoted(f.name) for f in fins)}]",
+        f"# hinge = {_point(at, nothing)}  # m, a point on the hinge; here half of the root chord",
+        f"# axis = {axis}  # {sense}",
+        '# limit = "LIMIT deg"',
+        '# rate = "RATE deg/s"  # without one the angle is there at once',
+    ]
+
+
+def _along_span(foil: Foil, control: str) -> str:
+    """The hinge of an oblique fin: its span, in the sense in which dr turns about z and ds about y."""
+    way = (foil.tip - foil.root)[1:] / foil.span
+    y, z = way * np.sign(way[1 if control == "dr" else 0])
+    return f"[0.0, {y:.5g}, {z:.5g}]"
 
 
 def _stands(foil: Foil) -> str:

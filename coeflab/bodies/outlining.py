@@ -17,11 +17,13 @@ from coeflab.bodies.outline import Bluff, Foil, Outline, Propeller, RingWing, Se
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Part, Parts, Revolution
 from coeflab.bodies.thrusters import Thruster
+from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 
 STATIONS, SHARES, STEPS = 121, 33, 257
 SLENDER = 1.5  # length over breadth and depth: from here a part along x is a hull
 ALONG = np.cos(np.radians(15.0))  # a part's axis along x within
+ACROSS, OWN_SPAN = 0.2, 0.9  # cosine between a hinge and the span: below it turns nothing, above it turns all
 REACH = 1.25  # of the hull's radius: an appendage that begins within stands on it
 LIKE = {"bar": "box", "tube": "cylinder", "revolution": "ellipsoid", "finned": "mesh"}  # kinds of bluff parts
 NEAR = 0.03  # of the length: fins at one station
@@ -160,14 +162,37 @@ def with_controls(foils: Iterable[Foil], controls: Iterable[Control]) -> tuple[t
     result: list[Foil] = []
     left: list[str] = []
     known = tuple(controls)
+    aside: dict[str, list[str]] = {}
     for foil in foils:
-        own = [c for c in known if foil.name.removesuffix("_image") in c.parts]
         way = (foil.tip - foil.root)[1:] / foil.span
-        result.append(replace(foil, control=own[0].name, sign=float(own[0].axis[1:] @ way)) if own else foil)
-        left += [f"{foil.name} turns by {other.name} too, and counts with {own[0].name} alone" for other in own[1:]]
+        turns: dict[str, float] = {}
+        for one in (c for c in known if foil.name.removesuffix("_image") in c.parts):
+            sign = float(one.axis[1:] @ way)
+            if abs(sign) < ACROSS:
+                raise InputError(
+                    f"axis {_triple(one.axis)} of {one.name}, across the span of {foil.name}", "an axis along it", column="control.axis",
+                    advice=f"{_triple(np.array([0.0, *way]) * (np.sign(way[1 if one.name == 'dr' else 0]) or 1.0))} is: a fin turns about its span.",
+                )  # fmt: skip
+            if one.name in turns:
+                left.append(f"{foil.name} turns by {one.name} twice, and counts once")
+                continue
+            turns[one.name] = sign
+            if abs(sign) < OWN_SPAN:
+                aside.setdefault(one.name, []).append(f"{foil.name} by {abs(sign):.2f}")
+        (name, sign), *beside = turns.items() or (("", 1.0),)
+        result.append(replace(foil, control=name, sign=sign, beside=tuple(beside)) if turns else foil)
+    left += [
+        f"all of a turn by {name}, whose axis is not along the span: it turns {', '.join(parts)} of the angle; a [[control]] "
+        f"{name} a fin, with its axis along the span, turns it by all"
+        for name, parts in aside.items()
+    ]
     named = {foil.name.removesuffix("_image") for foil in result}
     left += [f"{part}, which {c.name} turns, is no foil" for c in known for part in c.parts if part not in named]
     return tuple(result), tuple(left)
+
+
+def _triple(v: Array) -> str:
+    return f"[{', '.join(f'{x + 0.0:.3g}' for x in v)}]"
 
 
 def with_propellers(outline: Outline, thrusters: Iterable[Thruster]) -> Outline:

@@ -252,7 +252,7 @@ def combined(
     scaling = body.scaling or _overall(body, outline)
     point = body.reference_point
     functionals = _functionals(
-        scaling.length, water.speed, tuple(dict.fromkeys(f.control for f in outline.foils if f.control))
+        scaling.length, water.speed, tuple(dict.fromkeys(name for f in outline.foils for name, _ in f.turns))
     )
     symbols = tuple(f.symbol for f in functionals)
     units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])

@@ -70,7 +70,8 @@ class FoilForce:
         The same per angle of its control.
     lifting, induced, cross : float
         Lift area of foil and hull, drag over lift by incidence, and force per 1/2 rho of cross velocity squared, m^2.
-    control : str
+    turns : tuple of (str, float)
+        Controls and the sign of each.
     density : float
     """
 
@@ -85,7 +86,7 @@ class FoilForce:
     lifting: float
     induced: float
     cross: float
-    control: str
+    turns: tuple[tuple[str, float], ...]
     density: float
 
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
@@ -96,7 +97,9 @@ class FoilForce:
         seen = local(nu, self.axis) @ self.normal
         rolling = local(nu, self.centre) @ self.normal - seen  # the hull carries none of a rolling foil's lift
         at_axis = np.where(astern, seen, local(nu, self.axis - behind) @ self.normal)
-        angle = angles.get(self.control, np.zeros(len(nu))) if self.control else np.zeros(len(nu))
+        angle = np.zeros(len(nu))
+        for control, sign in self.turns:
+            angle = angle + sign * angles.get(control, np.zeros(len(nu)))
         pressure, speed = 0.5 * self.density, np.abs(ahead)
         lift = speed * (self.own * (at_axis + rolling) + self.turned * ahead * angle)
         across = at_axis + rolling
@@ -123,10 +126,8 @@ class Wash:
         Unit normals of the foil ahead and of the group.
     area, roll : float
         Per 1/2 rho u and cross velocity: of the force, m^2, and of the moment about x by which the foils differ, m^3.
-    control : str
-        Of the foil ahead.
-    turned : float
-        Incidence of the foil ahead per angle of its control.
+    turned : tuple of (str, float)
+        Controls of the foil ahead, and its incidence per angle of each.
     density : float
     """
 
@@ -136,15 +137,14 @@ class Wash:
     normal: NDArray[np.float64]
     area: float
     roll: float
-    control: str
-    turned: float
+    turned: tuple[tuple[str, float], ...]
     density: float
 
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         across = local(nu, self.ahead) @ self.source
-        if self.control:
-            across = across + self.turned * nu[:, 0] * angles.get(self.control, np.zeros(len(nu)))
+        for control, turned in self.turned:
+            across = across + turned * nu[:, 0] * angles.get(control, np.zeros(len(nu)))
         pressure = 0.5 * self.density * np.maximum(nu[:, 0], 0.0) * across
         out = acting(self.area * pressure, self.normal, self.place)
         out[:, 3] += self.roll * pressure
@@ -217,15 +217,15 @@ def _of_foil(foil: Foil, group: FinGroup, flow: HullFlow | None, water: Water) -
     works = "whicker1958, pitts1957" + (", glauert1926" if foil.control and foil.flap < 1.0 else "")
     out = []
     whole = group.slope * foil.area * pressure * group.carried
-    effect = foil.sign * flap_effect(foil.flap) * whole / group.carried * group.turned if foil.control else 0.0
+    effect = flap_effect(foil.flap) * whole / group.carried * group.turned
     lift = FoilForce(
-        centre, axis, half, normal, whole * own, whole * (1.0 - own), 0.0, 0.0, whole, induced, 0.0, "", water.density
+        centre, axis, half, normal, whole * own, whole * (1.0 - own), 0.0, 0.0, whole, induced, 0.0, (), water.density
     )  # fmt: skip
     turned = FoilForce(
-        centre, axis, half, normal, 0.0, 0.0, effect * own, effect * (1.0 - own), whole, induced, 0.0, foil.control,
+        centre, axis, half, normal, 0.0, 0.0, effect * own, effect * (1.0 - own), whole, induced, 0.0, foil.turns,
         water.density,
     )  # fmt: skip
-    kinds = [("fin lift", lift, LIFT_SHARE)] + ([("control", turned, CONTROL_SHARE)] if foil.control else [])
+    kinds = [("fin lift", lift, LIFT_SHARE)] + ([("control", turned, CONTROL_SHARE)] if foil.turns else [])
     out += [
         Contribution(
             foil.name, kind, f"fins, {stream}", force, share, works, place, outside, EACH, lever, _named(group)
@@ -234,7 +234,7 @@ def _of_foil(foil: Foil, group: FinGroup, flow: HullFlow | None, water: Water) -
     ]
     for tips in TIPS:
         cross = cross_flow_drag(foil.tip_chord / foil.root_chord, tips) / group.aspect * foil.area * pressure
-        force = FoilForce(centre, axis, half, normal, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, cross, "", water.density)
+        force = FoilForce(centre, axis, half, normal, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, cross, (), water.density)
         out.append(
             Contribution(
                 foil.name, "fin cross-flow", f"fins, {tips}", force, DRAG_SHARE, "whicker1958", "C_Dc", outside
@@ -267,7 +267,8 @@ def _washes(
         half = 0.5 * (foil.root_chord + CENTRE * (foil.tip_chord - foil.root_chord))
         source = np.array([centre[0] - half, *foil.stand])
         place = np.array([behind.quarter, *behind.foils[0].stand])
-        effect = foil.sign * flap_effect(foil.flap) * ahead.turned / ahead.carried if foil.control else 0.0
+        effect = flap_effect(foil.flap) * ahead.turned / ahead.carried
+        turned = tuple((control, sign * effect) for control, sign in foil.turns)
         lift = ahead.slope * foil.area * ahead.carried * first
         strength = lift / (height - ahead.radius**2 / height)
         force, roll = _strips(behind, direction, height, strength * behind.slope * second)
@@ -277,7 +278,7 @@ def _washes(
             force = passed * behind.finite * second * normal
         area = float(np.linalg.norm(force))
         towards = force / area if area > 0.0 else normal
-        wash = Wash(source, place, normal, towards, area, roll, foil.control, effect, water.density)
+        wash = Wash(source, place, normal, towards, area, roll, turned, water.density)
         out.append(
             Contribution(
                 f"{_named(behind)} behind {foil.name}", "sidewash", "fins, boundary layer", wash, WASH_SHARE, "pitts1957",

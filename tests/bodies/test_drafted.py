@@ -114,12 +114,12 @@ def test_the_other_command_and_the_masses_of_its_comments_are_read(tmp_path: Pat
     assert rest
 
 
-def test_fins_ahead_or_oblique_are_named_and_no_control_is_drafted(tmp_path: Path) -> None:
+def test_fins_ahead_are_named_and_oblique_ones_of_the_tail_drafted_as_comments(tmp_path: Path) -> None:
     _, file = made(tmp_path, "submarine")  # a sail, and a tail in X
     text = file.read_text()
     assert "foil_upper: " in text
     assert text.count(", oblique\n") == 4
-    assert "[[control]]\n" not in text
+    assert text.count("# [[control]]\n") == text.count("[[control]]\n") == 8  # dr and ds of each fin; none of the sail
     assert np.isfinite(read_body(file).require_shape().volume)
 
 
@@ -151,3 +151,55 @@ def test_whatever_axes_unit_and_name_a_draft_has_it_reads_as_the_mesh_did(
     assert found.name == bare.name
     assert found.axes == bare.axes
     assert found.require_shape().centre_of_volume == pytest.approx(bare.shape.centre_of_volume, abs=1e-9)
+
+
+def oblique(folder: Path) -> Path:
+    """The draft of a torpedo that is rolled by 45 deg, completed: an X tail."""
+    mesh = folder / "x.stl"
+    whole = TWELVE["torpedo"]()
+    whole.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 4.0, [1.0, 0.0, 0.0]))
+    whole.export(mesh)
+    bare = mesh_body(str(mesh), "m", "FLU")
+    assert isinstance(bare.shape, TriangleMesh)
+    file = folder / "body.toml"
+    file.write_text(completed(drafted(bare, bare.shape, mesh, folder, "m", "FLU")))
+    return file
+
+
+def test_an_x_tail_is_offered_both_angles_a_fin_each(tmp_path: Path) -> None:
+    """Each fin turns about its span by all of dr, with dr right-handed about z, and by all of ds, right-handed about y."""
+    found = read_body(oblique(tmp_path))
+    assert [c.name for c in found.controls] == ["dr"] * 4 + ["ds"] * 4
+    signs = {f.name: dict(f.turns) for f in found.outline.foils}
+    expected = {
+        "foil_upper_starboard": {"dr": -1.0, "ds": 1.0}, "foil_upper_port": {"dr": -1.0, "ds": -1.0},
+        "foil_lower_starboard": {"dr": 1.0, "ds": 1.0}, "foil_lower_port": {"dr": 1.0, "ds": -1.0},
+    }  # fmt: skip
+    assert signs.keys() == expected.keys()
+    assert all(signs[n] == pytest.approx(expected[n], abs=0.01) for n in expected)
+    assert not [line for line in found.outline.left_out if "foil" in line]
+
+
+def test_a_hinge_across_its_fin_is_refused(tmp_path: Path) -> None:
+    """The normal of an oblique fin, written for its span: it had no effect, and nothing told why."""
+    file = oblique(tmp_path)
+    text = file.read_text()
+    at = text.index("axis = [", text.index('parts = ["foil_upper_starboard"]'))
+    wrong = text[:at] + "axis = [0.0, 0.7, 0.7]\n" + text[text.index("\n", at) + 1 :]
+    file.write_text(wrong)
+    with pytest.raises(
+        InputError,
+        match=r"0\.707, 0\.707\] of dr, across the span of foil_upper_starboard.*\[0, -0\.7\d*, 0\.7\d*\] is",
+    ):
+        _ = read_body(file).outline
+
+
+def test_a_turn_about_z_of_oblique_fins_counts_in_part_and_says_so(tmp_path: Path) -> None:
+    file = oblique(tmp_path)
+    head = file.read_text().partition("\n[[control]]")[0] + "\n"
+    fins = [f"foil_{a}_{b}" for a in ("upper", "lower") for b in ("starboard", "port")]
+    file.write_text(f'{head}[[control]]\nname = "dr"\nparts = {fins}\nhinge = [0, 0, 0]\naxis = [0, 0, 1]\n')
+    found = read_body(file).outline
+    assert [abs(f.sign) for f in found.foils if f.control] == pytest.approx([np.sqrt(0.5)] * 4, abs=0.01)
+    assert "by 0.71" in found.left_out[-1]
+    assert "along the span, turns it by all" in found.left_out[-1]

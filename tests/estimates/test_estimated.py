@@ -331,3 +331,36 @@ def test_fins_that_stand_off_their_planes_by_rounding_give_no_terms_across(cross
     turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(tilt), -np.sin(tilt)], [0.0, np.sin(tilt), np.cos(tilt)]])
     fins = tuple(replace(f, root=turn @ f.root, tip=turn @ f.tip) if f.control == "dr" else f for f in tail())
     assert estimates_of(outline(*fins)).coefficients.symbols == cross.coefficients.symbols
+
+
+def test_an_x_tail_has_root_two_of_a_cross() -> None:
+    """Four fins that turn about their spans: 4 cos 45 of one fin's lift in Y by dr, and as much in Z by ds; a cross has 2."""
+    half = np.sqrt(0.5)
+    ways = {
+        "upper_starboard": (half, -half),
+        "lower_starboard": (half, half),
+        "lower_port": (-half, half),
+        "upper_port": (-half, -half),
+    }
+
+    def slopes(*turning: str, share: float = 1.0, names: tuple[str, ...] = ("dr", "ds")) -> dict[str, float]:
+        foils = []
+        for name, way in ways.items():
+            turns = (
+                [(c, share * float(np.sign(way[1] if c == "dr" else way[0]))) for c in names] if name in turning else []
+            )
+            one = foil(name, way, -3.5, 0.1, 0.25, 0.2, *(turns[0] if turns else ()))
+            foils.append(replace(one, beside=tuple(turns[1:])))
+        found = estimates_of(outline(*foils))
+        return {c.symbol.removesuffix("'"): c.value for c in found.coefficients.coefficients}
+
+    cross = {c.symbol.removesuffix("'"): c.value for c in estimates_of(outline(*tail())).coefficients.coefficients}
+    whole, one = slopes(*ways), slopes("upper_starboard")
+    lift = np.hypot(one["Ydr"], one["Zdr"])
+    assert (whole["Ydr"], whole["Zds"]) == pytest.approx((4.0 * half * lift, -4.0 * half * lift), rel=1e-9)
+    assert (cross["Ydr"], cross["Zds"]) == pytest.approx((2.0 * lift, -2.0 * lift), rel=1e-9)
+    assert whole["Ndr"] / cross["Ndr"] == pytest.approx(np.sqrt(2.0), rel=1e-9)
+    assert whole["Mds"] / cross["Mds"] == pytest.approx(np.sqrt(2.0), rel=1e-9)
+    assert abs(whole.get("Zdr", 0.0)) < 1e-9 * whole["Ydr"]
+    assert slopes(*ways, share=half)["Ydr"] == pytest.approx(cross["Ydr"], rel=1e-9)  # turned about z: as a cross
+    assert slopes(*ways, names=("ds", "dr")) == pytest.approx(whole, rel=1e-9)

@@ -136,7 +136,19 @@ def test_the_part_along_x_of_a_turned_fin() -> None:
     x, speed, length = -0.6, 1.7, 1.4
     place, none = np.array([x, 0.0, 0.0]), np.zeros(3)
     fin = FoilForce(
-        place, place, 0.0, np.array([0.0, 1.0, 0.0]), own, 0.0, turned, 0.0, lifting, induced, 0.0, "dr", density
+        place,
+        place,
+        0.0,
+        np.array([0.0, 1.0, 0.0]),
+        own,
+        0.0,
+        turned,
+        0.0,
+        lifting,
+        induced,
+        0.0,
+        (("dr", 1.0),),
+        density,
     )
     assert STEERED["dr"] == ("v", "r")
     slope = 0.5 * density * speed * turned * (1.0 - 2.0 * induced * own / lifting)

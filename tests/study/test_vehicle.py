@@ -305,7 +305,10 @@ def test_shares_above_the_whole_are_explained_below_their_table(steered: Study) 
 
 def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
     table = manoeuvre_table(steered.manoeuvres, steered.shape.carried if steered.shape is not None else ())
-    assert {"turning circle: 12 deg of rudder from 2 m/s.", "zigzag: 10 deg of rudder from 2 m/s."} < set(table.notes)
+    assert {
+        "turning circle: 12 deg of rudder from 2 m/s, dr = -12 deg.",  # to starboard, as Ndr' < 0
+        "zigzag: 10 deg of rudder from 2 m/s, dr = -10 deg.",
+    } < set(table.notes)
     assert any("--manoeuvre zigzag" in note for note in table.notes)
     first = answer(steered)
     one = answer(replace(steered, shape=replace(steered.shape, missing=("no thruster",))))

@@ -214,13 +214,15 @@ def _degrees(angle: float | str) -> str:
 
 
 def _how(made: Simulation) -> str:
-    """From which speed and by what a manoeuvre goes, for example ``15 deg of rudder from 2 m/s``."""
+    """From which speed and by what a manoeuvre goes, for example ``15 deg of rudder from 2 m/s, dr = -15 deg``."""
     speed = float(made.manoeuvre.velocity[0])
     if made.manoeuvre.name == "stop":
         down = made.manoeuvre.phases[0].until
         return f"thrust off at {speed:g} m/s, until {down.value if down is not None else 0.0:g} m/s are left"
-    angle = abs(made.manoeuvre.phases[0].orders.get("dr", 0.0))
-    return f"{_degrees(angle)} of rudder from {speed:g} m/s" if angle else f"unequal thrusters from {speed:g} m/s"
+    angle = made.manoeuvre.phases[0].orders.get("dr", 0.0)
+    if not angle:
+        return f"unequal thrusters from {speed:g} m/s"
+    return f"{_degrees(abs(angle))} of rudder from {speed:g} m/s, dr = {_degrees(angle)}"
 
 
 def _held(moves: Sequence[Simulation]) -> tuple[str, ...]:

@@ -98,7 +98,7 @@ def outline_table(outline: Outline) -> Table:
         rows.append(row(h, "hull", -np.trapezoid(h.girth, h.x), size, round(float(h.x[0]), 9)))
     for f in outline.foils:
         size = f"span {f.span:.3g}, chords {f.root_chord:.3g} to {f.tip_chord:.3g}, t/c {f.thickness:.2g}"
-        rows.append(row(f, "foil", f.area, size, f.root[0], f.control))
+        rows.append(row(f, "foil", f.area, size, f.root[0], ", ".join(name for name, _ in f.turns)))
     for r in outline.rings:
         size = f"diameter {r.diameter:.3g}, chord {r.chord:.3g}, t/c {r.thickness:.2g}"
         rows.append(row(r, "ring", np.pi * r.diameter * r.chord, size, r.centre[0]))
