@@ -164,7 +164,7 @@ def merged(
     lengths = _lengths(base, other, own or other.scaling)
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
     scaled = _scaled(base, other, own or other.scaling)
-    notes = (*result.provenance.notes, *sums, *([lengths] if lengths and not scaled else []))
+    notes = (*result.provenance.notes, *sums, *([lengths] if lengths else []))
     findings = (*(f for f in result.findings if f.code != LEFT_OUT), *lost, *scaled)
     update = {
         "findings": findings,
