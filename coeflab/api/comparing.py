@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from coeflab.api.questions import above_zero
 from coeflab.core.keywords import all_spoken
 from coeflab.core.missed import suggesting
 from coeflab.core.table import Table as Shown
+from coeflab.core.types import in_angles
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
@@ -37,6 +39,10 @@ class Comparison(plain.Comparison):
     >>> cf.compare("remus100", "remus100").disagrees
     False
     """
+
+    def __repr__(self) -> str:
+        verdicts = Counter(r.verdict.value for r in self.rows)
+        return in_angles(self, f"{self.a}, {self.b}: {', '.join(f'{n} {v}' for v, n in verdicts.items())}")
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: both values and U95, difference, combined U95, verdict; primed by the first one's length.

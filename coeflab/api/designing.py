@@ -21,6 +21,7 @@ from coeflab.core.files import shipped, typed
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting
+from coeflab.core.types import in_angles
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.motion.uncertainty.tests import Kind
@@ -54,6 +55,12 @@ class NextTests(plain_tests.NextTests):
     >>> str(found.tests[0].kind), found.tests[0].symbols, found.tests[0].wanted_then < found.u95
     ('rotating arm, yaw', ("Yr'",), True)
     """
+
+    def __repr__(self) -> str:
+        then = ", ".join(f"{t.kind} {t.wanted_then:.2g}" for t in self.tests if t.variable)
+        return in_angles(
+            self, f"{self.wanted} {self.value:.4g} +- {self.u95:.2g}; U95 then: {then or 'no test of one variable'}"
+        )
 
     def frame(self) -> pd.DataFrame:
         """A row a run: test, setting (rad, or r'), its unit.
@@ -103,7 +110,7 @@ def next_tests(
     tables: Any = None,
     runs: int = 7,
     target: float | str | None = None,
-    noise: float | str = 0.01,
+    noise: float | str | None = None,
     angle: float | str = "12 deg",
     control: float | str = "15 deg",
     rate: float = 0.4,
@@ -129,8 +136,9 @@ def next_tests(
         Of each test; 3 to 24 where nothing was run.
     target : float or str, optional
         U95 that is wanted: a share of the value, ``"10%"``.
-    noise : float or str
-        Standard deviation of a reading over the largest reading, where nothing was run.
+    noise : float or str, optional
+        Standard deviation of a reading over the largest reading, where nothing was run; unless given that of the rows of the
+        same component, else 1 %.
     angle, control : float or str
         Largest drift or attack, and largest control angle, of a test that was not run.
     rate : float
@@ -173,6 +181,8 @@ def next_tests(
     if tables is not None:
         fitted += [tables if isinstance(tables, Result) else fit(tables)]
     sweeps = [s for r in fitted for f in r.fits for s in f.sweeps]
+    joint = [r for r in fitted if r.tables and not any(f.sweeps for f in r.fits)]
+    beside = [s for r in joint for f in fit(list(r.tables)).fits for s in f.sweeps]
     measured = [c for r in fitted for f in r.fits for c in f.coefficients.coefficients]
     valued = [c for c in measured if c.value is not None]
     known = {c.symbol.removesuffix("'"): c for c in (*measured, *held, *reversed(valued))}
@@ -185,9 +195,10 @@ def next_tests(
         sweeps,
         ranges,
         runs,
-        share_of(noise, "noise"),
+        None if noise is None else share_of(noise, "noise"),
         target=goal,
         computed=computed,
+        beside=beside,
         given=_given(kind, name, [c for r in fitted for f in r.fits for c in f.campaigns]),
     )
     return NextTests(**{f.name: getattr(found, f.name) for f in fields(plain_tests.NextTests)})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +11,10 @@ import numpy as np
 
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.api.questions import three
+from coeflab.core.errors import InputError, shown
 from coeflab.core.keywords import all_spoken
 from coeflab.core.missed import suggesting
-from coeflab.core.options import described
+from coeflab.core.options import described, parse_options
 from coeflab.core.table import Table as Shown
 from coeflab.core.types import in_angles
 from coeflab.motion.manoeuvre import Figure, Simulation
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from coeflab.motion.uncertainty.uncertainty import Carried
 
 NAMES = ("time [s]", "north [m]", "east [m]", "down [m]", "roll [rad]", "pitch [rad]", "heading [rad]",
          "u [m/s]", "v [m/s]", "w [m/s]", "p [rad/s]", "q [rad/s]", "r [rad/s]", "speed [m/s]")  # fmt: skip
@@ -55,7 +57,9 @@ class Motion(Mapping[str, Figure]):
     simulation: Simulation
 
     def __repr__(self) -> str:
-        figures = ", ".join(f"{f.name} {f.value:.4g} {f.unit}" for f in self.values() if f.value is not None)
+        figures = ", ".join(
+            f"{f.name} {f.value:.4g}{'' if f.u95 is None else f' +- {f.u95:.2g}'} {f.unit}" for f in self.values() if f.value is not None
+        )  # fmt: skip
         name = f"{self.simulation.manoeuvre.name} of {self.simulation.vehicle.name}"
         return in_angles(self, f"{name}: {figures or 'no figure determined'}")
 
@@ -180,6 +184,8 @@ def simulate(
     simulator: str = "rigid_body",
     tables: bool = False,
     accelerations: str = "measured",
+    draws: int = 0,
+    seed: int = 1,
     **options: Any,
 ) -> Motion:
     """A manoeuvre of a vehicle.
@@ -201,6 +207,8 @@ def simulate(
     tables : bool
         Fitted tables come before derivatives.
     accelerations : {"measured", "computed"}
+    draws, seed : int
+        Of the coefficients with their covariance, 40 or more: every figure gets its interval, ``low``, ``high`` and ``u95``.
     **options
         Of the manoeuvre, SI and rad or with a unit: ``rudder="20 deg"``, ``speed=1.5``.
 
@@ -211,7 +219,7 @@ def simulate(
     Raises
     ------
     InputError
-        An option that the manoeuvre has not or cannot take, a motion that the file does not know.
+        An option that the manoeuvre has not or cannot take, a motion that the file does not know; draws of a file without U95.
 
     Examples
     --------
@@ -224,8 +232,9 @@ def simulate(
     how = {k: v for k, v in given.items() if v is not None}
     if len(current):
         how |= dict(zip(("north", "east", "down"), three(current, "speed", "current").tolist(), strict=True))
+    parameters = parameters_of(vehicle)
     found = carried_out(
-        parameters_of(vehicle),
+        parameters,
         manoeuvre,
         options,
         how,
@@ -235,4 +244,26 @@ def simulate(
         tables=tables,
         accelerations=accelerations,
     )
-    return Motion(found)
+    if not draws:
+        return Motion(found)
+    if simulator != "rigid_body":
+        raise InputError(f"draws by {shown(simulator)}", "the simulator rigid_body", column="draws")
+    from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
+
+    water = three(current, "speed", "current").tolist() if len(current) else (0.0, 0.0, 0.0)
+    parsed = asdict(parse_options(MANOEUVRES.load(manoeuvre).Options, options, manoeuvre))
+    asked = {k: v for k, v in parsed.items() if k in options}
+    question = Question(
+        manoeuvre, asked, draws, seed, free=free, hold=hold, tables=tables, accelerations=accelerations, current=tuple(water)
+    )  # fmt: skip
+    return Motion(_with_intervals(found, uncertainty(parameters, question)))
+
+
+def _with_intervals(found: Simulation, carried: Carried) -> Simulation:
+    known = {s.figure.name: s for s in carried.spreads}
+    figures = [
+        f if (s := known.get(f.name)) is None else replace(f, low=s.low, high=s.high, why=f.why or ("" if s.low is not None else s.why))
+        for f in found.figures
+    ]  # fmt: skip
+    statements = tuple(dict.fromkeys((*found.statements, *carried.statements)))
+    return replace(found, figures=tuple(figures), statements=statements)

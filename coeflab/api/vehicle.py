@@ -223,6 +223,38 @@ class Vehicle:
         )
         return linear_model(steady, also, lags)
 
+    def equipped(
+        self, *, rudder: str = "", stern_planes: str = "", bow_planes: str = "", thrusters: str | Sequence[str] = ()
+    ) -> Vehicle:
+        """The vehicle with other limits and rates of its controls, or other thrusters; its coefficients stay.
+
+        Parameters
+        ----------
+        rudder, stern_planes, bow_planes : str
+            Limit and rate, ``"25 deg, 40 deg/s"``, or the limit alone.
+        thrusters : str or sequence of str
+            As of `coeflab.vehicle`; they take the place of all that it has.
+
+        Raises
+        ------
+        InputError
+            What is no angle, rate or thruster.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> auv = cf.read_vehicle("remus100").equipped(rudder="12 deg, 30 deg/s")
+        >>> [(s.control, round(s.limit, 4)) for s in auv.file.surfaces]
+        [('dr', 0.2094)]
+        """
+        driven = typed_thrusters([thrusters] if isinstance(thrusters, str) else thrusters, self.file.conditions)
+        fins = typed_surfaces(rudder, stern_planes, bow_planes)
+        if not driven and not fins:
+            return self
+        held = tuple(s for s in self.file.surfaces if s.control not in {f.control for f in fins})
+        update = {"thrusters": driven or self.file.thrusters, "surfaces": (*held, *fins)}
+        return Vehicle(self.file.model_copy(update=update))
+
     def trim(self, **asked: Any) -> Trim:
         """A steady motion; see `coeflab.trim`."""
         return trim(self, **asked)
@@ -379,13 +411,7 @@ def vehicle(
         base = merged(base, other, called, own).parameters
     if numbers:
         base = merged(base, stated_beside(base, _read(numbers)), called, base.scaling).parameters
-    driven = typed_thrusters([thrusters] if isinstance(thrusters, str) else thrusters, base.conditions)
-    fins = typed_surfaces(rudder, stern_planes, bow_planes)
-    held = tuple(s for s in base.surfaces if s.control not in {f.control for f in fins})
-    return Vehicle(
-        base.model_copy(update={"thrusters": driven or base.thrusters, "surfaces": (*held, *fins)})
-        if driven or fins else base
-    )  # fmt: skip
+    return Vehicle(base).equipped(rudder=rudder, stern_planes=stern_planes, bow_planes=bow_planes, thrusters=thrusters)
 
 
 def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:

@@ -21,7 +21,7 @@ def command(
     table: list[str],
     runs: int = 7,
     target: str = "",
-    noise: str = "1%",
+    noise: str = "",
     angle: str = "12 deg",
     control: str = "15 deg",
     rate: float = 0.4,
@@ -47,7 +47,7 @@ def command(
         placeable(to)
     with show.narrated():
         found = cf.next_tests(
-            source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise, angle=angle, control=control, rate=rate,
+            source, wanted, tables=table or None, runs=runs, target=target or None, noise=noise or None, angle=angle, control=control, rate=rate,
             manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
         )  # fmt: skip
     if to is not None:

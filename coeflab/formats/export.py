@@ -17,7 +17,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.missed import suggesting
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.types import Array, brief, in_angles, locking
 from coeflab.core.wording import file_stem
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.rigid_body import momentum_force
@@ -218,8 +218,7 @@ def apart(theirs: Array, ours: Array) -> Apart:
     )
 
 
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Loss:
     """What one target makes of one parameter file.
 
@@ -264,6 +263,13 @@ class Loss:
     at_points: tuple[LawAtPoints, ...] = ()
     controls: tuple[str, ...] = ()
     rare: Apart | None = None
+
+    def __repr__(self) -> str:
+        what, share = self.furthest
+        gone = len(self.lost) + len(self.not_held)
+        return in_angles(
+            self, f"{self.target}: {gone or 'nothing'} lost, {what} within {share:.2g}, {len(self.changes)} changes"
+        )
 
     @property
     def worst(self) -> Array:
@@ -534,8 +540,7 @@ def unheld(
 
 
 @suggesting
-@brief
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Export:
     """Files by name, and what is lost. Names of files and folders are made of the parameter file's by `file_stem`.
 
@@ -557,6 +562,10 @@ class Export:
     files: Mapping[str, bytes]
     loss: Loss | None
     citations: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        how = "lossless" if self.lossless else "with losses"
+        return in_angles(self, f"{self.parameters} for {self.target}, {how}: {', '.join(self.files)}")
 
     @property
     def lossless(self) -> bool:

@@ -218,7 +218,9 @@ def propulsion(parameters: ParameterFile) -> str:
     nu[0, 0] = speed
     thrust = -float(motion_law(parameters)[0].force(nu)[0, 0])
     needed = f": {thrust:.4g} N along x keep {speed:g} m/s straight ahead" if thrust > 0.0 else ""
-    return f"propulsion is not in the export{needed}"
+    if parameters.thrusters:
+        return f"propulsion is not in the export{needed}"
+    return f"the file has no thruster, so the export has no propulsion{needed}"
 
 
 def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) -> tuple[str, ...]:

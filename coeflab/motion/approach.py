@@ -100,6 +100,11 @@ def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> floa
     return angle
 
 
+def reached(vehicle: Vehicle, control: str, usual: float) -> float:
+    """The usual angle of a control, or its limit where that is less."""
+    return min([usual, *(s.limit for s in vehicle.surfaces if s.control == control)])
+
+
 def at_once(vehicle: Vehicle, phases: Sequence[Phase]) -> tuple[str, ...]:
     """Which control surfaces follow their orders at infinite rate, in words: those ordered whose rate the file does not state."""
     ordered = {c for p in phases for c in p.orders}

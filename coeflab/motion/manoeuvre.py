@@ -153,7 +153,8 @@ class Figure:
     why : str
         In words, where the status is not ok or the figure leans on motions that no data cover.
     low, high : float or None
-        95 % interval from the uncertainty of the coefficients, where it was computed.
+        95 % interval from the uncertainty of the coefficients; None where no draws were asked for: ``draws=200`` of
+        `coeflab.simulate`, or `coeflab uncertainty`. Where draws gave no interval, ``why`` says the reason.
     """
 
     name: str
@@ -164,6 +165,16 @@ class Figure:
     why: str = ""
     low: float | None = None
     high: float | None = None
+
+    @property
+    def u95(self) -> float | None:
+        """Half of the 95 % interval; None where there is none."""
+        return None if self.low is None or self.high is None else (self.high - self.low) / 2.0
+
+    def __repr__(self) -> str:
+        value = self.status if self.value is None else f"{self.value:.4g} {self.unit}"
+        interval = "no interval" if self.u95 is None else f"95 % {self.low:.4g} to {self.high:.4g}"
+        return in_angles(self, f"{self.name}: {value}, {interval}{'' if self.status == 'ok' else f' ({self.status})'}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -17,15 +17,16 @@ from coeflab.fits.statistics.designs import FINAL, Response, designed, predicted
 from coeflab.fits.statistics.origin_slope import OriginSlope, curve, curve_spread, estimate
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import ANGULAR, CONTROLS, derivative, primed
-from coeflab.motion.uncertainty.tests import Kind, kind_of
+from coeflab.motion.uncertainty.draws import uncertain
+from coeflab.motion.uncertainty.tests import Kind, kind_of, tests_of
 from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
 SEEN = 0.01  # of the variance: tests that hold less are left out
 LEVELS = 12
 MEMBERS = 200
+NOISE = 0.01  # of the largest reading, where no row shows any
 FEWEST, MOST = 3, 24
 
 
@@ -125,6 +126,10 @@ class NextTests:
         Symbols whose curve comes from a parameter file or an estimate, without rows.
     given : Finding or None
         What the question was asked of.
+    correlated : bool
+        Whether coefficients have a covariance, which U95 and shares then take into account.
+    of_rows : mapping of component to float
+        Scatter of one reading, primed, that rows of the component show and runs of another sweep of it are taken to have.
     """
 
     wanted: str
@@ -135,6 +140,8 @@ class NextTests:
     noise: float | None
     assumed: tuple[str, ...]
     given: Finding | None = None
+    correlated: bool = False
+    of_rows: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -142,7 +149,9 @@ class NextTests:
         out = [] if self.given is None else [self.given]
         out += [Finding.of("design.predicted", self.wanted, Severity.NOTE, draws=FINAL)]
         if sum(len(t.symbols) for t in self.tests) > 1:
-            out += [Finding.of("design.independent", self.wanted, Severity.NOTE)]
+            out += [
+                Finding.of("design.correlated" if self.correlated else "design.independent", self.wanted, Severity.NOTE)
+            ]
         out += [
             Finding.of("design.fixed", symbol, Severity.WARN, statistic=share, threshold=0.5)
             for t in self.tests for symbol, share in zip(t.symbols, t.fixed) if share > 0.5
@@ -158,6 +167,7 @@ class NextTests:
                     symbols=self.assumed,
                 )
             ]
+        out += [Finding.of("design.scatter", c, Severity.NOTE, statistic=v) for c, v in self.of_rows.items()]
         if self.target is not None:
             severity = Severity.PASS if self.reached is Reached.YES else Severity.WARN
             out += [
@@ -184,12 +194,17 @@ class NextTests:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A figure, and how its variance divides among coefficients: symbol without prime to (share, U95 now)."""
+    """A figure, and how its variance divides among coefficients: symbol without prime to (share, U95 now).
+
+    Where errors of coefficients go together (``correlated``), a test's share is what knowing all its coefficients takes off, and
+    shares that overlap are scaled to the whole.
+    """
 
     name: str
     value: float
     u95: float
     shares: Mapping[str, tuple[float, float]]
+    correlated: bool = False
 
 
 def of_symbol(coefficient: Coefficient) -> Wanted:
@@ -210,7 +225,7 @@ def of_symbol(coefficient: Coefficient) -> Wanted:
 
 
 def of_index(parameters: ParameterFile, name: str) -> Wanted:
-    """G_h or G_v by first-order shares of its four coefficients, without their covariance.
+    """G_h or G_v, first order, with the covariance of its four coefficients.
 
     Raises
     ------
@@ -226,29 +241,46 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
         )  # fmt: skip
     values = [float(c.value or 0.0) for c in found]
     mass = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
-    steps = index_gradient(values[0], values[1], values[2], values[3], *mass) * np.array(
-        [float(c.u95 or 0.0) for c in found]
-    )
-    variance = steps**2 / float(steps @ steps)
+    varied = uncertain(parameters, ())
+    at = [varied.symbols.index(str(s)) for s in symbols]
+    covariance = 4.0 * varied.covariance[np.ix_(at, at)]
+    felt = covariance @ (gradient := index_gradient(values[0], values[1], values[2], values[3], *mass))
+    variance = float(gradient @ felt)
+    known = {str(s): float(f**2 / v / variance) for s, f, v in zip(symbols, felt, np.diag(covariance), strict=True)}
+    by_test = {}
+    for test, those in tests_of(tuple(known)).items():
+        own = [list(known).index(s) for s in those]
+        by_test[test] = float(felt[own] @ np.linalg.pinv(covariance[np.ix_(own, own)]) @ felt[own]) / variance
     slope, lever, rate, damping = (np.array(v) for v in values)
     value = float(stability_index(slope, lever, rate, damping, *mass))
-    shares = {
-        str(s).removesuffix("'"): (float(v), float(c.u95 or 0.0))
-        for s, v, c in zip(symbols, variance, found, strict=True)
-    }
-    return Wanted(name, value, float(np.sqrt(steps @ steps)), shares)
+    apart = bool(np.any(covariance - np.diag(np.diag(covariance))))
+    return Wanted(name, value, variance**0.5, _divided(known, by_test, parameters), apart)
+
+
+def _divided(
+    known: Mapping[str, float], by_test: Mapping[str, float], parameters: ParameterFile
+) -> dict[str, tuple[float, float]]:
+    """Shares and U95 by symbol: each test's share divided as its symbols' own, and all scaled where they overlap."""
+    out: dict[str, tuple[float, float]] = {}
+    for test, symbols in tests_of(tuple(known)).items():
+        total = sum(known[s] for s in symbols)
+        for s in symbols:
+            c = parameters.coefficient(s)
+            if c is not None and c.u95 and total > 0.0:
+                out[s.removesuffix("'")] = (known[s] / total * by_test.get(test, total), c.u95)
+    most = max(1.0, sum(share for share, _ in out.values()))
+    return {s: (share / most, u95) for s, (share, u95) in out.items()}
 
 
 def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wanted:
-    """A figure of a manoeuvre, by draws that are independent: each share is what would go if that coefficient were known.
+    """A figure of a manoeuvre, by draws of the file's coefficients with their covariance, as `coeflab uncertainty` has it.
 
     Raises
     ------
     InputError
         No such figure, or one without an interval.
     """
-    apart = parameters.model_copy(update={"covariance": ParameterCovariance(symbols=(), matrix=())})
-    carried = uncertainty(apart, question)
+    carried = uncertainty(parameters, question)
     near = [s for s in carried.spreads if s.figure.name.casefold().startswith(name.casefold())]
     if not near:
         figures = ", ".join(s.figure.name for s in carried.spreads)
@@ -262,19 +294,16 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
             f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="--for"
         )
     importance = next(i for i in carried.importances if i.figure == found.figure.name)
-    shares = {}
-    for symbol, share in importance.known:
-        c = parameters.coefficient(symbol)
-        if c is not None and c.u95:
-            shares[symbol.removesuffix("'")] = (share, c.u95)
-    most = max(1.0, sum(share for share, _ in shares.values()))
-    shares = {symbol: (share / most, u95) for symbol, (share, u95) in shares.items()}
-    return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, shares)
+    known = {s: v for s, v in importance.known if parameters.coefficient(s) is not None}
+    apart = np.array(carried.varied.covariance)
+    np.fill_diagonal(apart, 0.0)
+    shares = _divided(known, dict(importance.tests) if apart.any() else {}, parameters)
+    return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, shares, bool(apart.any()))
 
 
 def next_tests(
-    wanted: Wanted, coefficients: Sequence[Coefficient], sweeps: Sequence[Sweep], ranges: Ranges, runs: int, noise: float,
-    *, target: float | None = None, computed: bool = False, given: Finding | None = None,
+    wanted: Wanted, coefficients: Sequence[Coefficient], sweeps: Sequence[Sweep], ranges: Ranges, runs: int, noise: float | None,
+    *, target: float | None = None, computed: bool = False, given: Finding | None = None, beside: Sequence[Sweep] = (),
 ) -> NextTests:  # fmt: skip
     """Tests by what they take off the variance of a figure, each with the settings of its best runs.
 
@@ -288,14 +317,17 @@ def next_tests(
     ranges : Ranges
     runs : int
         Of each test.
-    noise : float
-        Of one reading over the reading at the largest setting, where nothing was run.
+    noise : float, optional
+        Of one reading over the reading at the largest setting, where nothing was run; unless given that of the rows of the same
+        component, else `NOISE`.
     target : float, optional
         U95 that is wanted.
     computed : bool
         Runs repeat the same number, so no setting twice.
     given : Finding, optional
         What the question was asked of.
+    beside : sequence of Sweep
+        Of rows behind a joint fit, whose scatter alone counts.
 
     Raises
     ------
@@ -310,6 +342,8 @@ def next_tests(
     known = {c.symbol.removesuffix("'"): c for c in coefficients}
     ran = {s.symbol: s for s in reversed(sweeps) if s.parity == "odd" and s.value is not None}
     assumed: list[str] = []
+    scatter = {c: v for c, v in _scatter((*beside, *ran.values())).items() if noise is None}
+    of_rows: dict[str, float] = {}
     out = []
     for (kind, variable), symbols in groups.items():
         share = sum(wanted.shares[s][0] for s in symbols)
@@ -324,8 +358,13 @@ def next_tests(
         responses = []
         for s in slopes:
             own, now = wanted.shares[s]
-            responses.append(_response(s, variable, ran.get(s), known, ranges, noise, own / now**2))
-            assumed += [] if s in ran else [primed(s)]
+            of_component = scatter.get(derivative(s).component)
+            responses.append(
+                _response(s, variable, ran.get(s), known, ranges, noise or NOISE, of_component, own / now**2)
+            )
+            if s not in ran and of_component is not None:
+                of_rows[derivative(s).component] = of_component
+            assumed += [] if s in ran or of_component is not None else [primed(s)]
         rows = len(responses[0].x)
         if not rows and runs < FEWEST:
             raise InputError(f"{runs} runs of {kind}, of which none was run", f"{FEWEST} or more", column="--runs")
@@ -347,7 +386,8 @@ def next_tests(
         raise InputError(f"{wanted.name}, on which no coefficient with U95 acts", "another figure", column="--for")
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
     return NextTests(
-        wanted.name, wanted.value, wanted.u95, ranked, target, noise if assumed else None, tuple(assumed), given
+        wanted.name, wanted.value, wanted.u95, ranked, target, (noise or NOISE) if assumed else None, tuple(assumed), given,
+        wanted.correlated, of_rows,
     )  # fmt: skip
 
 
@@ -363,8 +403,17 @@ def _present(sweep: Sweep) -> OriginSlope:
     return estimate(sweep.x, sweep.y, sweep.se, odd=bool(sweep.symmetry))
 
 
+def _scatter(sweeps: Iterable[Sweep]) -> dict[str, float]:
+    """Of one reading of each component that was run, primed: the median of its sweeps."""
+    found: dict[str, list[float]] = {}
+    for s in sweeps:
+        found.setdefault(s.component, []).append(_present(s).noise)
+    return {c: float(np.median(v)) for c, v in found.items()}
+
+
 def _response(
-    symbol: str, variable: str, sweep: Sweep | None, known: Mapping[str, Coefficient], ranges: Ranges, noise: float, weight: float
+    symbol: str, variable: str, sweep: Sweep | None, known: Mapping[str, Coefficient], ranges: Ranges, noise: float,
+    scatter: float | None, weight: float,
 ) -> Response:  # fmt: skip
     if sweep is not None:
         present = _present(sweep)
@@ -386,7 +435,7 @@ def _response(
         return slope * x + bend * x * np.abs(x)
 
     largest = float(np.abs(expected(ranges.levels(variable))).max())
-    return Response(expected, noise * largest, weight)
+    return Response(expected, noise * largest if scatter is None else scatter, weight)
 
 
 def _levels(variable: str, ranges: Ranges, sweep: Sweep | None) -> Array:

@@ -27,7 +27,7 @@ from coeflab.vehicle.parameter_parts import ParameterCovariance
 if TYPE_CHECKING:
     from coeflab.law.scaling import Scaling
 
-SAME_LENGTH = 1e-3  # of the length
+SAME_LENGTH, ONE_BODY = 1e-3, 0.1  # of the length: one length; two lengths of one body, such as LBP and LOA
 SCALED_UNSAID = "parameter_file.scaled"  # SI values of a person who did not say what they do at other speeds
 
 
@@ -163,8 +163,9 @@ def merged(
         result = _joined(base, other, covariance, many, entries, replaced, name)
     lengths = _lengths(base, other, own or other.scaling)
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
+    scaled = _scaled(base, other, own or other.scaling)
     notes = (*result.provenance.notes, *sums, *([lengths] if lengths else []))
-    findings = (*(f for f in result.findings if f.code != LEFT_OUT), *lost)
+    findings = (*(f for f in result.findings if f.code != LEFT_OUT), *lost, *scaled)
     update = {
         "findings": findings,
         "law_at_points": points_of(result),
@@ -233,6 +234,19 @@ def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:
         f"lengths differ: the numbers of {other.name} are by {own}, the vehicle's by {base.scaling}. The numbers are converted, as of one body "
         "with two lengths; those of a scale model would be wrong: make the vehicle at the model's size"
     )
+
+
+def _scaled(base: ParameterFile, other: ParameterFile, own: Scaling) -> tuple[Finding, ...]:
+    """That both lengths are hardly of one body."""
+    ours = base.scaling.length
+    if max(own.length / ours, ours / own.length) <= 1.0 + ONE_BODY:
+        return ()
+    return (
+        Finding.of(
+            "merge.scaled", other.name, Severity.WARN, statistic=(own.length / ours) ** 2, threshold=ONE_BODY,
+            theirs=own.length, ours=ours,
+        ),
+    )  # fmt: skip
 
 
 Entry = tuple[Coefficient, int, int]  # a coefficient, from which of both files, and its row there

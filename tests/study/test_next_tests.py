@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,10 @@ import coeflab as cf
 from coeflab.core.errors import InputError
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.motion.uncertainty.tests import Kind, kind_of
-from coeflab.study.next_tests import Ranges, Reached, Wanted, next_tests, of_index
+from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
+from coeflab.study.next_tests import Ranges, Reached, Wanted, next_tests, of_index, of_manoeuvre
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.stability import stability_index
 
 
@@ -44,7 +47,75 @@ def file() -> ParameterFile:
     return cf.vehicle("suboff_bare_hull", mass=700.0).file
 
 
+def apart(file: ParameterFile) -> ParameterFile:
+    return file.model_copy(update={"covariance": ParameterCovariance(symbols=(), matrix=())})
+
+
+def test_u95_of_g_h_is_that_of_its_covariance_and_a_test_takes_what_its_coefficients_tell(file: ParameterFile) -> None:
+    """By 400,000 linear draws; as if independent it was .61 times that."""
+    found, four = of_index(file, "G_h"), ["Yv'", "Nv'", "Yr'", "Nr'"]
+    place = [file.covariance.symbols.index(s) for s in four]
+    covariance = np.array(file.covariance.matrix, dtype=float)[np.ix_(place, place)]
+    mass = file.mass
+    assert mass is not None
+    at = np.array([float(c.value or 0.0) for s in four if (c := file.coefficient(s)) is not None])
+    steps = 1e-6 * np.eye(4)
+    more = mass.mass_prime, mass.mass_moment_prime
+    slope = (
+        np.array([float(stability_index(*(at + s), *more) - stability_index(*(at - s), *more)) for s in steps]) / 2e-6
+    )
+    assert found.u95 == pytest.approx(2.0 * np.sqrt(slope @ covariance @ slope), rel=1e-4)
+    assert found.u95 > 1.5 * of_index(apart(file), "G_h").u95 > 0.0
+    assert (found.correlated, of_index(apart(file), "G_h").correlated) == (True, False)
+    draws = np.random.default_rng(1).multivariate_normal(np.zeros(4), covariance, 400_000)
+    index = draws @ slope
+    gone, shares = [], []
+    for pair in (["Yv", "Nv"], ["Yr", "Nr"]):
+        own = draws[:, [four.index(f"{s}'") for s in pair]]
+        left = index - own @ np.linalg.lstsq(own, index, rcond=None)[0]
+        gone.append(1.0 - np.var(left) / np.var(index))
+        shares.append(sum(found.shares[s][0] for s in pair))
+    assert sum(gone) > 1.9  # either test tells of the other's coefficients: both together take no more than all
+    assert shares == pytest.approx([g / sum(gone) for g in gone], abs=0.005)
+
+
+def test_u95_of_a_figure_is_that_of_uncertainty(file: ParameterFile) -> None:
+    """The coefficients' errors go together here; as if independent, it was another."""
+    bare = cf.read_vehicle("remus100").file
+    some = [c if c.value is None else replace(c, u95=0.1 * abs(c.value)) for c in bare.coefficients]
+    pair = ("Nuv'", "Nur'")
+    half = [0.05 * abs(float(c.value or 0.0)) for s in pair if (c := bare.coefficient(s)) is not None]
+    cells = np.outer(half, half) * np.array([[1.0, 0.9], [0.9, 1.0]])
+    together = ParameterCovariance(symbols=pair, matrix=tuple(map(tuple, cells.tolist())))
+    model = bare.model_copy(update={"coefficients": tuple(some), "covariance": together})
+    asked = Question("turning_circle", {"rudder": "10 deg"}, members=60)
+    spread = next(s for s in uncertainty(model, asked).spreads if s.figure.name == "tactical diameter")
+    found = of_manoeuvre(model, "tactical", asked)
+    assert found.u95 == pytest.approx((float(spread.high or 0.0) - float(spread.low or 0.0)) / 2.0, rel=1e-12)
+    assert found.correlated
+    assert abs(found.u95 / of_manoeuvre(apart(model), "tactical", asked).u95 - 1.0) > 0.05
+
+
+def test_rows_of_a_joint_fit_give_the_scatter_of_what_is_assumed() -> None:
+    """The model has no sweeps; 1 % of the largest was assumed, four times what the rows of Roddy show."""
+    result = cf.fit("suboff_roddy_2", "manoeuvring_model")
+    found = cf.next_tests(result, "Yv'", runs=4)
+    assert (found.noise, found.assumed) == (None, ())
+    rows = [s for s in cf.fit("suboff_roddy_2").fits[0].sweeps if s.component == "Y" and s.parity == "odd"]
+    rms = [float(np.std((s.y - s.fitted)[s.used])) for s in rows]
+    assert 0.5 * min(rms) < found.of_rows["Y"] < 3.0 * max(rms)
+    assert [f.code for f in found.findings if f.code in ("design.scatter", "design.assumed")] == ["design.scatter"]
+    own = cf.next_tests(result, "Yv'", runs=4, noise="1%")
+    assert (own.noise, own.assumed, own.of_rows) == (0.01, ("Yv'",), {})
+    wide, curves = Wanted("Yv'", -0.02, 1.0, {"Yv": (1.0, 1.0)}), [coefficient("Yv'", -0.02, 1.0)]
+    sweeps = cf.fit("suboff_roddy_2").fits[0].sweeps
+    shown, loud = (next_tests(wide, curves, (), Ranges(), 5, n, beside=sweeps).best for n in (None, 0.2))
+    assert shown < 0.5 * loud
+
+
 def test_shares_of_g_h_are_its_gradients(file: ParameterFile) -> None:
+    """Of coefficients without covariance."""
+    file = apart(file)
     found = of_index(file, "G_h")
     at = {s: float(c.value or 0.0) for s in ("Yv", "Nv", "Yr", "Nr") if (c := file.coefficient(f"{s}'")) is not None}
     mass = file.mass

@@ -31,7 +31,8 @@ class Options:
     Attributes
     ----------
     rudder
-        Angle without sign; the sense that turns to the asked side is found from the coefficients.
+        Angle without sign; the sense that turns to the asked side is found from the coefficients. Unless given, the limit of a
+        rudder that goes less far than 15 deg.
     side
         Side that the vehicle turns to.
     speed
@@ -62,7 +63,8 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         orders = approach.thruster_orders(vehicle, o.commands)
         phase = Phase("turning", orders, o.longest, done)
         return Manoeuvre(NAME, (phase,), nu, statements=("thrusters as commanded from time zero",))
-    angle = approach.within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder")
+    angle = o.rudder if "rudder" in options else approach.reached(vehicle, "dr", o.rudder)
+    angle = approach.within_limit(vehicle, "dr", angle, f"{NAME}.rudder")
     order = angle * sign * approach.turning_sense(vehicle, "dr", "r", float(nu[0]))
     orders, words = approach.propulsion(vehicle, float(nu[0]))
     rudder = f"rudder {np.degrees(order):+.4g} deg turns to {o.side} by the coefficients of the file"

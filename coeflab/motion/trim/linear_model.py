@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
 from coeflab.core.missed import suggesting
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, brief, in_angles
 from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
 from coeflab.motion.trim.trim import PLACES, Trim
@@ -75,8 +75,7 @@ class Mode:
 
 
 @suggesting
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LinearModel:
     """Small departures x of the states and d of the commands from a steady motion: x_dot = A x + B d.
 
@@ -104,6 +103,11 @@ class LinearModel:
     modes: tuple[Mode, ...]
     statements: tuple[str, ...]
     remarks: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        names = (", ".join(v.name for v in which) for which in (self.states, self.commands))
+        first = f", least stable {self.modes[0].eigenvalue:.3g} 1/s" if self.modes else ""
+        return in_angles(self, f"{self.vehicle}: states {next(names)}; commands {next(names)}{first}")
 
     @property
     def A(self) -> Array:  # noqa: N802 - as every textbook has it

@@ -9,7 +9,7 @@ from enum import Enum
 import numpy as np
 
 from coeflab.core.table import Table, number
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, in_angles
 from coeflab.motion.dynamics import Growth
 from coeflab.motion.trim.solver import HOLDS, Found, Problem, solve
 
@@ -76,8 +76,7 @@ class Equation:
     size: float
 
 
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class OperatingPoint:
     """Result of `operating_point`.
 
@@ -118,6 +117,19 @@ class OperatingPoint:
     def dimension(self) -> int:
         """How many parameters the family of solutions has; zero for isolated ones."""
         return int(self.found.family.shape[1])
+
+    @property
+    def family(self) -> tuple[Mapping[str, float], ...]:
+        """How solutions of a family go on from this one: a direction a parameter, every unknown by name, the largest scaled change one."""
+        scale = np.array([u.scale for u in self.unknowns])
+        return tuple(
+            {u.name: float(x) for u, x in zip(self.unknowns, d / np.max(np.abs(d / scale)), strict=True)}
+            for d in self.found.family.T
+        )
+
+    def __repr__(self) -> str:
+        found = ", ".join(f"{u.name} {u.shown(x, 4)}" for u, x in zip(self.unknowns, self.found.point, strict=True))
+        return in_angles(self, f"{self.outcome.value}: {found}")
 
     @property
     def values(self) -> Mapping[str, float]:

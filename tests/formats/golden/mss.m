@@ -15,7 +15,7 @@ function [tau, MA, h] = file(nu, delta)
 % Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:
 %   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control
 % tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).
-% propulsion is not in the export: 6.75 N along x keep 1.5 m/s straight ahead.
+% the file has no thruster, so the export has no propulsion: 6.75 N along x keep 1.5 m/s straight ahead.
 % for a simulation in six degrees of freedom the file lacks mass (h.m), mass.inertia_matrix (h.I11 ... h.I33) and hydrostatics (h.volume h.g h.xB h.yB h.zB).
 %
 % Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,
