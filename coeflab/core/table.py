@@ -356,7 +356,17 @@ class Check:
 
     @classmethod
     def of(cls, code: str, subject: str, severity: Severity, **facts: Any) -> Check:
-        """A check by the code of its words, which begins with its name; facts as `Finding.of` takes them."""
+        """A check by the code of its words, which begins with its name.
+
+        Parameters
+        ----------
+        code : str
+            As `Finding.of` takes it.
+        subject : str
+        severity : Severity
+        **facts
+            As `Finding.of` takes them.
+        """
         return as_check(code.partition(".")[0], Finding.of(code, subject, severity, **facts))
 
     def __repr__(self) -> str:

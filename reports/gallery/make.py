@@ -13,6 +13,7 @@ from pathlib import Path
 from coeflab.api.documents import report_of, studied, written
 from coeflab.bodies.simplify.source import subject
 from coeflab.core.files import shipped, write_atomically
+from coeflab.fits import BY_DEFAULT
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
 from coeflab.report.figures.estimator import estimator_figure
@@ -21,7 +22,7 @@ from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.checking import checked
 from coeflab.study.estimated_vehicle import asked, from_shape
-from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.plan import table_at
 from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedTow, Study
 from coeflab.tank.campaign import SIX
@@ -62,7 +63,7 @@ def of_tow() -> Study:
     title, campaign = "DARPA SUBOFF bare hull, towed by OpenFOAM", shipped("cfd_data") / TOW
     body = shipped("geometry") / "suboff_bare_hull" / "body.toml"
     tows = (PlannedTow(title, body.parent.name, TOW, added=campaign),)
-    return run(Plan(TOW, title, (table_at(campaign, DEFAULT_FITS),), body=body, wanted=SIX, tows=tows))
+    return run(Plan(TOW, title, (table_at(campaign, BY_DEFAULT),), body=body, wanted=SIX, tows=tows))
 
 
 def made(name: str) -> Mapping[str, bytes]:
