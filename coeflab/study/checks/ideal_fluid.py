@@ -54,6 +54,6 @@ def _of_file(parameters: ParameterFile, shares: dict[str, dict[str, float]], one
         return []
     bad = Severity.FAIL if one else Severity.WARN
     return [Check.of(
-        "ideal_fluid.one_matrix", parameters.name, bad if apart else Severity.PASS, apart=listed(apart), symbols=listed(found),
+        "ideal_fluid.one_matrix", parameters.name, bad if apart else Severity.PASS, apart=listed(apart or [""]), symbols=listed(found),
         match="bad" if apart else "good", within="" if one else " within U95",
     )]  # fmt: skip
