@@ -159,7 +159,7 @@ def test_area_and_length_of_coefficients_are_said_once(tmp_path: Path, monkeypat
         "coefficients.area=0.2 m^2; axes.frame=FRD; axes.beta=-; axes.reference_point=nose; scaling.length=4 LOA; "
         "conditions.density=1000; conditions.speed=2; table.centre=starboard; table.contains_inertia=true"
     )
-    answers = [first, "inertia.mass=10; inertia.centre_of_gravity=0", ""]
+    answers = [first, "inertia.mass=64; inertia.centre_of_gravity=0", ""]
     done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     assert 'CN = "N [coefficient A=0.2 m^2 L=4.0 m]"' in (tmp_path / "out" / "mapping.toml").read_text()

@@ -34,6 +34,7 @@ BRANCHES = {
     ("cli/added_mass.py", "method", "panel"): "walls are options of that one method",
     ("report/sections/estimates.py", "manoeuvre", "stop"): "words of a headline that the option alone does not give",
     ("vehicle/parameter_file.py", "reader", "arm"): "a body.toml of an application that the vehicle may not import",
+    ("api/motion.py", "simulator", "rigid_body"): "draws are marched together, which that simulator alone can",
 }
 
 
