@@ -20,7 +20,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
-from coeflab.tables.assumptions import assumed
+from coeflab.tables.assumptions import INERTIA, assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
 from coeflab.tables.force_table import DRIVEN, FEWEST_SPEEDS, Declared, Exclusion, ForceTable, running_rows
@@ -166,6 +166,7 @@ SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 HALF = "half model"
+WITHOUT_BALANCE = ("cfd", "synthetic", "estimate")  # kinds of tables whose forces no balance read
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -279,13 +280,17 @@ def _assumed(
     words |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
     words["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
     keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
-    keys += ["table.arm_point"] * (table.arm_point is None and bool(np.any(motion["q"]) or np.any(motion["r"])))
+    turns = bool(np.any(motion["q"]) or np.any(motion["r"]))
+    keys += ["table.arm_point"] * (table.arm_point is None and turns)
     for key in dict.fromkeys(keys):
         section, _, plain = key.partition(".")
         value = words.get(key) or getattr(of.get(section), plain, "")
         if section == "columns":
             value = columns.headers.get(plain, plain)
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
+    if turns and table.contains_inertia is False and campaign.source.kind not in WITHOUT_BALANCE:
+        mass, severity = ("unknown", Severity.WARN) if campaign.inertia is None else ("known", Severity.NOTE)
+        yield Finding.of(INERTIA, name, severity, mass=mass, motions=("q", "r"), components=())
     still = np.all([columns.velocity.get(c, 0.0) == np.zeros(len(columns)) for c in LINEAR], axis=0)
     if "U" not in columns.headers and surge_column(campaign) in columns.velocity and np.any(still):
         yield Finding.of(
