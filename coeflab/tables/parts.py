@@ -289,7 +289,7 @@ def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...]
                 f"more than {MOST} tables", "a table of means with a row a condition, or runs that an importer knows", file=path,
                 advice="Records over time are averaged first, or read by --as NAME (coeflab formats importers).",
             )  # fmt: skip
-    if not found:
+    if not found or (wanted and left):
         if left:
             raise InputError(
                 "no table of forces over settings", "tables with a row a condition, or runs of a solver", file=path,
