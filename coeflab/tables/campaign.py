@@ -154,7 +154,7 @@ HALVES = {"starboard": PORT_STARBOARD, "port": PORT_STARBOARD, "upper": UP_DOWN,
 HALF_WORDS = 'true or false, or which half: "starboard" or "port" of a cut at y = 0, "upper" or "lower" of one at z = 0'
 
 
-def cut_of(half: bool | str) -> Cut | None:
+def cut_of(half: bool | str | None) -> Cut | None:
     """The cut of a half model, for which ``true`` is one at y = 0; None of a whole one."""
     if not half:
         return None
@@ -360,7 +360,7 @@ class CampaignHead(takes.Declaration):
     title: takes.Text
     body: takes.Text
     importer: takes.Words = "csv"
-    half_model: HalfModel = False
+    half_model: HalfModel | None = None
     symmetry: Annotated[tuple[str, ...], SYMMETRY_WORDS] = ()
     appendages: takes.Anything = None
     reynolds: takes.Anything = None
@@ -521,7 +521,7 @@ class Campaign:
     reference_point: NDArray[np.float64]
     scaling: Scaling
     conditions: Conditions
-    half_model: bool | str
+    half_model: bool | str | None
     inertia: TowedInertia | None
     source: Source
     tables: tuple[TableDeclaration, ...]

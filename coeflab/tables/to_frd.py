@@ -208,11 +208,15 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(f"rates from U and R, centre of the circle: {table.centre}")
     if table.arm_point is not None and np.any(table.arm_point != point):
         notes.append(f"U and velocities are those of {_place(table.arm_point)}, moved from there")
-    half = campaign.half_model if table.half_model is None else table.half_model
+    half, place = (
+        (campaign.half_model, "campaign.toml") if table.half_model is None else (table.half_model, "its table")
+    )
+    if half is not None:
+        done = f"{', '.join(c.doubled)} doubled" if (c := cut_of(half)) else "nothing doubled"
+        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {done}, by half_model of {place}")
     if (cut := cut_of(half)) is not None:
         _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
