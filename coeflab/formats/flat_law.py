@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.domain import SLACK, Domain, Extrapolation
 from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm
@@ -103,9 +103,7 @@ def feet(hull: Domain) -> tuple[Array, Array]:
     bounds = -(hull.spaces[:, d] + hull.spaces[:, :d] @ hull.low)[: len(length)] / length
     normals = normals / length[:, None]
     if comb(len(normals), min(d, len(normals))) > MOST_CORNERS:
-        raise InputError(
-            f"a hull of {len(normals)} half-spaces in {d} variables", "one of fewer corners", column="models"
-        )
+        raise input_error("formats.hull_of_many_corners", column="models", count=len(normals), d=d)
     touched: list[frozenset[int]] = []
     for rows in combinations(range(len(normals)), d):
         at = list(rows)
@@ -200,9 +198,7 @@ def flat_law(parameters: ParameterFile) -> FlatLaw:
         at = np.ix_(free, free)
         whole = (rigid + water_inertia(parameters).matrix)[at]
         if not np.linalg.eigvalsh((whole + whole.T) / 2.0)[0] > 0.0:
-            raise InputError(
-                "an inertia M + M_A that is not positive definite", "positive masses and inertias", column="added_mass"
-            )
+            raise input_error("formats.inertia_of_c_not_positive", column="added_mass")
         inverse[at] = np.linalg.inv(whole)
         if h is not None:
             weight, lift = mass.mass * h.gravity, parameters.conditions.density * h.gravity * h.volume

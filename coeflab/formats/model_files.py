@@ -13,6 +13,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
@@ -70,7 +71,7 @@ def recognised(path: Path) -> str:
     refuse_shape(path)
     text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
-        raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")
+        raise input_error("formats.zero_byte", path)
     if text.lstrip().startswith("{"):
         return OWN
     importers = {name: PARAMETER_IMPORTERS.load(name) for name in PARAMETER_IMPORTERS.usable()}

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, together
+from coeflab.core.errors import together
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import ABSENT, Table
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.units import SI
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
@@ -217,7 +218,9 @@ def collect_groups(
     else:
         fits = {s.name: [p for p in named_by if p and p.conditions(s.name) is not None] for s in summaries}
         complaints = [
-            InputError(f"{len(fits[s.name]) or 'no'} of the patterns fit{'s' * (not fits[s.name])} it", "one", file=s.name)
+            input_error(
+                "tables.several_patterns_fit", s.name, count=len(fits[s.name]) or "no", ending="s" * (not fits[s.name])
+            )
             for s in summaries if len(fits[s.name]) != 1 and (fits[s.name] or s.status.has_numbers)
         ]  # fmt: skip
         if complaints:
@@ -226,10 +229,8 @@ def collect_groups(
     out = []
     for pattern, group in zip(named_by, groups, strict=True):
         if not group:
-            raise InputError(
-                f"no run of the pattern {pattern.text if pattern else ''}",
-                f"names such as {named(list(found)[:3])}",
-                file=path,
+            raise input_error(
+                "tables.no_run_of_pattern", path, pattern=pattern.text if pattern else "", some=named(list(found)[:3])
             )
         out.append(_collected(path, chosen, group, pattern, listed_runs, matched, again))
     return tuple(out)
@@ -527,10 +528,7 @@ def _by_name(rows: Sequence[RunSummary]) -> bool:
     """Whether the columns go by their own names, in all runs alike."""
     kinds = {r.by_name: r.name for r in rows if r.means}
     if len(kinds) > 1:
-        raise InputError(
-            f"named components in {kinds[False]} and columns of other names in {kinds[True]}", "the same columns in all runs",
-            advice="Collect them into tables of their own.",
-        )  # fmt: skip
+        raise input_error("tables.named_and_other_components", components=kinds[False], names=kinds[True])
     return True in kinds
 
 
@@ -570,7 +568,7 @@ def _unit_of(rows: Sequence[RunSummary], component: str) -> str:
             units.setdefault(r.units[component], r.name)
     if len(units) > 1:
         some = " and ".join(f"[{u}] in {name}" for u, name in units.items())
-        raise InputError(f"{component} in {some}", "one unit for all runs", column=component)
+        raise input_error("tables.several_units", column=component, component=component, some=some)
     return next(iter(units), "")
 
 
@@ -593,15 +591,15 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], dict[str, st
                 continue
             differing[key] = f"{_five(before.value)} in {name}, {_five(one.value)} in {r.name}"
             if key.startswith(ONE_FOR_ALL):
-                complaints.append(InputError(
-                    f"{before.value} in {name} ({before.place}) and {one.value} in {r.name} ({one.place})",
-                    "one value for all runs of a table", key=key, advice="Collect them into tables of their own.",
+                complaints.append(input_error(
+                    "tables.several_values", key=key, value=before.value, name=name, place=before.place, other=one.value, another=r.name,
+                    other_place=one.place,
                 ))  # fmt: skip
     halves = {HALF_MODEL in r.stated: r for r in rows if r.status.has_numbers}
     if len(halves) > 1:
-        complaints.append(InputError(
-            f"a symmetry plane in {halves[True].name} ({halves[True].stated[HALF_MODEL].contradicted}) and none in {halves[False].name}",
-            "half of the body in all runs of a table, or in none", key=HALF_MODEL, advice="Collect them into tables of their own.",
+        complaints.append(input_error(
+            "tables.some_halves", key=HALF_MODEL, half=halves[True].name, contradicted=halves[True].stated[HALF_MODEL].contradicted,
+            whole=halves[False].name,
         ))  # fmt: skip
     if complaints:
         raise together(complaints)

@@ -15,6 +15,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import toml_text, value
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
@@ -171,10 +172,9 @@ def _require_one(tables: Sequence[Filled], common: Settings) -> None:
     """Refuse tables that count places from two points of the body."""
     for t in tables:
         if str(t.settings["axes.datum"].value) != str(common["axes.datum"].value):
-            raise InputError(
-                f"axes.datum {shown(str(t.settings['axes.datum'].value))} of {t.name}, {shown(str(common['axes.datum'].value))} of others",
-                "one point that all places count from", column="axes.datum",
-                advice=f"Say the point of {t.name} from the other one: {t.name}/axes.reference_point=X.",
+            raise input_error(
+                "tables.another_datum", column="axes.datum", own=shown(str(t.settings["axes.datum"].value)), name=t.name,
+                other=shown(str(common["axes.datum"].value)),
             )  # fmt: skip
 
 

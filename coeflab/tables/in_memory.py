@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import parse_header
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, CampaignFile, campaign_of
@@ -42,12 +43,10 @@ def raw_of_columns(columns: Mapping[str, Any], name: str) -> RawTable:
     """
     result = [_column(str(header), columns[header], name) for header in columns]
     if not result:
-        raise InputError("no column", 'arrays by their headers, such as "Y [N]"', file=name)
+        raise input_error("tables.no_arrays", name)
     sizes = {c.name: len(c.values) for c in result}
     if len(set(sizes.values())) > 1:
-        raise InputError(
-            f"columns of {', '.join(f'{n} ({k})' for n, k in sizes.items())} rows", "columns of equal length", file=name
-        )
+        raise input_error("tables.unequal_columns", name, items=", ".join(f"{n} ({k})" for n, k in sizes.items()))
     rows = next(iter(sizes.values()))
     if not rows:
         raise InputError("no rows", "rows of numbers", file=name)
@@ -88,9 +87,9 @@ def tables_of(filled: Sequence[Filled]) -> tuple[ForceTable, ...]:
     first = filled[0].settings
     for t in filled:
         if str(t.settings["axes.datum"].value) != str(first["axes.datum"].value):
-            raise InputError(
-                f"places from {shown(str(t.settings['axes.datum'].value))} and from {shown(str(first['axes.datum'].value))}",
-                "one point that all places count from", column="axes.datum",
+            raise input_error(
+                "tables.two_datums", column="axes.datum", one=shown(str(t.settings["axes.datum"].value)),
+                other=shown(str(first["axes.datum"].value)),
             )  # fmt: skip
         common = {**t.settings, POINT_OF: first[POINT_OF]}
         file = validated(CampaignFile, _declared(common, t))

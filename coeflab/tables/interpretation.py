@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
@@ -246,9 +247,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     roles = {o.role for o in offers}
     strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
-        return InputError(
-            f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
-            file=raw.path, advice=f'Name what was varied: --map "{strange[0]}=beta [deg]"; grids at one setting are no sweep.',
+        return input_error(
+            "tables.forces_without_settings", raw.path, names=listed([shown(n) for n in strange[:MOST_IDLE]]), first=strange[0],
         )  # fmt: skip
     if roles & {"force", "error"} or any(
         "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
@@ -256,7 +256,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     if "propeller" in roles and any(o.why == PROPELLER for o in offers):
-        return InputError(f"curves of a propeller alone: {names}", "forces of a body over settings", file=raw.path)
+        return input_error("tables.propeller_alone", raw.path, names=names)
     over = clock(raw)
     words = vocabulary()
     unread = {
@@ -269,9 +269,9 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     }
     for found, one in (("in units that are not known", unread), ("with words behind them", worded)) if not over else ():
         if one:
-            return InputError(
-                f"forces {found}: {listed([shown(n) for n in [*one][:MOST_IDLE]])}", "forces over settings, in a unit, of one source",
-                file=raw.path, advice=f'Name those of one source: --map "{next(iter(one.values()))}"; others are ignored.',
+            return input_error(
+                "tables.forces_unread", raw.path, found=found, one=listed([shown(n) for n in [*one][:MOST_IDLE]]),
+                next=next(iter(one.values())),
             )  # fmt: skip
     return InputError(
         over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
@@ -366,9 +366,8 @@ def _in_vain(
     for lacks, angle in (("drag", ""), ("side", "beta"), ("lift", "alpha")) if wind else ():
         own = {lacks, *("YZ" if angle else "")}
         if names.keys().isdisjoint(own) and (not angle or names.get(angle) in moving):
-            vain.append(InputError(
-                f"{wind} without {lacks}{f' at {angle}' * bool(angle)}", f"a column {lacks}", file=raw.path, column=names[wind],
-                advice="X, Y and Z of the body contain parts of drag, side and lift; C_D0 is part of the slope of Z.",
+            vain.append(input_error(
+                "tables.wind_without", raw.path, column=names[wind], wind=wind, lacks=lacks, more=f" at {angle}" * bool(angle),
             ))  # fmt: skip
     shows = [Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")] * (
         len(raw) == 1
@@ -412,9 +411,9 @@ def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError
     named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
     alone = len(linear) == 1 and linear[0].said.name == "u"
     way = f"Give --map {shlex.quote(f'{linear[0].column.name}=U [m/s]')} where {speeds} is the speed." * alone
-    yield InputError(
-        f"angles ({named}) and velocities ({speeds})", "one or the other", file=raw.path, column=named,
-        advice=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
+    yield input_error(
+        "tables.angles_and_velocities", raw.path, column=named, named=named, speeds=speeds,
+        way=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
@@ -136,9 +137,9 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
         near = difflib.get_close_matches(name, [c.name for c in raw.columns], n=1)
         have = ", ".join(shown(c.name) for c in raw.columns[:MOST_NAMED])
         complaints.append(
-            InputError(
-                f"no column {shown(name)}", f"one of {have}", file=raw.path, line=raw.header_line or None,
-                advice=f"Did you mean {shown(near[0])}?" if near else "",
+            input_error(
+                "tables.no_such_column", raw.path, raw.header_line or None, name=shown(name), have=have,
+                near=f"Did you mean {shown(near[0])}?" if near else "",
             )
         )  # fmt: skip
     if not any(a.said.role == "force" for a in out) and not complaints:
@@ -277,7 +278,7 @@ def texts_of(column: RawColumn) -> list[str]:
 def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:
     rows = usable_rows(known, len(raw))
     if not rows.size:
-        raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
+        raise input_error("tables.no_row_with_settings", raw.path)
     given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
     primes: dict[str, Array] = {}
     for one in known:
@@ -395,9 +396,9 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
         advice = (
             f"Leave it out, primes are right with {given.value:g}; or turn the forces: --option density={density:g}."
         )
-    return InputError(
-        f"conditions.density = {density:g} kg/m^3", f"{given.value:g}, the density that the forces were computed with "
-        f"({given.place})", file=raw.path, column="conditions.density", advice=advice,
+    return input_error(
+        "tables.another_density", raw.path, column="conditions.density", density=density, value=given.value, place=given.place,
+        advice=advice,
     )  # fmt: skip
 
 
@@ -408,10 +409,8 @@ def another_viscosity(raw: RawTable, viscosity: float) -> InputError | None:
         return None
     if abs(viscosity - given.value) <= SAME_VISCOSITY * abs(given.value):
         return None
-    return InputError(
-        f"conditions.viscosity = {viscosity:g} m^2/s", f"{given.value:g}, the viscosity that the forces were computed with "
-        f"({given.place})", file=raw.path, column="conditions.viscosity",
-        advice="Leave it out: the Reynolds number of the runs is that of their viscosity, right or wrong.",
+    return input_error(
+        "tables.another_viscosity", raw.path, column="conditions.viscosity", viscosity=viscosity, value=given.value, place=given.place,
     )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ from coeflab.core.errors import CoeflabError, InputError, OutputError, UnitsErro
 from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.json import parse_json
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.units import factor
 from coeflab.core.version import VERSION
@@ -156,8 +157,8 @@ def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:
     """
     if importer and IMPORTERS.load(importer).run is None:
         able = [n for n in IMPORTERS.usable() if IMPORTERS.load(n).run is not None]
-        raise InputError(
-            f"the importer {importer}", f"one that reads runs: {', '.join(able) or 'none'}", column="importer"
+        raise input_error(
+            "tables.importer_without_runs", column="importer", importer=importer, able=", ".join(able) or "none"
         )
     loaded = {name: IMPORTERS.load(name) for name in ([importer] if importer else IMPORTERS.usable())}
     plugins = {name: plugin for name, plugin in loaded.items() if plugin.run is not None}
@@ -172,8 +173,7 @@ def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:
         if not owners:
             return False
         if len(owners) > 1:
-            raise InputError(f"what {listed(owners)} both recognise", "one format", file=candidate,
-                             advice=f"Name the importer, such as {owners[0]}.")  # fmt: skip
+            raise input_error("tables.recognised_twice", candidate, owners=listed(owners), first=owners[0])
         name = candidate.relative_to(path).as_posix() if candidate != path else path.resolve().name
         runs[name] = candidate
         formats.setdefault(owners[0], name)
@@ -186,8 +186,7 @@ def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:
         raise NoRunsError("no run of a known format", f"folders or files of one of: {kinds or 'none'}", file=path)
     if len(formats) > 1:
         some = " and ".join(f"{name} ({kind})" for kind, name in formats.items())
-        raise InputError(f"runs of {len(formats)} formats: {some}", "one format a table", file=path,
-                         advice="Name the importer, and collect the others into a table of their own.")  # fmt: skip
+        raise input_error("tables.runs_of_several_formats", path, count=len(formats), some=some)
     return next(iter(formats)), {n: runs[n] for n in sorted(runs, key=natural)}
 
 
@@ -209,7 +208,7 @@ def _walk(root: Path, claimed: Callable[[Path], bool]) -> None:
             continue
         entries += len(inside)
         if entries > MOST_ENTRIES:
-            raise InputError(f"more than {MOST_ENTRIES:,} files and folders", "a folder of runs", file=root)
+            raise input_error("tables.too_many_files", root, most_entries=MOST_ENTRIES)
         for name in inside:
             candidate = folder / name
             with suppress(OSError):

@@ -17,6 +17,7 @@ from coeflab.core.axes import ANYWHERE, Axes, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
@@ -182,10 +183,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     columns.check()
     digest = sha256_of(columns.file, columns.files) if columns.file.exists() else columns.digest
     if table.sha256 and table.sha256 != digest:
-        raise InputError(
-            f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
-            advice="The table was changed after it was entered; restore it or update table.sha256.",
-        )  # fmt: skip
+        raise input_error("tables.table_changed", columns.file, digest=digest[:12], sha256=table.sha256[:12])
     if complaints := list(_undeclared(columns, campaign, table)):
         raise together(complaints)
     point = campaign.reference_point if table.reference_point is None else table.reference_point
@@ -302,18 +300,15 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     result, declared = table.forces_density, campaign.conditions.density
     in_newton = any(not columns.headers.get(c, c).startswith(f"{c}'") for c in columns.forces)
     if result is not None and columns.density is None and in_newton and abs(declared - result) > SAME_DENSITY * result:
-        yield InputError(
-            f"density = {declared:g} kg/m^3", f"{result:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
-            advice="Primes are right with the density that the forces were computed with. To state them at another, import the runs "
-            f"again with --option density={declared:g}.",
+        yield input_error(
+            "tables.other_forces_density", campaign.path, key="conditions.density", declared=declared, result=result, path=table.file,
         )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
     turns = [*(c for c in MOMENTS if c in columns.forces), *rates, *["R"] * (columns.radius is not None)]
     if campaign.datum == ANYWHERE and turns:
-        yield InputError(
-            f"datum = {shown(ANYWHERE.id)} with {', '.join(turns)}", "the point of the body that places count from",
-            file=campaign.path, key="axes.datum", advice="Moments and rates are other numbers about every point.",
-        )  # fmt: skip
+        yield input_error(
+            "tables.datum_anywhere", campaign.path, key="axes.datum", id=shown(ANYWHERE.id), turns=", ".join(turns)
+        )
     if columns.radius is not None:
         if rates:
             yield columns.fail(
@@ -581,10 +576,9 @@ def _exclusions(
     out: list[Exclusion] = []
     for label in table.selected:
         if label not in columns.labels:
-            raise InputError(
-                f"a selection by {shown(label)}", "a label column of the table", file=campaign.path,
-                column="table.select", advice=f"Name {label} under labels.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.selection_without_label", campaign.path, column="table.select", label=shown(label), name=label
+            )
     for row, (line, doubtful) in enumerate(zip(columns.lines, columns.doubtful, strict=True)):
         for component, column in have.items():
             value = columns.forces[column][row]
@@ -621,10 +615,7 @@ def _without_inertia(
     """Add what holds the model on its circle, so that the fluid's force remains; about one axis alone Ix, Iy, Iz hold nothing."""
     rates = np.sort(np.abs([motion[m] for m in ANGULAR]), axis=0)
     if inertia.inertia is None and np.any(rates[1] > ONE_AXIS * rates[2]):
-        raise InputError(
-            "no inertia", "inertia = [Ix, Iy, Iz] about the centre of gravity, kg m^2", file=campaign.path, column="inertia.inertia",
-            advice="A row of the table turns about two axes at once.",
-        )  # fmt: skip
+        raise input_error("tables.two_axes_without_inertia", campaign.path, column="inertia.inertia")
     centre = inertia.centre_of_gravity - point
     tensor = np.diag(inertia.inertia or (0.0, 0.0, 0.0)) + inertia.mass * (
         centre @ centre * np.eye(3) - np.outer(centre, centre)

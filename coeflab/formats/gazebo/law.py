@@ -17,6 +17,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.xml import numbers
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.systems import GZ_SIM, System, system_of
 from coeflab.law.rigid_body import momentum_force
@@ -122,10 +123,9 @@ def hydrodynamics(root: Element, file: Path | str | None = None) -> tuple[Elemen
     """
     found = [e for e in root.iter("plugin") if "hydrodynamics" in (e.get("filename", "") + e.get("name", "")).lower()]
     if len(found) != 1:
-        raise InputError(
-            f"{len(found)} Hydrodynamics plugins", "one <plugin> of the system Hydrodynamics", file=file,
-            advice="Keep one vehicle in the file." if found else "",
-        )  # fmt: skip
+        raise input_error(
+            "formats.several_plugins", file, count=len(found), advice="Keep one vehicle in the file." if found else ""
+        )
     return found[0], system_of(found[0].get("filename", ""), found[0].get("name", ""), file)
 
 
@@ -155,7 +155,7 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
     plugin, system = hydrodynamics(root, file)
     name = (plugin.findtext("link_name") or "").strip()
     if not name:
-        raise InputError("no <link_name>", "the link that the plugin acts on", file=file)
+        raise input_error("formats.no_link_name", file)
     link = next((e for e in root.iter("link") if e.get("name") == name.rpartition("::")[2]), None)
     inertial = None if link is None else link.find("inertial")
     pose = _pose(inertial, file)

@@ -23,6 +23,7 @@ from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 from coeflab.core.text.xml import numbers
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.law import symmetric
 from coeflab.formats.left_out import SILENT
@@ -64,9 +65,7 @@ class Xacro(Mapping[str, float]):
             or more than 64 KiB of text.
         """
         if self._depth > XACRO_DEEPEST:
-            raise InputError(
-                f"properties in properties, more than {XACRO_DEEPEST} deep", "plain properties", file=self._file
-            )
+            raise input_error("formats.deep_properties", self._file, xacro_deepest=XACRO_DEEPEST)
         self._depth += 1
         out, at = [], 0
         for piece in _PIECE.finditer(raw):
@@ -75,12 +74,10 @@ class Xacro(Mapping[str, float]):
         self._depth -= 1
         joined = "".join([*out, raw[at:]])
         if len(joined) > XACRO_TEXT:
-            raise InputError(f"{len(joined)} characters", f"at most {XACRO_TEXT} in one text", file=self._file)
+            raise input_error("formats.long_text", self._file, count=len(joined), xacro_text=XACRO_TEXT)
         self._letters += len(joined)
         if self._letters > XACRO_WHOLE:
-            raise InputError(
-                f"properties that unfold to {self._letters} characters", f"at most {XACRO_WHOLE}", file=self._file
-            )
+            raise input_error("formats.unfolds_too_far", self._file, letters=self._letters, xacro_whole=XACRO_WHOLE)
         return joined
 
     def _value(self, expression: str | None, argument: str | None) -> str:
@@ -92,16 +89,11 @@ class Xacro(Mapping[str, float]):
         try:
             return repr(float(evaluate(name.replace("**", "^"), self, _FUNCTIONS)))
         except (ArithmeticProblem, ValueError) as why:
-            raise InputError(
-                f"{shown(f'${{{name}}}')}: {why}", "arithmetic of numbers and properties", file=self._file
-            ) from None
+            raise input_error("formats.no_arithmetic", self._file, text=shown(f"${{{name}}}"), why=why) from None
 
     def _known(self, among: Mapping[str, str], name: str) -> str:
         if name not in among:
-            raise InputError(
-                f"{shown(name)}, which this file does not define", "every property and argument in the file", file=self._file,
-                advice="Run xacro first and check the URDF that it prints.",
-            )  # fmt: skip
+            raise input_error("formats.undefined_property", self._file, name=shown(name))
         if among is self._raw and name in self._twice:
             raise InputError(f"{shown(name)} with two values", "every property once", file=self._file)
         key = (id(among), name)
@@ -199,10 +191,9 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
     x = Xacro(root, file)
     found = [e for e in root.iter("link") if e.find("hydrodynamic_model") is not None]
     if len(found) != 1:
-        raise InputError(
-            f"{len(found)} links with a <hydrodynamic_model>", "one", file=file,
-            advice="Keep one vehicle in the file." if found else "",
-        )  # fmt: skip
+        raise input_error(
+            "formats.several_models", file, count=len(found), advice="Keep one vehicle in the file." if found else ""
+        )
     element, model = found[0], found[0].find("hydrodynamic_model")
     _refuse_shapes(model, file)
     name = element.get("name", "")
@@ -239,7 +230,7 @@ def _refuse_shapes(model: Element | None, file: Path | str | None) -> None:
     """Refuse models whose coefficients the plugin computes from a shape."""
     kind = "" if model is None else (model.findtext("type") or "").strip()
     if kind != "fossen":
-        raise InputError(f"<type>{shown(kind)}", 'a <hydrodynamic_model> of type "fossen"', file=file)
+        raise input_error("formats.another_type", file, sort=shown(kind))
 
 
 def _matrix(model: Element | None, tag: str, x: Xacro, file: Path | str | None) -> Array:

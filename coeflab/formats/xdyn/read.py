@@ -26,6 +26,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.yaml import number, read_yaml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
@@ -354,7 +355,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: AR
         law = multiplied_out(body)
         stated = _stated(body, law, path)
     except ArithmeticProblem as why:
-        raise InputError(str(why), "sums of products of velocities, as xdyn reads them", file=path) from None
+        raise input_error("formats.no_sums_of_products", path, why=str(why)) from None
     return imported_file(stated, [InputFile(path.name, sha256_of(path))], citations)
 
 

@@ -12,6 +12,7 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
@@ -68,9 +69,9 @@ def _values(cells: Cells, header: Header, kind: ColumnMap) -> Array:
     wild = np.abs(values) > LARGEST_NUMBER
     if np.any(wild):
         row = int(np.flatnonzero(wild)[0])
-        raise InputError(
-            shown(cells.texts(header.name)[row]), f"a number of at most {LARGEST_NUMBER:g} in SI units", file=cells.file,
-            line=cells.line(row), column=header.text,
+        raise input_error(
+            "tables.number_too_large", cells.file, cells.line(row), header.text, texts=shown(cells.texts(header.name)[row]),
+            largest_number=LARGEST_NUMBER,
         )  # fmt: skip
     return values
 
@@ -106,9 +107,8 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         if kind is None:
             raise _unknown(cells, header)
         if (name := kind.plain) in headers:
-            raise InputError(
-                f"{headers[name]} and {header.text}", "one of them", file=cells.file, line=cells.first_line - 1,
-                column=header.text,
+            raise input_error(
+                "tables.column_twice", cells.file, cells.first_line - 1, header.text, headers=headers[name], text=header.text,
             )  # fmt: skip
         headers[name] = header.text
         values = _values(cells, header, kind)
@@ -153,10 +153,9 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
         for token in text.replace(";", " ").split():
             name = one_name(token.removesuffix("'"))
             if name not in headers or name.startswith("se_"):
-                raise InputError(
-                    shown(token), "names of columns, separated by blanks", file=cells.file, line=cells.line(row),
-                    column=UNCERTAIN,
-                )  # fmt: skip
+                raise input_error(
+                    "tables.no_column_to_doubt", cells.file, cells.line(row), UNCERTAIN, token=shown(token)
+                )
             names.add(name)
         out.append(frozenset(names))
     return tuple(out)

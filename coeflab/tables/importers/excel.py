@@ -23,6 +23,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_COLUMNS
 from coeflab.core.options import bounded, parse_options, text
 from coeflab.core.text.bounded import part_of, stream_of, whole_bytes
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.blocks import Title, with_blocks
@@ -446,9 +447,7 @@ def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: 
             above.insert(0, (i + 1, cells))
     for wanted in (options.header, options.units):
         if wanted > 0 and wanted not in [n for n, _ in above]:
-            raise InputError(
-                f"nothing in row {wanted}", f"names over the data, which begin in row {begin + 1}", file=path
-            )
+            raise input_error("tables.no_names_in_row", path, wanted=wanted, begin=begin + 1)
     return read_head(above, len(rows[0]), PLAIN, numbers, options.header, options.units)
 
 
@@ -481,10 +480,9 @@ def _kept(
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
             break
         else:
-            raise InputError(
-                f"words among the rows ({shown(' '.join(t for t in map(_text, row) if t))})", "rows of numbers under one header",
-                file=path, line=i + 1, advice="Say the row of the table's header by the option header.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.words_among_rows_of_sheet", path, i + 1, place=shown(" ".join(t for t in map(_text, row) if t))
+            )
     return selected, remarks, titles
 
 
@@ -493,10 +491,7 @@ def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Pat
     dates = [i for i, v in enumerate(column) if _is_date(v)]
     if dates and any(_is_number(v) for v in column):
         i = dates[0]
-        raise InputError(
-            f"the date {column[i]} in cell {_place(lines[i], k)}", "a number, as in other rows", file=path, line=lines[i],
-            advice="Spreadsheets make dates of numbers such as 1.5; format the column as numbers and write it again.",
-        )  # fmt: skip
+        raise input_error("tables.date_among_numbers", path, lines[i], head=column[i], place=_place(lines[i], k))
     out = np.empty(len(column))
     for i, value in enumerate(column):
         if _is_number(value) and math.isfinite(value):

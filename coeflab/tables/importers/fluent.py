@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
@@ -91,7 +92,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     if path.is_dir():
         parts = _monitors(path)
         if not parts:
-            raise InputError("no report files of one run", "a folder of one run, or one file", file=path)
+            raise input_error("tables.no_report_files_of_one_run", path)
     else:
         parts = ((path,),)
         raw = head(path)
@@ -164,7 +165,7 @@ def _read(path: Path) -> Monitor:
     raw = head(path)
     names, at, header = _names(raw)
     if len(names) < 2:
-        raise InputError("one column", "a column that counts and a report", file=path, line=at)
+        raise input_error("tables.one_column", path, at)
     return read_monitor(path, laid_out(raw, path, header, names, " ", at))
 
 
@@ -244,9 +245,9 @@ def _zones(
         if len(rows) != 6 or any(len(r) != size for r in rows):
             if n == len(lines):
                 return zones, False
-            raise InputError(
-                f"{len(rows)} {'vectors' if groups else 'numbers'} for the zone {shown(name)}",
-                f"{'six vectors' if size == 3 else 'six numbers'}: pressure, viscous, total and their coefficients", file=path, line=n,
+            raise input_error(
+                "tables.numbers_of_a_zone", path, n, count=len(rows), found="vectors" if groups else "numbers", name=shown(name),
+                wanted="six vectors" if size == 3 else "six numbers",
             )  # fmt: skip
         zones[name] = tuple(rows)
         if name.lower() == "net":
@@ -271,9 +272,9 @@ def _force_report(path: Path) -> Run:
     ]  # fmt: skip
     centres = {t.centre for found in kinds.values() for t in found[:rows] if t.centre is not None}
     if len(centres) > 1:
-        raise InputError(
-            f"{len(centres)} moment centres", "one moment centre", file=path,
-            line=next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
+        raise input_error(
+            "tables.several_moment_centres", path, next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
+            count=len(centres),
         )  # fmt: skip
     stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
     if centres:
