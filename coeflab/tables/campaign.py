@@ -529,11 +529,11 @@ class Campaign:
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
-    def fail(self, table: TableDeclaration, key: str, found: str, expected: str, advice: str = "") -> InputError:
+    def fail(self, table: TableDeclaration, key: str, code: str, **facts: object) -> InputError:
         """An error about a key of one ``[[table]]``, to be raised by the caller."""
         at = next(i for i, own in enumerate(self.tables) if own is table)
         line = self.lines[at] if self.lines else None
-        return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
+        return input_error(code, self.path, line, key=f"table[{at}].{key}", **facts)
 
 
 def read_campaign(path: str | Path) -> Campaign:

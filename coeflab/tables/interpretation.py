@@ -463,10 +463,7 @@ def _against(shows: Evidence, settings: Settings) -> Evidence:
 
 def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
     other = "CFD (x aft)" if frame.rotation[0][0] > 0.0 else "FRD or FLU (x forward)"
-    return fault(
-        raw, "u is below zero in every row: in these axes the body moves astern", "u above zero", back.column,
-        f"Is the frame {other}? A test astern is read in place, by [columns] of its campaign.toml.",
-    )  # fmt: skip
+    return fault("tables.moves_astern", raw, back.column, other=other)
 
 
 def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:

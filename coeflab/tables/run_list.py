@@ -171,7 +171,7 @@ def _require(header: Header, name: str, path: Path, line: int) -> None:
     try:
         factor(header.unit, dimension)
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, column=header.text, advice=why.advice) from None
+        raise why.at(path, line, header.text) from None
 
 
 def _toml_list(path: Path) -> RunList:
@@ -205,7 +205,7 @@ def _toml_condition(name: str, value: object, origin: str, path: Path, line: int
     try:
         return condition_of(float(match[1].replace("\u2212", "-")), match[2].strip(), name, origin)
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, key=name, advice=why.advice) from None
+        raise why.at(path, line, key=name) from None
 
 
 def joined(

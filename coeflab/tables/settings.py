@@ -218,7 +218,7 @@ def read_setting(key: str, text: Any) -> Any:
     except OverflowError:
         raise input_error("tables.number_beyond_sizes", column=key, typed=shown(typed)) from None
     except InputError as why:
-        raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
+        raise why.at(column=key) from None
 
 
 _PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m|ft|in(?!\s+front))\b)?")

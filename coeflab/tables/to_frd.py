@@ -87,17 +87,12 @@ class Columns:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def fail(
-        self, found: str, expected: str, *, row: int | None = None, name: str = "", advice: str = ""
-    ) -> InputError:
+    def fail(self, code: str, *, row: int | None = None, name: str = "", **facts: object) -> InputError:
         """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
         is_folder = self.file.is_dir()
         line = None if is_folder else self.header_line or None if row is None else self.lines[row]
-        if is_folder and row is not None and self.row_labels:
-            found = f"{found} in {self.row_labels[row]}"
-        return InputError(
-            found, expected, file=self.file, line=line, column=self.headers.get(name, name) or None, advice=advice
-        )
+        where = f" in {self.row_labels[row]}" if is_folder and row is not None and self.row_labels else ""
+        return input_error(code, self.file, line, self.headers.get(name, name) or None, where=where, **facts)
 
     @property
     def digest(self) -> str:
@@ -126,34 +121,30 @@ class Columns:
 
     def _complaints(self) -> Iterator[InputError]:
         if not self.forces:
-            yield self.fail("no force column", "at least one of X Y Z K M N")
+            yield self.fail("tables.no_force_column")
         if (row := _first(~(self.speed > 0.0))) is not None:
             found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
-            yield self.fail(found, "a speed above zero", row=row, name="U")
+            yield self.fail("tables.speed_of_row", row=row, name="U", found=found)
         if self.density is not None and (row := _first(~(self.density > 0.0))) is not None:
             found = "a blank cell" if np.isnan(self.density[row]) else f"a density of {self.density[row]:g} kg/m^3"
-            yield self.fail(found, "a density above zero", row=row, name="density")
+            yield self.fail("tables.density_of_row", row=row, name="density", found=found)
         for name, values in self.settings.items():
             if (row := _first(np.isnan(values))) is not None:
-                yield self.fail("a blank cell", "a number", row=row, name=name)
+                yield self.fail("tables.blank_cell", row=row, name=name)
                 continue
             if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
                 continue
             yield self.fail(
-                f"an angle of {values[row]:.4g} rad",
-                "an angle within half a turn",
-                row=row,
-                name=name,
-                advice=f"If the column is in degrees, write {self.headers[name].partition(' [')[0]} [deg].",
-            )
+                "tables.angle_beyond_half_turn", row=row, name=name, angle=values[row], plain=self.headers[name].partition(" [")[0],
+            )  # fmt: skip
         for name, values in self.errors.items():
             if name not in self.forces:
-                yield self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+                yield self.fail("tables.error_without_force", name=f"se_{name}", force=name)
                 continue
             unused = np.isnan(self.forces[name]) & np.isnan(values)
             if (row := _first(~(values > 0.0) & ~unused)) is not None:
                 found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
-                yield self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
+                yield self.fail("tables.standard_error_of_row", row=row, name=f"se_{name}", found=found)
 
 
 def _first(where: NDArray[np.bool_]) -> int | None:
@@ -311,37 +302,20 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         )
     if columns.radius is not None:
         if rates:
-            yield columns.fail(
-                f"R and {', '.join(rates)}",
-                "one or the other",
-                name="R",
-                advice="The rate is U over R; leave one column out.",
-            )
+            yield columns.fail("tables.radius_beside_rates", name="R", rates=", ".join(rates))
         if not table.centre:
-            yield campaign.fail(
-                table, "centre", "no declaration", f"one of {', '.join(map(shown, CENTRES))}",
-                "The side of the body on which the centre of its circle lies: on the starboard side r > 0.",
-            )  # fmt: skip
+            yield campaign.fail(table, "centre", "tables.no_centre", centres=", ".join(map(shown, CENTRES)))
         if table.arm_point is None:
             yield campaign.fail(
-                table, "arm_point", "no declaration", "the point [x, y, z] that R and U are measured to, FRD, from the datum",
-                f"Often the reference point, {[float(x) for x in campaign.reference_point]}; a point x forward of it sees "
-                "v = x r more.",
-            )  # fmt: skip
+                table, "arm_point", "tables.no_arm_point", reference_point=[float(x) for x in campaign.reference_point]
+            )
     elif table.centre:
-        yield campaign.fail(table, "centre", "centre without a column R", "a column R [m], or no centre")
+        yield campaign.fail(table, "centre", "tables.centre_without_radius")
     turning = columns.radius is not None or any(np.any(columns.velocity[c] != 0.0) for c in rates)
     if turning and table.contains_inertia is None:
-        yield campaign.fail(
-            table, "contains_inertia", "no declaration", "contains_inertia = true or false",
-            "A balance on a rotating arm carries the model's inertia, a solver in a rotating frame does not; "
-            "for a slender body the sign of Yr' depends on it.",
-        )  # fmt: skip
+        yield campaign.fail(table, "contains_inertia", "tables.inertia_of_arm_not_declared")
     if turning and table.contains_inertia and campaign.inertia is None:
-        yield campaign.fail(
-            table, "contains_inertia", "contains_inertia = true without mass",
-            "[inertia] with mass, centre_of_gravity, and inertia where a row turns about two axes at once",
-        )  # fmt: skip
+        yield campaign.fail(table, "contains_inertia", "tables.inertia_of_arm_without_mass")
 
 
 def _motion(columns: Columns, campaign: Campaign, table: TableDeclaration, point: Array) -> dict[str, Array]:
@@ -361,9 +335,7 @@ def _linear(columns: Columns, campaign: Campaign) -> Array:
     """Velocities u v w in FRD, (n, 3), at the point that the table states them for."""
     linear_columns = [c for c in LINEAR if c in columns.velocity]
     if columns.angles and linear_columns:
-        raise columns.fail(
-            f"angles and {', '.join(linear_columns)}", "one or the other", advice="Write the speed as U [m/s]."
-        )
+        raise columns.fail("tables.angles_beside_velocities", linear_columns=", ".join(linear_columns))
     zero = np.zeros(len(columns))
     angle = {
         name: angle_sign(name, campaign.signs.get(name), campaign.path) * values
@@ -380,7 +352,7 @@ def _linear(columns: Columns, campaign: Campaign) -> Array:
             rest = columns.speed**2 - np.sum(linear**2, axis=1)
             if np.any(rest < 0.0):
                 row = int(np.flatnonzero(rest < 0.0)[0])
-                raise columns.fail("a cross-flow faster than U", "v and w within U", row=row)
+                raise columns.fail("tables.cross_flow_faster", row=row)
             linear[:, 0] = np.sqrt(rest)
     return np.asarray(linear)
 
@@ -426,9 +398,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
     }
     if "side" not in columns.forces and y in columns.forces:
         if (row := _first(cos_b < SIDEWAYS)) is not None:
-            raise columns.fail(
-                "a flow straight from the side", "a column side", row=row, advice="Y does not say it there."
-            )
+            raise columns.fail("tables.flow_from_the_side", row=row)
         for part, along in (("X", cos_a), ("Z", sin_a)):
             of_y = {"drag": -along / cos_b, y: -y_sign * along * sin_b / cos_b}
             parts[part] = of_y | {"lift": parts[part]["lift"]}
@@ -442,9 +412,8 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
         if (lacking := next((n for n in needed if n not in columns.forces), "")) and lacking in WIND:
             angle, row = ("alpha", np.abs(sin_a)) if lacking == "lift" else ("beta", np.abs(sin_b))
             raise columns.fail(
-                f"{of} without {lacking} at {angle} = {np.degrees(np.arcsin(min(row.max(), 1.0))):.3g} deg", f"a column {lacking}"
-                + f", or {y} of the body" * (lacking == "side"), row=int(np.argmax(row)), name=of,
-                advice=f"{part} of the body contains a part of it.",
+                "tables.wind_part_lacks", row=int(np.argmax(row)), name=of, of=of, lacking=lacking, angle=angle,
+                degrees=np.degrees(np.arcsin(min(row.max(), 1.0))), or_body=f", or {y} of the body" * (lacking == "side"), part=part,
             )  # fmt: skip
         own, sign = sources[part]
         moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
@@ -460,21 +429,19 @@ def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[Input
     """What is missing or doubled beside lift, drag and side force; ``own`` maps FRD components to the table's columns."""
     wind = [c for c in WIND if c in columns.forces]
     if "drag" not in wind:
-        yield columns.fail(f"{' and '.join(wind)} without drag", "a column drag", name=wind[0],
-                           advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.")  # fmt: skip
+        yield columns.fail("tables.wind_without_drag", name=wind[0], wind=" and ".join(wind))
     for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
         if own[part] in columns.forces and beside in wind:
-            yield columns.fail(f"{' and '.join(wind)} beside {own[part]}", f"{beside} along the flow or {own[part]} along the body",
-                               name=own[part], advice="Ignore one of them, or import them as two tables.")  # fmt: skip
+            yield columns.fail(
+                "tables.wind_beside_body_axes", name=own[part], wind=" and ".join(wind), own=own[part], beside=beside
+            )
     moving = [c for c in LINEAR if c in columns.velocity]
     for force, angle in (("lift", "alpha"), ("side", "beta")):
         if force in wind and angle not in columns.angles and not moving:
-            yield columns.fail(f"{force} without {angle}", f"a column {angle} [deg] (or u, v, w): {force} is across the flow",
-                               name=force)  # fmt: skip
+            yield columns.fail("tables.wind_without_angle", name=force, force=force, angle=angle)
     resistance = not columns.settings and np.unique(columns.speed).size >= FEWEST_SPEEDS
     if wind == ["drag"] and not columns.angles and not moving and not resistance:
-        yield columns.fail("drag without a direction of the flow", "a column alpha or beta [deg], or u, v, w", name="drag",
-                           advice="In straight flow call it -X.")  # fmt: skip
+        yield columns.fail("tables.drag_without_direction", name="drag")
 
 
 def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
@@ -488,14 +455,13 @@ def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
     if (row := _first(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
         found = "a blank cell" if np.isnan(radius[row]) else f"a radius of {radius[row]:g} m"
         raise columns.fail(
-            found, "a radius that is not zero" if signed else "a radius above zero", row=row, name="R",
-            advice="A run without rotation goes to a table of its own."
-            + ("" if signed else f' Where the sign of R separates the sides, write centre = "{SIGNED}{side}".'),
+            "tables.no_radius", row=row, name="R", found=found, wanted="a radius that is not zero" if signed else "a radius above zero",
+            signs="" if signed else f' Where the sign of R separates the sides, write centre = "{SIGNED}{side}".',
         )  # fmt: skip
     axis = np.cross(linear, SIDES[side])
     size, speed = np.linalg.norm(axis, axis=1), np.linalg.norm(linear, axis=1)
     if (row := _first(size <= 1e-9 * speed)) is not None:
-        raise columns.fail(f"a motion straight to {side}", "a motion across the arm", row=row, name="R")
+        raise columns.fail("tables.straight_to_the_centre", row=row, name="R", side=side)
     return np.asarray(axis * (speed / (radius * size))[:, None] + 0.0)
 
 
@@ -559,10 +525,9 @@ def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], m
         what = f"the antisymmetric {', '.join(odd)}" if odd else f"motion {', '.join(moving)}"
         remedy = "leave these columns out (ignore), or " if odd else ""
         raise columns.fail(
-            f"{what} on a half model cut at {cut.plane}",
-            f"{', '.join(cut.doubled)} in flow along the plane {cut.plane}",
-            advice=f"A symmetry plane at {cut.plane} cannot carry {cut.carries_no}: {remedy}compute the whole model for those.",
-        )
+            "tables.lost_by_half_model", what=what, plane=cut.plane, doubled=", ".join(cut.doubled), carries_no=cut.carries_no,
+            remedy=remedy,
+        )  # fmt: skip
 
 
 def _exclusions(
@@ -588,10 +553,7 @@ def _exclusions(
                 reason = f"{status[row]}, {BLANK if np.isnan(value) else MARKED}" if status[row] else reason
                 out.append(Exclusion(row, line, component, reason, not np.isnan(value), status[row], True))
             elif np.isnan(value):
-                raise columns.fail(
-                    "a blank cell", "a number", row=row, name=column,
-                    advice=f'If the source has no readable value there, name {column} under "uncertain".',
-                )  # fmt: skip
+                raise columns.fail("tables.blank_cell_of_force", row=row, name=column, head=column)
         for label, wanted in table.selected.items():
             if columns.labels[label][row] != wanted:
                 why = f"{label} {columns.labels[label][row]}: {table.select_reason}"

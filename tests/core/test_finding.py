@@ -53,17 +53,19 @@ def test_every_code_that_the_source_makes_has_a_template() -> None:
 
 
 def test_every_refusal_has_its_words_and_hands_over_their_facts() -> None:
-    place = {"file", "line", "column", "key", "kind"}
+    refusals = {f"{s}.{code}": words for s in SUBJECTS for code, words in templates(s).items() if "found" in words}
+    place = {"file", "line", "column", "key", "where", "kind", "row", "name"}
     for file, text in texts().items():
-        calls = (
-            n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call) and ast.unparse(n.func) == "input_error"
-        )
-        for call in calls:
-            subject, _, code = ast.literal_eval(call.args[0]).partition(".")
-            words_of_it = templates(subject)[code]
-            assert {"found", "expected"} <= set(words_of_it) <= {"found", "expected", "advice"}, f"{file}: {code}"
-            wanted = {name for part in words_of_it.values() for _, name, _, _ in Formatter().parse(part) if name}
-            assert wanted == {k.arg for k in call.keywords} - place, f"{file}: {code}"
+        for call in (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call)):
+            codes = [a.value for a in call.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
+            if ast.unparse(call.func) == "input_error" and not isinstance(call.args[0], ast.Name):
+                assert codes[:1] == [c for c in codes[:1] if c in refusals] != [], f"{file}: {ast.unparse(call)}"
+            for code in (c for c in codes if c in refusals):
+                parts = refusals[code]
+                assert {"found", "expected"} <= set(parts) <= {"found", "expected", "advice"}, f"{file}: {code}"
+                wanted = {name for part in parts.values() for _, name, _, _ in Formatter().parse(part) if name}
+                assert wanted - place == {k.arg for k in call.keywords} - place, f"{file}: {code}"
+                assert wanted & place <= {k.arg for k in call.keywords}, f"{file}: {code}"
 
 
 def test_a_refusal_is_worded_by_its_template() -> None:

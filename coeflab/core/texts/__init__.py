@@ -105,6 +105,7 @@ def input_error(
     column: str | None = None,
     *,
     key: str | None = None,
+    where: str = "",
     kind: type[InputError] = InputError,
     **facts: object,
 ) -> InputError:
@@ -116,6 +117,8 @@ def input_error(
         Subject and table of `core/texts`, such as ``tables.empty_file``.
     file, line, column, key
         See `InputError`.
+    where : str
+        Behind what was found, such as `` in row 7``.
     kind : type of InputError
     **facts
         What the words name in braces.
@@ -123,4 +126,4 @@ def input_error(
     subject, _, what = code.partition(".")
     template = templates(subject)[what]
     found, expected, advice = (template.get(part, "").format_map(facts) for part in ("found", "expected", "advice"))
-    return kind(found, expected, file=file, line=line, column=column, key=key, advice=advice)
+    return kind(found + where, expected, file=file, line=line, column=column, key=key, advice=advice)

@@ -209,37 +209,27 @@ def _runs(campaign: Campaign, table: TableDeclaration, cells: Cells) -> list[Pla
         given = {n: float(v[i]) for n, v in numbers.items() if np.isfinite(v[i])}
         motion = texts["motion"][i]
 
-        def fail(found: str, expected: str, column: str, advice: str = "", row: int = i) -> InputError:
-            return InputError(found, expected, file=cells.file, line=cells.line(row), column=column, advice=advice)
+        def fail(code: str, column: str, row: int = i, **facts: object) -> InputError:
+            return input_error(code, cells.file, cells.line(row), column, **facts)
 
         if motion not in VARIABLES:
-            raise fail(shown(motion), f"one of {', '.join(VARIABLES)}", "motion")
+            raise fail("tables.unknown_motion", "motion", motion=shown(motion), variables=", ".join(VARIABLES))
         if not given.get("omega", 0.0) > 0.0:
-            raise fail("no frequency above zero", "frequency [Hz], omega [rad/s] or period [s]", "frequency")
+            raise fail("tables.no_frequency", "frequency")
         speed = given.get("U", campaign.conditions.speed)
         if not speed > 0.0:
-            raise fail(f"a speed of {speed:g} m/s", "a speed above zero", "U")
+            raise fail("tables.no_speed_of_run", "U", speed=speed)
         moved = DISPLACEMENTS[motion]
         amplitude, phase = given.get(moved), given.get("phase")
         if amplitude is not None and not amplitude > 0.0:
-            raise fail(
-                f"an amplitude of {amplitude:g}",
-                "an amplitude above zero",
-                moved,
-                "A turned sign is a phase of 180 deg.",
-            )
+            raise fail("tables.no_amplitude", moved, amplitude=amplitude)
         if phase is not None and abs(phase) > 2.0 * np.pi:
-            raise fail(
-                f"a phase of {np.degrees(phase):.4g} deg", "a phase within a whole turn", "phase", "Write phase [deg]."
-            )
+            raise fail("tables.phase_beyond_turn", "phase", degrees=np.degrees(phase))
         start = given.get("start", 0.0)
         record = _series(cells.file.parent, texts["file"][i], start, ignored, turn, fail)
         air = texts.get("in_air", [""] * len(cells))[i]
         if not record.has_motion and (amplitude is None or phase is None):
-            raise fail(
-                "a run whose file has no motion, without amplitude or phase", f"{moved} [...] and phase [deg]", moved,
-                f"{moved} = amplitude sin(2 pi f t + phase); or put {moved}(t) into {texts['file'][i]}.",
-            )  # fmt: skip
+            raise fail("tables.no_motion", moved, moved=moved, texts=texts["file"][i])
         # A motion about or along a table's axis that points the other way is the same with the phase turned by half.
         if phase is not None and turn[moved][1] < 0.0:
             phase += np.pi
@@ -279,9 +269,9 @@ def _series(
     """One record, from ``start`` on, turned to FRD."""
     path = (folder / name).resolve()
     if not name or not path.is_relative_to(folder.resolve()):
-        raise fail(shown(name), "a file beside the list of runs or in a folder under it", "file")
+        raise fail("tables.file_elsewhere", "file", path=shown(name))
     if not path.is_file():
-        raise fail(f"no file {shown(name)}", "a CSV file with t [s] and forces", "file")
+        raise fail("tables.no_record", "file", path=shown(name))
     path = folder / name
     if is_captive_test(path):
         time, columns = record(path)
