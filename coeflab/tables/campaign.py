@@ -529,6 +529,20 @@ class Campaign:
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
+    def wanted(self, only: str | None) -> tuple[TableDeclaration, ...]:
+        """The tables, or the one of that file name.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        out = tuple(t for t in self.tables if only is None or Path(t.file).name == only)
+        if not out:
+            known = ", ".join(t.file for t in self.tables)
+            raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=self.path, column="table")
+        return out
+
     def fail(self, table: TableDeclaration, key: str, code: str, **facts: object) -> InputError:
         """An error about a key of one ``[[table]]``, to be raised by the caller."""
         at = next(i for i, own in enumerate(self.tables) if own is table)

@@ -117,7 +117,7 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         + "."
     )
     comments.pop("source.how_obtained", None)
-    if assumed := [a for a in ("alpha", "beta") if f"axes.{a}" in common and SLENDER in common[f"axes.{a}"].origin]:
+    if assumed := angles_assumed(common):
         sections["axes"]["assumed"] = assumed
         comments["axes.assumed"] = "a sign inferred from the slope: delete this once it is known from the source"
     sections.pop("table")
@@ -130,24 +130,9 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
             own["labels"] = labels
         if any(c.said.name == "cells" for c in t.columns):
             own["cells"] = "cells"
-        for key, one in t.settings.items():
-            section, _, name = key.partition(".")
-            if section == "table" and (len(tables) == 1 or key in t.asked or key not in OF_ARMS):
-                at_reference = key == ARM_POINT and one.value == REFERENCE
-                own[name] = t.settings[POINT_OF].value if at_reference else one.value
-                words[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
-        if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
-            own["assumed"], words["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
-        if held := _held(t):
-            own["constant"], words["constant"] = held, "one number throughout, while the speed varied"
-        made_with = t.raw.stated.get("conditions.density")
-        if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-            own["forces_density"], words["forces_density"] = made_with.value, f"stated: {made_with.place}"
-        if HALF_MODEL in t.settings and len(set(map(str, halves))) > 1:
-            one = t.settings[HALF_MODEL]
-            own["half_model"], words["half_model"] = one.value, one.origin + _of_half(one.value)
-        if t.settings[POINT_OF].value != common[POINT_OF].value:
-            own["reference_point"], words["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+        keys = own_keys(t, common[POINT_OF].value, len(tables) == 1, len(set(map(str, halves))) > 1, _held(t))
+        own |= {name: content for name, (content, _) in keys.items()}
+        words |= {name: why for name, (_, why) in keys.items()}
         declared.append((own, words))
     content: dict[str, Any] = {k: v for k, v in sections.items() if v}
     content["table"] = [own for own, _ in declared]
@@ -157,6 +142,50 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         FILE: _campaign_text(sections, comments, declared, tables, source).encode(),
         SAVED: _saved(tables, settings).encode(),
     }
+
+
+def angles_assumed(settings: Settings) -> list[str]:
+    """Angles whose sign was inferred from the force that should follow from it."""
+    angles = (a for a in ("alpha", "beta") if f"axes.{a}" in settings)
+    return [a for a in angles if SLENDER in settings[f"axes.{a}"].origin]
+
+
+def own_keys(
+    t: Filled, point: Any, alone: bool = False, half: bool = True, constant: Mapping[str, float] | None = None
+) -> dict[str, tuple[Any, str]]:
+    """Keys of the ``[[table]]`` of one table, each with what it rests on.
+
+    Parameters
+    ----------
+    t : Filled
+    point : sequence of float
+        The campaign's reference point.
+    alone : bool
+        The campaign has no other table.
+    half : bool
+        Whether it says itself what half of the body it is of.
+    constant : mapping, optional
+        What the test held.
+    """
+    out: dict[str, tuple[Any, str]] = {}
+    for key, one in t.settings.items():
+        section, _, name = key.partition(".")
+        if section == "table" and (alone or key in t.asked or key not in OF_ARMS):
+            at_reference = key == ARM_POINT and one.value == REFERENCE
+            why = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+            out[name] = (t.settings[POINT_OF].value if at_reference else one.value), why
+    if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
+        out["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
+    if constant:
+        out["constant"] = constant, "one number throughout, while the speed varied"
+    made_with = t.raw.stated.get("conditions.density")
+    if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
+        out["forces_density"] = made_with.value, f"stated: {made_with.place}"
+    if half and (one := t.settings.get(HALF_MODEL)) is not None:
+        out["half_model"] = one.value, one.origin + _of_half(one.value)
+    if t.settings[POINT_OF].value != point:
+        out["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+    return out
 
 
 def _of_half(half: bool | str) -> str:

@@ -15,12 +15,11 @@ from coeflab.core.texts import input_error
 from coeflab.core.units import parse_header
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, CampaignFile, campaign_of
-from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.imported import Filled
+from coeflab.tables.imported import Filled, angles_assumed, own_keys
 from coeflab.tables.mapping import mapped_table
-from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import ARM_POINT, OF_ARMS, REFERENCE, SECTIONS, Settings
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
 
 NOWHERE = "<no file>"
@@ -106,21 +105,11 @@ def _declared(settings: Settings, t: Filled) -> dict[str, Any]:
     sections: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
     for key, one in settings.items():
         section, _, name = key.partition(".")
-        if section == "table" and key in OF_ARMS and key not in t.asked:
-            continue
-        at_reference = key == ARM_POINT and one.value == REFERENCE
-        sections[section][name] = t.settings[POINT_OF].value if at_reference else one.value
-    angles = ("alpha", "beta")
-    if assumed := [a for a in angles if f"axes.{a}" in settings and SLENDER in settings[f"axes.{a}"].origin]:
+        sections[section][name] = one.value
+    if assumed := angles_assumed(settings):
         sections["axes"]["assumed"] = assumed
-    own = {"file": t.file.removesuffix(".csv"), **sections.pop("table")}
-    if t.settings[POINT_OF].value != settings[POINT_OF].value:
-        own["reference_point"] = t.settings[POINT_OF].value
-    if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
-        own["assumed"] = flagged
-    if HALF_MODEL in t.settings:
-        own["half_model"] = t.settings[HALF_MODEL].value
-    made_with = t.raw.stated.get("conditions.density")
-    if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-        own["forces_density"] = made_with.value
-    return {name: keys for name, keys in sections.items() if keys} | {"table": [own]}
+    own = {name: value for name, (value, _) in own_keys(t, settings[POINT_OF].value).items()}
+    sections.pop("table")
+    return {name: keys for name, keys in sections.items() if keys} | {
+        "table": [{"file": t.file.removesuffix(".csv"), **own}]
+    }

@@ -14,7 +14,7 @@ from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
-from coeflab.core.units import factor
+from coeflab.core.units import factor, fits
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
@@ -178,7 +178,7 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
         raise fault("tables.no_number_in_column", raw, column, example=example)
     if said.pure:
         stated = column.unit.strip(" -1")
-        if stated and _factor(stated, said.dimension):
+        if fits(stated, said.dimension):
             raise fault("tables.unit_of_pure_number", raw, column, unit=column.unit, said=said)
         counted = share(column.unit)
         if counted is None and any(ch.isdigit() for ch in stated):
@@ -193,7 +193,7 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
         raise fault(
             "tables.coefficient_without_area", raw, column, said=said, plain=said.plain, per=PER[said.dimension]
         )
-    own = _factor(column.unit, said.dimension)
+    own = factor(column.unit, said.dimension) if fits(column.unit, said.dimension) else None
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):
         example = EXAMPLES[said.dimension]
@@ -210,14 +210,6 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
     if said.unit and own is not None and abs(own / size - 1.0) > 1e-9:
         raise fault("tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit=""))
     return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
-
-
-def _factor(unit: str, dimension: str) -> float | None:
-    """Factor of a unit that a file writes; None where it is no unit of the dimension."""
-    try:
-        return factor(unit, dimension)
-    except UnitsError:
-        return None
 
 
 def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -447,6 +447,11 @@ def how_ended(monitor: Monitor, judged: Sequence[int]) -> tuple[Ended, str]:
             row = int(finite[-1]) + 1 if finite.size else 0
             return Ended.DIVERGED, f"{monitor.at(row)}: {monitor.names[j]} is no number from there to the end"
     return (Ended.CRASHED, monitor.crashed) if monitor.crashed else (Ended.WHOLE, "")
+
+
+def worst_end(ends: Iterable[tuple[Ended, str]]) -> tuple[Ended, str]:
+    """How a run of several monitors ended: diverged before crashed."""
+    return max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
 
 
 def raw_table(

@@ -11,9 +11,9 @@ from itertools import permutations
 import numpy as np
 
 from coeflab.core.axes import Axes
-from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array
-from coeflab.core.units import SI, factor, quantity
+from coeflab.core.units import SI, fits, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
 from coeflab.tables.column_map import (
     ACROSS,
@@ -136,7 +136,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     if not column.means and is_marks(column):
         return Proposal("uncertain", "marks of rows, which no fit then uses")
     unit = vocabulary().units.get(column.unit.casefold(), column.unit)
-    if folded(column.name) in vocabulary().lists["ship"] and _fits(unit, "speed"):
+    if folded(column.name) in vocabulary().lists["ship"] and fits(unit, "speed"):
         scale = (stated or {}).get(SCALE)
         if scale is None:
             return Proposal(
@@ -153,7 +153,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     if not name:
         if column.is_text:
             held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))
-            held = held and (_fits(column.unit, "force") or _fits(column.unit, "moment"))
+            held = held and (fits(column.unit, "force") or fits(column.unit, "moment"))
             why = f"{_worded(column)}{allowed(column.unit, column.name.startswith('se_'))}"
             return Proposal("", why) if held else Proposal("label", "text")
         if why == UNKNOWN and (idle := _idle(column)):
@@ -220,17 +220,10 @@ def allowed(unit: str, error: bool = False) -> str:
     """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
     words = " ".join(unit.split())
     plain = vocabulary().units.get(words.casefold(), words)
-    names = next((phrases for dimension, phrases in ALLOWED.items() if _fits(plain, dimension)), "")
+    names = next((phrases for dimension, phrases in ALLOWED.items() if fits(plain, dimension)), "")
     if error and names[:1] in COMPONENTS:
         names = ", ".join(f"se_{name}" for name in names.split(", "))
     return f"; {words}: {names}, or ignore" if names else ""
-
-
-def _fits(unit: str, dimension: str) -> bool:
-    try:
-        return bool(unit) and factor(unit, dimension) > 0.0
-    except UnitsError:
-        return False
 
 
 def _name(column: RawColumn) -> tuple[str, str, bool]:
@@ -246,7 +239,7 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     if (
         not named
         and (wind := vocabulary().of_flow(column.name))
-        and (_fits(column.unit, "force") or _either(column.unit, "force")[0])
+        and (fits(column.unit, "force") or _either(column.unit, "force")[0])
     ):
         return f"{error}{wind}", f"a word of its name, {TURNED.format(ACROSS[wind])}", False
     return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
@@ -277,7 +270,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             pass
     if own == "n" and column.unit.casefold() in vocabulary().turns:
         return "rps", "its name and unit", False
-    if own == "T" and _fits(column.unit, "force"):
+    if own == "T" and fits(column.unit, "force"):
         return "thrust", "its name and unit", False
     bare = _OF_ALL.sub("", bare) if not _knows(bare) else bare
     error = None if bare in vocabulary().columns else _ERROR.search(bare)  # Achse, Bremse
@@ -338,7 +331,7 @@ def _is_pure(name: str) -> bool:
 def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
     """Of several meanings the first that the unit fits; nothing where it fits none or there is none."""
     spelt = vocabulary().units.get(unit.casefold(), unit)
-    fits = [m for m in meanings if m not in WORDS and _fits(spelt, read_column_map(m).dimension)]
+    fits = [m for m in meanings if m not in WORDS and fits(spelt, read_column_map(m).dimension)]
     return (fits[0], "its name", False) if fits else ("", f"{' or '.join(meanings)} by its name", False)
 
 
@@ -399,7 +392,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     try:
         whole = read_column_map(f"{name} [{unit}]") if unit else None
     except InputError:
-        if column.name.strip().upper() in ("X", "Y", "Z") and _fits(unit, "length"):
+        if column.name.strip().upper() in ("X", "Y", "Z") and fits(unit, "length"):
             return Proposal("ignore", f"[{unit}] is a length: a position, no force")
         if any(_either(unit, said.dimension)):
             return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}")
@@ -425,7 +418,7 @@ def _either(unit: str, dimension: str) -> tuple[str, str]:
     words = vocabulary().units
     pounds = {"lb": "lbf", "lbs": "lbf"} if dimension == "force" else {}
     parts = [words.get(p.casefold(), pounds.get(p.casefold(), p)) for p in map(str.strip, unit.split("/"))]
-    if len(parts) != 2 or not all(_fits(p, dimension) for p in parts):
+    if len(parts) != 2 or not all(fits(p, dimension) for p in parts):
         return "", ""
     us = [bool({"lbf", "ft", "in"} & {*re.split(r"[^a-z]", p)}) for p in parts]
     return (parts[us.index(False)], parts[us.index(True)]) if us[0] != us[1] else ("", "")
@@ -442,7 +435,7 @@ def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
 def taken_as(one: Assigned) -> str:
     """What a unit text that nobody knows was taken for; empty where the file's unit is known, or there is none."""
     unit, given = " ".join(one.column.unit.split()), one.said
-    known = _fits(vocabulary().units.get(unit.casefold(), unit), given.dimension)
+    known = fits(vocabulary().units.get(unit.casefold(), unit), given.dimension)
     known |= vocabulary().turns.get(unit.casefold()) == given.unit
     if known or unit in PURE or given.pure or given.per_speed or given.name in WORDS:
         return ""
@@ -515,12 +508,12 @@ def proposals(
             read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
         }
         beside = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
-        if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
+        if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
         if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
             out[i] = Proposal("ignore", f"U is {taken['U']} already")
-        if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and _fits(column.unit, "moment"):
+        if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and fits(column.unit, "moment"):
             out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
         if {"r", "R"} <= set(taken) and column.name == taken["R"]:
             out[i] = Proposal("ignore", f"r is {taken['r']} already, U over it")

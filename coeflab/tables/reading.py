@@ -334,22 +334,7 @@ def _every_speed(planned: PlannedTable) -> tuple[ForceTable, ...]:
         raise input_error(
             "tables.importer_without_tables", declaration, column="campaign.importer", importer=campaign.importer
         )
-    return tuple(_mapped(campaign, table) for table in wanted(campaign, planned.only))
-
-
-def wanted(campaign: Campaign, only: str | None) -> tuple[TableDeclaration, ...]:
-    """The tables of a campaign, or the one of that file name.
-
-    Raises
-    ------
-    InputError
-        No [[table]] has it.
-    """
-    out = tuple(t for t in campaign.tables if only is None or Path(t.file).name == only)
-    if not out:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
-    return out
+    return tuple(_mapped(campaign, table) for table in campaign.wanted(planned.only))
 
 
 def _mapped(campaign: Campaign, table: TableDeclaration) -> ForceTable:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
@@ -17,7 +16,7 @@ from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.units import SI, Header, factor
+from coeflab.core.units import SI, Header, factor, fits
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.conditions import (
@@ -127,7 +126,11 @@ def _csv_list(path: Path) -> RunList:
         is_label = name not in DIMENSIONS and header.unit is None
         if not is_label:
             _require(header, name, path, cells.first_line - 1)
-            if name not in DIMENSIONS and name not in COUNTED and _is_of_motion(header.unit or ""):
+            if (
+                name not in DIMENSIONS
+                and name not in COUNTED
+                and any(fits(header.unit or "", d) for d in ("angle", "speed", "rate"))
+            ):
                 raise input_error(
                     "tables.unit_of_motion_without_setting", path, cells.first_line - 1, header.text, text=shown(header.text),
                     settings=", ".join(SETTINGS),
@@ -147,15 +150,6 @@ def setting_of(name: str) -> str:
     plain = one_name(name)
     found = plain if plain in DIMENSIONS or plain == RUN else named_as(name)
     return found if found in DIMENSIONS else plain
-
-
-def _is_of_motion(unit: str) -> bool:
-    """Whether a unit is one of an angle, a speed or a rate."""
-    for dimension in ("angle", "speed", "rate"):
-        with suppress(UnitsError):
-            if factor(unit, dimension):
-                return True
-    return False
 
 
 def _require(header: Header, name: str, path: Path, line: int) -> None:

@@ -25,13 +25,13 @@ from typing import IO, Any
 
 import numpy as np
 
-from coeflab.core.errors import CoeflabError, InputError, OutputError, UnitsError, clipped
+from coeflab.core.errors import CoeflabError, InputError, OutputError, clipped
 from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.json import parse_json
 from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.units import factor
+from coeflab.core.units import fits
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
@@ -347,16 +347,8 @@ def deciding(history: RawTable) -> tuple[dict[str, RawColumn], bool]:
     if known:
         return known, False
     numbers = {c.name: c for c in history.columns if not c.means and not c.is_text and not _RESIDUAL.search(c.name)}
-    forces = {name: c for name, c in numbers.items() if _is_force(c.unit)}
+    forces = {name: c for name, c in numbers.items() if fits(c.unit, "force") or fits(c.unit, "moment")}
     return forces or numbers, True
-
-
-def _is_force(unit: str) -> bool:
-    for dimension in ("force", "moment"):
-        with suppress(UnitsError):
-            factor(unit, dimension)
-            return True
-    return False
 
 
 def _patches(run: Run, start: float) -> dict[str, tuple[float, str]]:

@@ -17,7 +17,7 @@ from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, require
 from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.raw_table import Run
 
 summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
 computed = True
@@ -74,7 +74,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         file = found[0]
     raw = head(file)
     if not raw.strip() and file.is_file():
-        return Run(path, path.stem, RawTable(path, (), files=(file,)), ended=Ended.EMPTY, why=f"{file.name}: empty")
+        return Run.empty(path, f"{file.name}: empty", [file])
     require(raw, file, "cfx", 'a file of cfx5mondata ("ACCUMULATED TIMESTEP", ...)')
     lines = lines_of(decoded(raw)[0])
     ((at, first),) = first_filled(lines, 1)

@@ -6,15 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
-from coeflab.core.units import Header, factor
+from coeflab.core.units import Header
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
@@ -41,39 +38,16 @@ def _kind(name: str) -> ColumnMap | None:
     return ColumnMap(plain, primed=primed) if plain in (MOTIONS if primed else OWN) else None
 
 
-def _factor(header: Header, kind: ColumnMap, cells: Cells) -> float:
-    """SI factor of a column, errors placed at its header."""
-    line = cells.first_line - 1
-    unit = require_unit(
-        header,
-        cells.file,
-        line,
-        f"{header.name} [{'-' if kind.primed else 'rps' if kind.name == 'rps' else EXAMPLES[kind.dimension]}]",
-    )
-    try:
-        return factor(unit, "none" if kind.primed else kind.dimension)
-    except UnitsError as why:
-        advice = why.advice
-        if kind.primed:
-            advice = f"A primed column has the unit [-]; for a dimensional one write {header.name[:-1]} [...]."
-        elif unit == "-" and kind.dimension != "angle":
-            advice = f"For the nondimensional (prime) form write {header.name}' [-]."
-        raise UnitsError(
-            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=advice
-        ) from None
-
-
 def _values(cells: Cells, header: Header, kind: ColumnMap) -> Array:
-    with np.errstate(over="ignore"):
-        values = cells.numbers(header.name) * _factor(header, kind, cells)
-    wild = np.abs(values) > LARGEST_NUMBER
-    if np.any(wild):
-        row = int(np.flatnonzero(wild)[0])
-        raise input_error(
-            "tables.number_too_large", cells.file, cells.line(row), header.text, texts=shown(cells.texts(header.name)[row]),
-            largest_number=LARGEST_NUMBER,
-        )  # fmt: skip
-    return values
+    unit = "-" if kind.primed else "rps" if kind.name == "rps" else EXAMPLES[kind.dimension]
+    try:
+        return cells.si(header, "none" if kind.primed else kind.dimension, f"{header.name} [{unit}]")
+    except UnitsError as why:
+        if kind.primed and header.unit is not None:
+            why.advice = f"A primed column has the unit [-]; for a dimensional one write {header.name[:-1]} [...]."
+        elif header.unit == "-" and kind.dimension != "angle":
+            why.advice = f"For the nondimensional (prime) form write {header.name}' [-]."
+        raise
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
@@ -189,12 +163,5 @@ def read(
         Names file, line and column, what was found and what was expected.
     """
     parse_options(NoOptions, options or {}, "csv")
-    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
-    if not wanted:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
-    tables = []
-    for table in wanted:
-        cells = read_cells(campaign.path.parent / table.file)
-        tables.append(force_table(_columns(cells, campaign, table), campaign, table))
-    return tuple(tables)
+    found = ((table, read_cells(campaign.path.parent / table.file)) for table in campaign.wanted(only))
+    return tuple(force_table(_columns(cells, campaign, table), campaign, table) for table, cells in found)

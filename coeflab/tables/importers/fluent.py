@@ -23,7 +23,17 @@ from coeflab.core.text.bounded import stream_of
 from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
-from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
+from coeflab.tables.monitors import (
+    Monitor,
+    how_ended,
+    in_order,
+    joined,
+    laid_out,
+    pieced,
+    raw_table,
+    read_monitor,
+    worst_end,
+)
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
@@ -97,7 +107,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         parts = ((path,),)
         raw = head(path)
         if not raw.strip() and path.is_file():
-            return Run(path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=f"{path.name}: empty")
+            return Run.empty(path, f"{path.name}: empty")
         require(raw, path, "fluent", "a report file or a force report of Fluent")
         if _is_report(raw):
             return _force_report(path)
@@ -108,7 +118,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         ends.append(how_ended(pieces[-1], range(len(pieces[-1].names))[1:]))
         monitors.append(pieced(pieces, 0))
         files += of_one
-    ended, why = max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
+    ended, why = worst_end(ends)
     whole = joined(monitors, monitors[0].names[0])
     columns = [(j, name, *_meaning(name, j)) for j, name in enumerate(whole.names)]
     dialect = {"format": "Fluent report file", "delimiter": "blanks", "decimal mark": "point"}
@@ -259,9 +269,7 @@ def _force_report(path: Path) -> Run:
     """The reports of a file: every kind of table a set of columns, its repetitions the rows."""
     tables, cut = _tables(path)
     if not tables:
-        return Run(
-            path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=cut or f"{path.name}: empty"
-        )
+        return Run.empty(path, cut or f"{path.name}: empty")
     kinds: dict[tuple[str, tuple[float, ...] | None], list[_Table]] = {}
     for table in tables:
         kinds.setdefault(table.key, []).append(table)

@@ -16,15 +16,13 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.axes import angle_sign
-from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.errors import InputError, shown
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.bounded import stream_of
-from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
-from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
 from coeflab.tables.force_table import ForceTable
@@ -96,13 +94,9 @@ def read(
         A declaration that is missing, a cell that cannot be, a file that is not there.
     """
     parse_options(NoOptions, options or {}, "pmm")
-    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
-    if not wanted:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
     if campaign.half_model:
         raise input_error("tables.half_model_oscillates", campaign.path, column="campaign.half_model")
-    return tuple(_table(campaign, t) for t in wanted)
+    return tuple(_table(campaign, t) for t in campaign.wanted(only))
 
 
 def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
@@ -159,24 +153,7 @@ def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
 
 def _si(cells: Cells, name: str, dimension: str) -> Array:
     """A column in SI; errors of its unit at its header."""
-    header = next(h for h in cells.headers if h.name == name)
-    line = cells.first_line - 1
-    unit = require_unit(header, cells.file, line, f"{name} [...]")
-    try:
-        scale = factor(unit, dimension)
-    except UnitsError as why:
-        raise UnitsError(
-            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=why.advice
-        ) from None
-    values = np.asarray(cells.numbers(name) * scale)
-    wild = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
-    if wild.size:
-        row = int(wild[0])
-        raise input_error(
-            "tables.number_too_large", cells.file, cells.line(row), header.text, texts=shown(cells.texts(name)[row]),
-            largest_number=LARGEST_NUMBER,
-        )  # fmt: skip
-    return values
+    return cells.si(next(h for h in cells.headers if h.name == name), dimension, f"{name} [...]")
 
 
 def _unknown(cells: Cells, known: tuple[str, ...]) -> None:

@@ -98,9 +98,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     stated |= half
     dialect = {"format": kind}
     if not columns:
-        return Run(
-            path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=f"{path.name}: no final value"
-        )
+        return Run.empty(path, f"{path.name}: no final value")
     broken = not all(math.isfinite(float(c.values[0])) for c in columns)
     table = RawTable(path, tuple(columns), files=(path, *texts), dialect=dialect, stated=stated)
     reason = f"{path.name}: a value that is no number" * broken

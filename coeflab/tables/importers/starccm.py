@@ -19,8 +19,8 @@ from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, header_cells, kind_of, lines_of, require
-from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor, worst_end
+from coeflab.tables.raw_table import Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"
 computed = True
@@ -87,7 +87,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     if not files:
         raise input_error("tables.no_monitors_of_one_run", path)
     if not path.is_dir() and path.is_file() and not head(path).strip():
-        return Run(path, path.stem, RawTable(path, (), files=files), ended=Ended.EMPTY, why=f"{path.name}: empty")
+        return Run.empty(path, f"{path.name}: empty")
     read = [_read(f) for f in files]
     monitors = [in_order(m, 0) for m, _ in read]
     counted = {_label(m.names[0])[0] for m in monitors}
@@ -95,7 +95,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         names = ", ".join(sorted(counted))
         raise input_error("tables.monitors_over_several", path, names=shown(names))
     ends = [how_ended(m, range(len(m.names))[1:]) for m in monitors]
-    ended, why = max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
+    ended, why = worst_end(ends)
     whole = joined(monitors, next(iter(counted)))
     columns = [(j, *_label(name), _means(name) if j == 0 else "") for j, name in enumerate(whole.names)]
     delimiter = read[0][1]

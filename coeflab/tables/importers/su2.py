@@ -34,7 +34,7 @@ from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run, Stated
+from coeflab.tables.raw_table import Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
 computed = True
@@ -107,7 +107,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     config, beside, remarks = _config(files)
     files = (*files, config.path) if config else files
     if not any(p.names for p in pieces):
-        return Run(path, path.stem, RawTable(path, (), files=files), ended=Ended.EMPTY, why=f"{files[0].name}: empty")
+        return Run.empty(path, f"{files[0].name}: empty", files)
     index, inner = _index(pieces)
     pieces = [in_order(p, index, inner) for p in pieces]
     judged = [j for j, name in enumerate(pieces[-1].names) if _SURFACE.sub(r"\g<name>", name) in JUDGED]
