@@ -10,7 +10,6 @@ import numpy as np
 
 from coeflab.core.axes import ANGLE_SIGNS, ANYWHERE, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
-from coeflab.core.units import quantity
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR, MOMENTS
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
@@ -21,7 +20,7 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, EITHER, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
-from coeflab.tables.settings_in_files import arm_by_words, point_by_words
+from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, SIZES, area_of
@@ -183,9 +182,8 @@ def known_sizes(raw: RawTable, settings: Settings) -> tuple[dict[str, float], di
     for name, key in SIZES.items():
         if (one := raw.stated.get(key)) is not None and isinstance(one.value, float):
             sizes[name], places[name] = one.value, one.place
-    length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    if length is not None and not getattr(length, "contradicted", ""):
-        sizes["L"] = quantity(length.value, "length")
+    if (length := known_length(raw, settings)) is not None:
+        sizes["L"] = length
     if (area := raw.stated.get(AREA)) is not None and area.offered and isinstance(area.value, float):
         sizes["area"], places["area"] = area.value, area.place
     return sizes, places

@@ -157,17 +157,10 @@ def read_raw(
     """
     importer = IMPORTERS.load(name)
     readable(path)
-    given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
-            return upright(importer.raw(path, given))
-        from coeflab.tables.collect import collect
-
-        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
-        return collect(
-            path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
-            state=Path(state) if state else None,
-        ).table  # fmt: skip
+            return upright(importer.raw(path, dict(options or {})))
+    return _of_runs(path, name, options or {}, [str((options or {}).get("names", ""))], progress)[0]
 
 
 def read_groups(
@@ -185,18 +178,25 @@ def read_groups(
     InputError
         As `read_raw`; a run of no pattern, or of two.
     """
-    given = dict(options)
-    with IMPORTERS.guarded(name):
-        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
-        patterns = [text.strip() for text in names.split(BETWEEN)]
-        from coeflab.tables.collect import collect_groups
+    patterns = [text.strip() for text in str(options.get("names", "")).split(BETWEEN)]
+    tables = zip(patterns, _of_runs(path, name, options, patterns, progress), strict=True)
+    return tuple(replace(table, dialect={**table.dialect, "names": pattern}) for pattern, table in tables)
 
+
+def _of_runs(
+    path: Path, name: str, options: Mapping[str, Any], patterns: Sequence[str], progress: Progress | None
+) -> tuple[RawTable, ...]:
+    """A table of the runs of each pattern of names."""
+    from coeflab.tables.collect import collect_groups
+
+    given = {key: value for key, value in options.items() if key not in OF_RUNS}
+    runs, state = (str(options.get(option, "")) for option in OF_RUNS[1:])
+    with IMPORTERS.guarded(name):
         groups = collect_groups(
             path, name, options=given, patterns=patterns, run_list=Path(runs) if runs else None, progress=progress,
             state=Path(state) if state else None,
         )  # fmt: skip
-    tables = zip(patterns, (group.table for group in groups), strict=True)
-    return tuple(replace(table, dialect={**table.dialect, "names": pattern}) for pattern, table in tables)
+    return tuple(group.table for group in groups)
 
 
 def with_declarations(
