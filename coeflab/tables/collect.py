@@ -43,9 +43,8 @@ KEPT = {
 }
 SAME = 1e-5  # relative: speeds come from vectors of six digits
 EARLY = 0.6  # of the median end of all runs: what ends before it may have crashed
-UNLIKE = (
-    3.0  # ratio of two standard errors beyond what eight batches explain: 95 % of chi-square of 7 degrees of freedom
-)
+# Ratio of two standard errors beyond what eight batches explain: 95 % of chi-square of 7 degrees of freedom.
+UNLIKE = 3.0
 
 
 @brief

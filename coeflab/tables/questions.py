@@ -33,11 +33,8 @@ ONCE = "once its unit is said"
 NO_POINT = "forces alone: no point matters"
 ANY_SIGN = "zeros throughout: any sign is right"
 SIGNS = ("axes.alpha", "axes.beta")
-READINGS = {
-    1: ("FRD", "FLU"),
-    -1: ("CFD", ["aft", "port", "down"]),
-    0: ("FRD", "FLU"),
-}  # by where x points: y to starboard, to port
+# By where x points: y to starboard, to port.
+READINGS = {1: ("FRD", "FLU"), -1: ("CFD", ["aft", "port", "down"]), 0: ("FRD", "FLU")}
 
 
 @dataclass(frozen=True, slots=True)
