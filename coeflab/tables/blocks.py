@@ -10,8 +10,8 @@ import numpy as np
 
 from coeflab.core.units import factor, fits
 from coeflab.tables.column_map import DIMENSIONS, ROLES, SETTINGS, read_column_map
+from coeflab.tables.column_names import named_as
 from coeflab.tables.dialect import Marks, one_reading
-from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.vocabulary import vocabulary
 

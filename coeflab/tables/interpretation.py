@@ -17,6 +17,8 @@ from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_names import UNKNOWN, named_as
+from coeflab.tables.columns import columns_of
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -39,11 +41,9 @@ from coeflab.tables.proposals import (
     AREA,
     FEW_STRANGE,
     PROPELLER,
-    UNKNOWN,
     Proposal,
     coefficient_as_said,
     lacks_sizes,
-    named_as,
     proposals,
     taken_as,
 )
@@ -52,7 +52,6 @@ from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
-from coeflab.tables.to_frd import columns_of
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 

@@ -18,10 +18,11 @@ from coeflab.core.units import factor, fits
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
+from coeflab.tables.columns import Columns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import BLANK, SAME_DENSITY, Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
 from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")

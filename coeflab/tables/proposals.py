@@ -6,7 +6,6 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from itertools import permutations
 
 import numpy as np
 
@@ -14,31 +13,28 @@ from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array
 from coeflab.core.units import SI, fits, quantity
-from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
+from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS
 from coeflab.tables.column_map import (
-    ACROSS,
     EXAMPLES,
     FORCES,
     OPEN_SIZES,
-    ROLES,
     SETTINGS,
-    WIND,
     WORDS,
     ColumnMap,
     read_column_map,
     share,
 )
+from coeflab.tables.column_names import UNKNOWN, either_unit, is_pure, name_of, named_as
 from coeflab.tables.evidence import TURN
 from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.vocabulary import folded, recorded, vocabulary
+from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
 from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
 EITHER = "which of them the numbers are in"
 US = {"force": "lbf", "moment": "lbf*ft", "speed": "ft/s", "length": "ft"}
-UNKNOWN = "no known name"
 BESIDE_WIND = "lift, drag and moments are there as coefficients already"
 TURNED_WIND = "lift and drag turned by alpha, in every row"
 PROPELLER = "a coefficient of the propeller, by its name beside J"
@@ -56,19 +52,16 @@ MACH = 1.2  # of what may still be water or a slow wind tunnel
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
 # Of a time a wrong split makes one, r_rads_s, so the name has to say it too.
 _OF_TIME = re.compile(r"(?i)(?:^|[\W_])(?:t|wall|cpu)(?:[\W_]|$)|time|zeit|dauer|duration|temps|duree|durée|elapsed")
-OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
 }  # fmt: skip
-TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 _PRIME = r"([XYZKMN])['\u2032\u2019]?"
 _THOUSAND = re.compile(
     rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
 )
 _BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may be a unit behind a name
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
-_ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +139,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(
             f"U [{unit} ship {scale!r}]", f"of the ship, over the root of the scale {scale:g}: the speed of the model"
         )
-    name, why, certain = _name(column)
+    name, why, certain = name_of(column)
     if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
         prime = m[1] or m[2]
         return Proposal(f"{prime}' [1e-3]", f"its name: 1000 {prime}', a prime by the campaign's length")
@@ -176,7 +169,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
     one, system = _with_unit(column, given, why, certain, by), said_of.get(UNITS_OF)
     if one.text.endswith(f"[{OPEN}]") and not one.unread and system and given.dimension not in ("angle", "none"):
-        either = _either(unit, given.dimension)
+        either = either_unit(unit, given.dimension)
         units = {
             "SI": either[0] or SI[given.dimension],
             "US": either[1] or US.get(given.dimension, SI[given.dimension]),
@@ -226,123 +219,6 @@ def allowed(unit: str, error: bool = False) -> str:
     return f"; {words}: {names}, or ignore" if names else ""
 
 
-def _name(column: RawColumn) -> tuple[str, str, bool]:
-    """Plain name, what it rests on, and whether it is certain; of ``Side Force Monitor: Fy`` by both parts."""
-    found = _whole_name(column)
-    if found[0] or found[1] != UNKNOWN:
-        return found
-    error = "se_" * column.name.startswith("se_")
-    parts = [recorded(p) for p in column.name.removeprefix("se_").split(":")]
-    named = {n: why for p in parts for n, why, _ in [_whole_name(replace(column, name=error + p))] if n}
-    if len(named) == 1:
-        return (*named.popitem(), False)
-    if (
-        not named
-        and (wind := vocabulary().of_flow(column.name))
-        and (fits(column.unit, "force") or _either(column.unit, "force")[0])
-    ):
-        return f"{error}{wind}", f"a word of its name, {TURNED.format(ACROSS[wind])}", False
-    return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
-
-
-def named_as(name: str) -> str:
-    """What a column is by its name alone, ``beta`` of sideslip; empty where it has no known name."""
-    return _whole_name(RawColumn(name, "", np.empty(0)))[0]
-
-
-def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
-    """By the name as it stands."""
-    if column.means:
-        try:
-            return str(read_column_map(column.means)), "its format says so", True
-        except InputError:
-            return "label", f"its format says that it is {column.means}, which no fit uses", True
-    own = column.name.strip()
-    short = own.replace("′", "'").replace("’", "'")
-    plain = short.removeprefix("se_").removesuffix("'")
-    bare = folded(own)
-    if meanings := vocabulary().several.get(bare):
-        return _by_unit(meanings.split(), column.unit)
-    if plain in OWN and bare not in vocabulary().own:
-        try:
-            return str(read_column_map(short)), "its name", True
-        except InputError:
-            pass
-    if own == "n" and column.unit.casefold() in vocabulary().turns:
-        return "rps", "its name and unit", False
-    if own == "T" and fits(column.unit, "force"):
-        return "thrust", "its name and unit", False
-    bare = _OF_ALL.sub("", bare) if not _knows(bare) else bare
-    error = None if bare in vocabulary().columns else _ERROR.search(bare)  # Achse, Bremse
-    bare = _ERROR.sub("", bare) if error else bare
-    prefix, prime = "se_" if error else "", ""
-    if bare.endswith("prime") or short.endswith("'"):
-        bare, prime = bare.removesuffix("prime"), "'"
-    known = _knows(bare) or error or prime
-    wind = vocabulary().flow.get(bare) or ("" if known else _in_other_words(own))
-    if wind in WIND:
-        also = "; Cl of aircraft is also the rolling moment, K" if bare == "cl" else ""
-        return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
-    single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
-    single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
-    words = vocabulary()
-    pure = "" if prime else words.coefficients.get(bare, "")
-    name = words.columns.get(bare) or _with_symbol(own) or single.get(bare) or pure or wind
-    if not name:
-        return "", UNKNOWN, False
-    if error and name not in COMPONENTS:
-        return "", UNKNOWN, False
-    return f"{prefix}{name}{prime}", "its name", False
-
-
-_OF_ALL = re.compile(
-    r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$"
-)
-
-
-def _knows(bare: str) -> bool:
-    """Whether a folded name stands in the vocabulary as it is."""
-    words = vocabulary()
-    return any(bare in section for section in (words.columns, words.flow, words.coefficients))
-
-
-def _in_other_words(name: str) -> str:
-    """What a name is by its words in another order, or cut short: Angle of drift, drift ang, Lift coeff; empty where it is nothing."""
-    words, parts = vocabulary(), _words(name)
-    full = [w for part in parts if (w := words.short.get(part, part))]
-    every = (
-        ("".join(some) for some in permutations(full)) if len(full) <= 3 and (full != parts or len(full) > 1) else ()
-    )
-    found = next((n for w in every if (n := words.columns.get(w) or words.flow.get(w))), "")
-    return found if found in FORCES or not {*parts} & words.lists["coefficient"] else ""
-
-
-def _words(name: str) -> list[str]:
-    return [folded(w) for w in re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
-
-
-def _is_pure(name: str) -> bool:
-    """Whether a name is that of a coefficient."""
-    bare, words = folded(name), {*_words(name)}
-    pure = not {bare, _OF_ALL.sub("", bare), *words}.isdisjoint(vocabulary().coefficients)
-    return pure or not words.isdisjoint(vocabulary().lists["coefficient"])
-
-
-def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
-    """Of several meanings the first that the unit fits; nothing where it fits none or there is none."""
-    spelt = vocabulary().units.get(unit.casefold(), unit)
-    fits = [m for m in meanings if m not in WORDS and fits(spelt, read_column_map(m).dimension)]
-    return (fits[0], "its name", False) if fits else ("", f"{' or '.join(meanings)} by its name", False)
-
-
-def _with_symbol(own: str) -> str:
-    """Of a name with its symbol behind it, ``Driftwinkel β``, where both say the same."""
-    word, _, symbol = own.rpartition(" ")
-    name = vocabulary().columns.get(folded(word), "")
-    same = {*vocabulary().symbols.get(name, "").split(), name} - {""}
-    return name if symbol.strip("()[], ") in same else ""
-
-
 def _by_sizes(name: str, moment: bool, by: tuple[object, object]) -> str:
     """A coefficient by an area, and of a moment a length; ? for what nobody said."""
     sizes = zip(by, ("area", "length"), strict=True)
@@ -378,7 +254,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     unit = vocabulary().units.get(unit.casefold(), unit)
     moment = said.name in MOMENTS
     is_coefficient = said.name in FORCES and (
-        unit in ("-", "1") or counted or (not unit and _is_pure(column.name) and not certain)
+        unit in ("-", "1") or counted or (not unit and is_pure(column.name) and not certain)
     )
     zeros = bool(column.values.size) and not np.any(np.nan_to_num(column.values))
     if is_coefficient and zeros and said.name not in ("lift", "drag"):  # without drag nothing turns lift
@@ -394,7 +270,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     except InputError:
         if column.name.strip().upper() in ("X", "Y", "Z") and fits(unit, "length"):
             return Proposal("ignore", f"[{unit}] is a length: a position, no force")
-        if any(_either(unit, said.dimension)):
+        if any(either_unit(unit, said.dimension)):
             return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}")
         return _unread(name, said, column.unit, why)
     if whole is not None:
@@ -411,17 +287,6 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     if said.dimension == "angle" and _whole_degrees(column.values):
         return Proposal(f"{name} [deg]", f"{why}; whole numbers", assumed=True)
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
-
-
-def _either(unit: str, dimension: str) -> tuple[str, str]:
-    """The SI and the US unit of a head that gives both, ``lb / N``, so that the numbers may be in either; empty elsewhere."""
-    words = vocabulary().units
-    pounds = {"lb": "lbf", "lbs": "lbf"} if dimension == "force" else {}
-    parts = [words.get(p.casefold(), pounds.get(p.casefold(), p)) for p in map(str.strip, unit.split("/"))]
-    if len(parts) != 2 or not all(fits(p, dimension) for p in parts):
-        return "", ""
-    us = [bool({"lbf", "ft", "in"} & {*re.split(r"[^a-z]", p)}) for p in parts]
-    return (parts[us.index(False)], parts[us.index(True)]) if us[0] != us[1] else ("", "")
 
 
 def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:

@@ -19,6 +19,7 @@ from coeflab.core.types import brief
 from coeflab.core.units import SI, Header, factor, fits
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import LINEAR
+from coeflab.tables.column_names import named_as
 from coeflab.tables.conditions import (
     COUNTED,
     DIMENSIONS,
@@ -32,7 +33,6 @@ from coeflab.tables.conditions import (
     in_a_list,
     named,
 )
-from coeflab.tables.proposals import named_as
 from coeflab.tables.vocabulary import one_name
 
 RUN = "run"

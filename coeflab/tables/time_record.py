@@ -12,7 +12,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.texts import input_error
 from coeflab.core.wording import listed
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.proposals import named_as
+from coeflab.tables.column_names import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 TIMES = ("t", "time", "zeit", "temps", "tempo", "timestamp", "seconds", "sec", "elapsed time", "simulation time")

@@ -1,159 +1,28 @@
-"""From the columns of any importer to a ForceTable: axes, angle signs, half models, inertia, exclusions.
-
-Columns of a table in SI but in its own axes: what every importer makes of its file before the common turn to FRD.
-"""
+"""From the columns of any importer to a ForceTable: axes, angle signs, half models, inertia, exclusions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import ANYWHERE, Axes, angle_sign
+from coeflab.core.axes import ANYWHERE, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.texts import input_error
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.assumptions import assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
-from coeflab.tables.force_table import DRIVEN, FEWEST_SPEEDS, Declared, Exclusion, ForceTable, running_rows
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
-    """Columns in SI, by their plain names, in the axes that the campaign declares.
-
-    Attributes
-    ----------
-    file : Path
-    header_line : int
-    lines : tuple of int
-        Line number of every row.
-    headers : dict of str to str
-        Header of a column as written, by its plain name (``Y`` for ``Y' [-]``).
-    angles : dict of str to array
-        ``alpha``, ``beta`` in radians, in the sign that the table uses.
-    velocity : dict of str to array
-        u v w p q r, m/s and rad/s.
-    controls : dict of str to array
-        ``dr``, ``ds``, ``db`` in radians.
-    speed : (n,) array
-        U, m/s.
-    forces, errors : dict of str to array
-        X Y Z K M N and their standard errors, N and N m; NaN where blank. Of ``drag``, ``lift`` (up) and ``side`` (to
-        starboard), along and across the flow, `in_body_axes` makes X, Y and Z.
-    labels : dict of str to list of str
-    doubtful : tuple of frozenset of str
-        For every row the plain names of columns whose digits are doubtful in the source.
-    row_labels : tuple of str
-        One short name per row.
-    files : tuple of Path
-        What was read, where ``file`` is a folder.
-    radius : (n,) array or None
-        Column R, from the arm point to the centre of the circle, m; in the place of p, q and r.
-    density : (n,) array or None
-        Of the water of every row, kg/m^3; by default the campaign's.
-    propeller : dict of str to array
-        ``rps`` in rad/s, ``J``, ``thrust`` in N; NaN where blank.
-    """
-
-    file: Path
-    header_line: int
-    lines: tuple[int, ...]
-    headers: Mapping[str, str]
-    angles: Mapping[str, Array]
-    velocity: Mapping[str, Array]
-    controls: Mapping[str, Array]
-    speed: Array
-    forces: Mapping[str, Array]
-    errors: Mapping[str, Array]
-    labels: Mapping[str, list[str]]
-    doubtful: tuple[frozenset[str], ...]
-    row_labels: tuple[str, ...] = field(default=())
-    files: tuple[Path, ...] = ()
-    radius: Array | None = None
-    density: Array | None = None
-    propeller: Mapping[str, Array] = field(default_factory=dict)
-
-    def __len__(self) -> int:
-        return len(self.lines)
-
-    def fail(self, code: str, *, row: int | None = None, name: str = "", **facts: object) -> InputError:
-        """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
-        is_folder = self.file.is_dir()
-        line = None if is_folder else self.header_line or None if row is None else self.lines[row]
-        where = f" in {self.row_labels[row]}" if is_folder and row is not None and self.row_labels else ""
-        return input_error(code, self.file, line, self.headers.get(name, name) or None, where=where, **facts)
-
-    @property
-    def digest(self) -> str:
-        """Hexadecimal sha256 of the numbers, for columns that no file holds."""
-        out = sha256()
-        for part in (self.angles, self.velocity, self.controls, {"U": self.speed}, self.forces, self.errors):
-            for name in sorted(part):
-                out.update(name.encode() + np.ascontiguousarray(part[name], dtype="<f8").tobytes())
-        return out.hexdigest()
-
-    @property
-    def settings(self) -> dict[str, Array]:
-        """What the test was set to: angles, velocities, control angles."""
-        return {**self.angles, **self.velocity, **self.controls}
-
-    def check(self) -> None:
-        """Refuse settings that are blank, angles beyond a half turn, and standard errors that are none.
-
-        Raises
-        ------
-        InputError
-            By line and column; of every column the first cell.
-        """
-        if complaints := list(self._complaints()):
-            raise together(complaints)
-
-    def _complaints(self) -> Iterator[InputError]:
-        if not self.forces:
-            yield self.fail("tables.no_force_column")
-        if (row := _first(~(self.speed > 0.0))) is not None:
-            found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
-            yield self.fail("tables.speed_of_row", row=row, name="U", found=found)
-        if self.density is not None and (row := _first(~(self.density > 0.0))) is not None:
-            found = "a blank cell" if np.isnan(self.density[row]) else f"a density of {self.density[row]:g} kg/m^3"
-            yield self.fail("tables.density_of_row", row=row, name="density", found=found)
-        for name, values in self.settings.items():
-            if (row := _first(np.isnan(values))) is not None:
-                yield self.fail("tables.blank_cell", row=row, name=name)
-                continue
-            if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
-                continue
-            yield self.fail(
-                "tables.angle_beyond_half_turn", row=row, name=name, angle=values[row], plain=self.headers[name].partition(" [")[0],
-            )  # fmt: skip
-        for name, values in self.errors.items():
-            if name not in self.forces:
-                yield self.fail("tables.error_without_force", name=f"se_{name}", force=name)
-                continue
-            unused = np.isnan(self.forces[name]) & np.isnan(values)
-            if (row := _first(~(values > 0.0) & ~unused)) is not None:
-                found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
-                yield self.fail("tables.standard_error_of_row", row=row, name=f"se_{name}", found=found)
-
-
-def _first(where: NDArray[np.bool_]) -> int | None:
-    rows = np.flatnonzero(where)
-    return int(rows[0]) if rows.size else None
-
+from coeflab.tables.columns import Columns, columns_of, first_row
+from coeflab.tables.force_table import DRIVEN, Declared, Exclusion, ForceTable, running_rows
+from coeflab.tables.wind_axes import in_body_axes
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
-STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
@@ -164,7 +33,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     """Turn columns into the fluid's force on the body in FRD about the campaign's reference point.
 
     Moments that the table has about a point of its own are moved; one whose move needs a force that the table lacks is left
-    left out, which the notes say. Lift and drag are turned to body axes, see `in_body_axes`.
+    out, which the notes say. Lift and drag are turned to body axes, see `in_body_axes`.
 
     Raises
     ------
@@ -181,7 +50,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     motion = _motion(columns, campaign, table, point)
     notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
     if wind := [c for c in WIND if c in columns.forces]:
-        columns = in_body_axes(columns, campaign)
+        columns = in_body_axes(columns, campaign.axes, _linear(columns, campaign))
         still = [f"{a} = 0" for a in ("alpha", "beta") if columns.angles and a not in columns.angles]
         notes.append(
             f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
@@ -357,93 +226,6 @@ def _linear(columns: Columns, campaign: Campaign) -> Array:
     return np.asarray(linear)
 
 
-def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
-    """Lift, drag and side force as X, Y, Z in the declared axes, by the flow of each row.
-
-    With L up, D aft and C to starboard, across and along the flow, and a, b of u = U cos(a) cos(b), v = U sin(b),
-    w = U sin(a) cos(b), in FRD::
-
-        X = -D cos(a) cos(b) - C cos(a) sin(b) + L sin(a)
-        Y = -D sin(b)        + C cos(b)
-        Z = -D sin(a) cos(b) - C sin(a) sin(b) - L cos(a)
-
-    Where the table has Y of the body in the place of C, C = (Y + D sin(b)) / cos(b). The flow is that of the row's angles
-    or velocities, before they are moved to another point. Standard errors become the bound sum |coefficient| se, which
-    holds for any correlation.
-
-    Notes
-    -----
-    The matrix of flow (wind) to body axes of the Society of Flight Test Engineers, Reference Handbook (2013), 6.2.3, applied
-    to (-D, C, -L).
-
-    Raises
-    ------
-    InputError
-        A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
-        flow itself; X or Z of the body beside drag, or Y beside side.
-    """
-    sources = columns_of(campaign.axes)
-    if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
-        raise together(complaints)
-    linear = _linear(columns, campaign)
-    u, sin_b, w = (linear / np.linalg.norm(linear, axis=1)[:, None]).T
-    cos_b = np.hypot(u, w)
-    inclined = cos_b > 0.0
-    cos_a, sin_a = (np.divide(part, cos_b, out=np.full(len(columns), rest), where=inclined) for part, rest in ((u, 1.0), (w, 0.0)))  # fmt: skip
-    result, (y, y_sign) = {"X": "drag", "Y": "side", "Z": "lift"}, sources["Y"]
-    parts: dict[str, dict[str, Array]] = {
-        "X": {"drag": -cos_a * cos_b, "side": -cos_a * sin_b, "lift": sin_a},
-        "Y": {"drag": -sin_b, "side": cos_b},
-        "Z": {"drag": -sin_a * cos_b, "side": -sin_a * sin_b, "lift": -cos_a},
-    }
-    if "side" not in columns.forces and y in columns.forces:
-        if (row := _first(cos_b < SIDEWAYS)) is not None:
-            raise columns.fail("tables.flow_from_the_side", row=row)
-        for part, along in (("X", cos_a), ("Z", sin_a)):
-            of_y = {"drag": -along / cos_b, y: -y_sign * along * sin_b / cos_b}
-            parts[part] = of_y | {"lift": parts[part]["lift"]}
-    moved = {name: value for name, value in columns.forces.items() if name not in WIND}
-    errors = {name: value for name, value in columns.errors.items() if name not in WIND}
-    headers, doubtful = dict(columns.headers), [set(words) for words in columns.doubtful]
-    for part, of in result.items():
-        if of not in columns.forces:
-            continue
-        needed = {name: k for name, k in parts[part].items() if np.any(np.abs(k) > STRAIGHT)}
-        if (lacking := next((n for n in needed if n not in columns.forces), "")) and lacking in WIND:
-            angle, row = ("alpha", np.abs(sin_a)) if lacking == "lift" else ("beta", np.abs(sin_b))
-            raise columns.fail(
-                "tables.wind_part_lacks", row=int(np.argmax(row)), name=of, of=of, lacking=lacking, angle=angle,
-                degrees=np.degrees(np.arcsin(min(row.max(), 1.0))), or_body=f", or {y} of the body" * (lacking == "side"), part=part,
-            )  # fmt: skip
-        own, sign = sources[part]
-        moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
-        if all(name in columns.errors for name in needed):
-            errors[own] = np.asarray(sum(np.abs(k) * columns.errors[name] for name, k in needed.items()))
-        headers[own] = headers.get(of, of)
-        for row, words in enumerate(columns.doubtful):
-            doubtful[row] |= {own} if words & set(needed) else set()
-    return replace(columns, forces=moved, errors=errors, headers=headers, doubtful=tuple(map(frozenset, doubtful)))
-
-
-def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[InputError]:
-    """What is missing or doubled beside lift, drag and side force; ``own`` maps FRD components to the table's columns."""
-    wind = [c for c in WIND if c in columns.forces]
-    if "drag" not in wind:
-        yield columns.fail("tables.wind_without_drag", name=wind[0], wind=" and ".join(wind))
-    for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
-        if own[part] in columns.forces and beside in wind:
-            yield columns.fail(
-                "tables.wind_beside_body_axes", name=own[part], wind=" and ".join(wind), own=own[part], beside=beside
-            )
-    moving = [c for c in LINEAR if c in columns.velocity]
-    for force, angle in (("lift", "alpha"), ("side", "beta")):
-        if force in wind and angle not in columns.angles and not moving:
-            yield columns.fail("tables.wind_without_angle", name=force, force=force, angle=angle)
-    resistance = not columns.settings and np.unique(columns.speed).size >= FEWEST_SPEEDS
-    if wind == ["drag"] and not columns.angles and not moving and not resistance:
-        yield columns.fail("tables.drag_without_direction", name="drag")
-
-
 def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
     """Rates p q r, (n, 3), of a body that runs on a circle, with the axis that ``centre`` names in its plane.
 
@@ -452,7 +234,7 @@ def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
     """
     radius = np.asarray(columns.radius)
     side, signed = centre.removeprefix(SIGNED), centre.startswith(SIGNED)
-    if (row := _first(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
+    if (row := first_row(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
         found = "a blank cell" if np.isnan(radius[row]) else f"a radius of {radius[row]:g} m"
         raise columns.fail(
             "tables.no_radius", row=row, name="R", found=found, wanted="a radius that is not zero" if signed else "a radius above zero",
@@ -460,7 +242,7 @@ def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
         )  # fmt: skip
     axis = np.cross(linear, SIDES[side])
     size, speed = np.linalg.norm(axis, axis=1), np.linalg.norm(linear, axis=1)
-    if (row := _first(size <= 1e-9 * speed)) is not None:
+    if (row := first_row(size <= 1e-9 * speed)) is not None:
         raise columns.fail("tables.straight_to_the_centre", row=row, name="R", side=side)
     return np.asarray(axis * (speed / (radius * size))[:, None] + 0.0)
 
@@ -504,16 +286,6 @@ def speed_of_rows(
     found = np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0))
     on_the_spot = (found == 0.0) & (rest > 0.0) & np.any(found > 0.0)  # one velocity at a time, a rate without speed
     return np.where(on_the_spot, campaign.conditions.speed, found)
-
-
-def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:
-    """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
-    out = {}
-    for group in (COMPONENTS[:3], COMPONENTS[3:]):
-        for i, name in enumerate(group):
-            j = int(np.argmax(np.abs(axes.rotation[i])))
-            out[name] = group[j], float(axes.rotation[i, j])
-    return out
 
 
 def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:

@@ -16,9 +16,10 @@ from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, FORCES, ROLES, ColumnMap
+from coeflab.tables.columns import Columns
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import force_table, speed_of_rows
 from coeflab.tables.vocabulary import did_you_mean, one_name
 
 summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"

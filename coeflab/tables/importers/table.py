@@ -22,9 +22,9 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables import text_dialect
 from coeflab.tables.blocks import Title, with_blocks
+from coeflab.tables.column_names import named_as
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
 from coeflab.tables.monitor_files import head, kind_of
-from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawTable
 
 summary = "any delimited text: delimiter, decimal mark, units and encoding detected and reported"
