@@ -543,7 +543,7 @@ class Campaign:
             raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=self.path, column="table")
         return out
 
-    def fail(self, table: TableDeclaration, key: str, code: str, **facts: object) -> InputError:
+    def fail(self, table: TableDeclaration, key: str, code: str, **facts: Any) -> InputError:
         """An error about a key of one ``[[table]]``, to be raised by the caller."""
         at = next(i for i, own in enumerate(self.tables) if own is table)
         line = self.lines[at] if self.lines else None

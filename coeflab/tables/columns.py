@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +78,7 @@ class Columns:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def fail(self, code: str, *, row: int | None = None, name: str = "", **facts: object) -> InputError:
+    def fail(self, code: str, *, row: int | None = None, name: str = "", **facts: Any) -> InputError:
         """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
         is_folder = self.file.is_dir()
         line = None if is_folder else self.header_line or None if row is None else self.lines[row]

@@ -181,8 +181,8 @@ def own_keys(
     made_with = t.raw.stated.get("conditions.density")
     if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
         out["forces_density"] = made_with.value, f"stated: {made_with.place}"
-    if half and (one := t.settings.get(HALF_MODEL)) is not None:
-        out["half_model"] = one.value, one.origin + _of_half(one.value)
+    if half and HALF_MODEL in t.settings:
+        out["half_model"] = (which := t.settings[HALF_MODEL]).value, which.origin + _of_half(which.value)
     if t.settings[POINT_OF].value != point:
         out["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
     return out

@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,7 +151,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
     return tuple(out)
 
 
-def fault(code: str, raw: RawTable, column: RawColumn, row: int | None = None, **facts: object) -> InputError:
+def fault(code: str, raw: RawTable, column: RawColumn, row: int | None = None, **facts: Any) -> InputError:
     """An error about a column of the file, or one cell of it, to be raised by the caller."""
     line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
     where = f" in {row_name(raw, row)}" if row is not None and raw.path.is_dir() else ""

@@ -136,7 +136,9 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
 def known_length(raw: RawTable, settings: Settings) -> float | None:
     """The length of the primes, m, as a person or the file says it; None where nobody does, or the file in two ways."""
     length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    return None if length is None or getattr(length, "contradicted", "") else quantity(length.value, "length")
+    if length is None or (isinstance(length, Stated) and length.contradicted):
+        return None
+    return quantity(length.value, "length")
 
 
 def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float | None]:

@@ -186,7 +186,7 @@ def _runs(campaign: Campaign, table: TableDeclaration, cells: Cells) -> list[Pla
         given = {n: float(v[i]) for n, v in numbers.items() if np.isfinite(v[i])}
         motion = texts["motion"][i]
 
-        def fail(code: str, column: str, row: int = i, **facts: object) -> InputError:
+        def fail(code: str, column: str, row: int = i, **facts: Any) -> InputError:
             return input_error(code, cells.file, cells.line(row), column, **facts)
 
         if motion not in VARIABLES:
