@@ -17,7 +17,7 @@ import numpy as np
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.domain import SLACK, Domain, Extrapolation
-from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm
+from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import motion_law
@@ -36,6 +36,40 @@ def place_at(place: int, wind: Sequence[Sequence[Any]]) -> tuple[str, tuple[bool
     group, which = divmod(place - len(COMPONENTS), len(WIND))
     one, two, three = map(bool, wind[group])
     return WIND[which], (one, two, three)
+
+
+Readings = tuple[tuple[str, Reading], ...]
+
+
+def table_of(
+    key: str, names: tuple[str, ...], box: tuple[Any, Any], spaces: Any, rule: int, primes: Sequence[float], boxed: bool
+) -> tuple[Domain, Readings]:
+    """Hull and readings of a table by the numbers that a program has of it.
+
+    Parameters
+    ----------
+    key : str
+        Of the table, for readings outside of a box.
+    names : tuple of str
+        Its variables.
+    box : two (d,) sequences
+        Low and high ends.
+    spaces : (m, d + 1) array
+    rule : int
+        Of `RULES`.
+    primes : (d,) sequence
+    boxed : bool
+        Whether every variable is held by itself.
+    """
+    low, high = (np.array(end, dtype=float) for end in box)
+    each = zip(names, primes, low, high, strict=True)
+    readings = (
+        (v, Reading(float(p), float(a), float(b), True) if boxed else Reading(float(p), table=key))
+        for v, p, a, b in each
+    )
+    return Domain(names, low, high, np.array(spaces, dtype=float).reshape(-1, len(names) + 1), RULES[rule]), tuple(
+        readings
+    )
 
 
 @brief

@@ -205,7 +205,7 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
         for i in range(3)
         for j in range(i, 3)
     }
-    inertia, turn = symmetric(axes), rotation(*_angles(inertial, x, file))
+    inertia, turn = symmetric(axes), rotation(*_origin(inertial, "rpy", x, file))
     if inertia is not None:
         inertia = turn @ inertia @ turn.T
     return FossenLink(
@@ -214,7 +214,7 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
         linear=read["linear_damping"],
         forward=read["linear_damping_forward_speed"],
         quadratic=read["quadratic_damping"],
-        centre=FRD * np.array(_origin(inertial, x, file)) + 0.0,
+        centre=FRD * np.array(_origin(inertial, "xyz", x, file)) + 0.0,
         reference=FRD * np.array(_reference(root, name, x, file)) + 0.0,
         density=next(
             (_scalar(e, "fluid_density", x, file) for e in root.iter() if e.find("fluid_density") is not None), None
@@ -252,17 +252,11 @@ def _attribute(parent: Element | None, tag: str, name: str, x: Xacro, file: Path
     return None if text is None else numbers(x.text(text), (1,), f"{tag} {name}", file)[0]
 
 
-def _origin(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
+def _origin(parent: Element | None, name: str, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
+    """Place, ``xyz``, m, or roll, pitch and yaw, ``rpy``, rad, of an origin."""
     element = None if parent is None else parent.find("origin")
-    text = None if element is None else element.get("xyz")
-    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin xyz", file)
-
-
-def _angles(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
-    """Roll, pitch and yaw of the axes of inertia, rad."""
-    element = None if parent is None else parent.find("origin")
-    text = None if element is None else element.get("rpy")
-    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin rpy", file)
+    text = None if element is None else element.get(name)
+    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), f"origin {name}", file)
 
 
 def _reference(root: Element, link: str, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
@@ -270,5 +264,5 @@ def _reference(root: Element, link: str, x: Xacro, file: Path | str | None) -> t
         parent, child = joint.find("parent"), joint.find("child")
         fixed = joint.get("type") == "fixed" and parent is not None and child is not None
         if fixed and (parent.get("link"), child.get("link")) == (link, "reference_point"):  # type: ignore[union-attr]
-            return _origin(joint, x, file)
+            return _origin(joint, "xyz", x, file)
     return (0.0, 0.0, 0.0)
