@@ -126,8 +126,8 @@ def is_pure(name: str) -> bool:
 def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
     """Of several meanings the first that the unit fits; nothing where it fits none or there is none."""
     spelt = vocabulary().units.get(unit.casefold(), unit)
-    fits = [m for m in meanings if m not in WORDS and fits(spelt, read_column_map(m).dimension)]
-    return (fits[0], "its name", False) if fits else ("", f"{' or '.join(meanings)} by its name", False)
+    fitting = [m for m in meanings if m not in WORDS and fits(spelt, read_column_map(m).dimension)]
+    return (fitting[0], "its name", False) if fitting else ("", f"{' or '.join(meanings)} by its name", False)
 
 
 def _with_symbol(own: str) -> str:
