@@ -16,6 +16,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
+from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.column_names import UNKNOWN, named_as
 from coeflab.tables.columns import columns_of
@@ -37,16 +38,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import (
-    AREA,
-    FEW_STRANGE,
-    PROPELLER,
-    Proposal,
-    coefficient_as_said,
-    lacks_sizes,
-    proposals,
-    taken_as,
-)
+from coeflab.tables.proposals import AREA, Proposal, coefficient_as_said, lacks_sizes, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting

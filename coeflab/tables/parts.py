@@ -19,15 +19,16 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.law.symbols import COMPONENTS
-from coeflab.tables.collect import DOUBTFUL as UNCERTAIN
+from coeflab.tables.column_company import proposals
 from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import texts_of
-from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF, proposals
+from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
+from coeflab.tables.runs_table import DOUBTFUL as UNCERTAIN
 from coeflab.tables.settings import Setting
 from coeflab.tables.settings_in_files import stated_settings
 from coeflab.tables.words.points import POINT_FROM, POINT_OF

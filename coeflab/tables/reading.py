@@ -146,7 +146,7 @@ def read_raw(
     name : str
         Of the importer.
     options : mapping, optional
-        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect`.
+        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect_groups`.
     progress : callable, optional
         Is handed a line now and then.
 
