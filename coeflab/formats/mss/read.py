@@ -277,7 +277,6 @@ APART = (0.2, 5.0)  # B over m g of what may be a buoyancy; beyond, B is a bread
 BUOYANCIES = ("B", "Buoyancy", "nabla", "Vol", "V_disp")
 CENTRES_B = ("xB", "x_B", "xb", "yB", "y_B", "yb", "zB", "z_B", "zb")
 EQUATIONS = re.compile(r"tau\w*|D|Dmtrx|g|X_\w+|Y_\w+|Z_\w+|K_\w+|M_\w+|N_\w+")
-FORWARD, TRANSVERSE = ("xG", "x_G", "xg"), ("Iy", "Iyy", "Iz", "Izz")
 READ = (*DENSITIES, *GRAVITIES, *LENGTHS, "U0", "U", "r2", "r3", "r4", "r5")
 OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity", "mxG", "xG", "yG", "zG", "I_transverse",
                *(f"{kind}_{c}" for kind in ("limit", "rate") for c in CONTROLS),
