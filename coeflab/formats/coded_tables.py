@@ -53,6 +53,6 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[A
                 if n
             )
             component, into = place_at(int(place) - 1, wind)
-            whole = Term(factors), float(value), int(power), 1.0, "table"
-            terms.append(ForceTerm(str(k), component, *whole, readings=readings, hull=hull, into=into))
+            whole = Term(factors), float(value), int(power), 1.0
+            terms.append(ForceTerm(str(k), component, *whole, "table", readings=readings, hull=hull, into=into))
     return ForceLaw(tuple(terms), np.zeros((6, 6, 6)))

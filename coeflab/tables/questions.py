@@ -93,9 +93,8 @@ def _words() -> dict[str, dict[str, Any]]:
 def _asked(key: str, default: str = "", words: str = "", **facts: object) -> Question:
     """A question in the words of words/questions.toml, those of its key or others; facts stand in their braces."""
     own = _words()[words or key]
-    return Question(
-        key, default=default, **{n: v.format_map(facts) if isinstance(v, str) else v for n, v in own.items()}
-    )
+    worded: dict[str, Any] = {n: v.format_map(facts) if isinstance(v, str) else v for n, v in own.items()}
+    return Question(key, default=default, **worded)
 
 
 def questions(
@@ -283,8 +282,8 @@ def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Qu
         yield replace(origin, default=point, why=words.place, short=words.place)
     else:
         follows = "" if POINT_OF in settings else "as the point says"
-        shorts = {"choices": "nose, midship, cg ...", "why": "", "short": "-2.1 from nose: nose"}
-        yield replace(origin, default="", shown=follows, **shorts)
+        shorts = "nose, midship, cg ...", "-2.1 from nose: nose"
+        yield replace(origin, default="", shown=follows, choices=shorts[0], why="", short=shorts[1])
 
 
 def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> Iterator[Question]:
