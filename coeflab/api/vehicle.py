@@ -25,7 +25,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
-from coeflab.core.missed import suggesting
+from coeflab.core.missed import suggesting, was_method
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import fits_about
@@ -259,16 +259,17 @@ class Vehicle:
         """A steady motion; see `coeflab.trim`."""
         return trim(self, **asked)
 
+    @property
     def checks(self) -> tuple[Check, ...]:
         """What ``coeflab params check`` finds: signs, sizes, what stands twice.
 
         Examples
         --------
         >>> import coeflab as cf
-        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
+        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks} <= {"pass", "note", "warn", "fail"}
         True
         """
-        return tuple(c.spoken() for c in plausibility(self.file))
+        return was_method("checks", tuple(c.spoken() for c in plausibility(self.file)))
 
     def simulate(self, manoeuvre: str, **options: Any) -> Motion:
         """A manoeuvre; see `coeflab.simulate`."""

@@ -111,8 +111,10 @@ def merged(
     theirs = theirs.counted_from(ours.datum, ours.reference_point)
     if ours.datum != theirs.datum:
         raise ScalingMismatchError(
-            f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
-            "give the body.toml of the shape the datum of the tables, and the vehicle again."
+            f"the vehicle {base.name} counts places from {shown(ours.datum.id)}, the coefficients of {other.name} from "
+            f"{shown(theirs.datum.id)}. Where the file of the coefficients is all there is, write in its reference_point where its point lies "
+            f'from {shown(ours.datum.id)}: {{"datum": {shown(ours.datum.id)}, "point": [x, y, z]}}, m, FRD. Of tables of your own, give the body.toml '
+            "of the shape their datum, and the vehicle again. A file that is a whole vehicle needs no shape: take it as it is, by its own name."
         )
     theirs, first = by_plain_names(theirs.to_length(ours.scaling))
     resting = {c.symbol for c in ours.coefficients if c.law == "rest"}  # no other spelling of a slope

@@ -165,7 +165,7 @@ def test_what_no_run_of_the_sweep_narrows_stays_and_is_found() -> None:
 def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
     found = cf.next_tests("suboff_bare_hull", "Yr'", runs=4)
     settings = found.tests[0].settings
-    assert found.matrix() == (
+    assert found.matrix == (
         f"[matrix]\ndrift = []\nattack = []\nyaw = [{', '.join(f'{x:.4g}' for x in dict.fromkeys(settings))}]\npitch = []\n"
     )
     np.testing.assert_array_equal(found.frame()["setting"], settings)
