@@ -386,8 +386,8 @@ class Result(Mapping[str, Coefficient]):
         Parameters
         ----------
         symbol : str or sequence of str, optional
-            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to; of `laws` that law.
-            None or several: a forest, or the one law.
+            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to, of a cross term such as
+            ``Yv|r|'`` its slices; of `laws` that law. None or several: a forest, or the one law.
         ax : Axes, optional
             To draw into, in the style that is set; by default that of a new figure. A colour of your own:
             ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.

@@ -186,7 +186,7 @@ def was_method(name: str, value: Noun) -> Noun:
         Of the attribute.
     value : tuple, str or dict
     """
-    kind = {tuple: _CalledTuple, str: _CalledText, dict: _CalledDict}[type(value)]
-    out: Any = kind(value)
+    kinds: dict[type, Any] = {tuple: _CalledTuple, str: _CalledText, dict: _CalledDict}
+    out = kinds[type(value)](value)
     out.called = name
     return out  # type: ignore[no-any-return]

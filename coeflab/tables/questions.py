@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,16 @@ READINGS = {
 }  # by where x points: y to starboard, to port
 
 
+class Basis(Enum):
+    """What the default of a question rests on."""
+
+    ELSEWHERE = auto()  # words, a name, what numbers show
+    COLUMN = auto()  # the median of a column
+    CANCELS = auto()  # nothing: no number hangs on it
+    ZEROS = auto()  # nothing: an angle of zeros has any sign
+    UNSTATED = auto()  # nothing: a word for what nobody stated
+
+
 @dataclass(frozen=True, slots=True)
 class Question:
     """A key of campaign.toml, with what it probably is.
@@ -66,6 +77,8 @@ class Question:
         Axes, signs, points, inertia: a wrong one makes wrong slopes that look right.
     assumed : bool
         Neither words nor numbers of the file give the default: once accepted, what hangs on it says so.
+    basis : Basis
+        What the default rests on, as `why` has it in words.
     """
 
     key: str
@@ -78,6 +91,7 @@ class Question:
     harmless: bool = False
     grave: bool = False
     assumed: bool = False
+    basis: Basis = Basis.ELSEWHERE
 
     @property
     def open(self) -> bool:
@@ -132,6 +146,7 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
         yield Question(
             LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
             "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length", assumed=True,
+            basis=Basis.UNSTATED,
         )  # fmt: skip
     if any(map(without_unit, offers)):
         both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
@@ -209,7 +224,14 @@ def _of_axes(
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
             yield Question(
-                f"axes.{name}", ANY_SIGN, "", next(iter(ANGLE_SIGNS[name])), ANY_SIGN, ANY_SIGN, harmless=True
+                f"axes.{name}",
+                ANY_SIGN,
+                "",
+                next(iter(ANGLE_SIGNS[name])),
+                ANY_SIGN,
+                ANY_SIGN,
+                harmless=True,
+                basis=Basis.ZEROS,
             )
             continue
         text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
@@ -339,7 +361,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
         assumed=bool(length),
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
-                   "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
+                   "L", "not stated", "not stated: LOA, LBP ...", harmless=True, basis=Basis.UNSTATED)  # fmt: skip
     median = {role: _median(columns, role) for role in ("speed", "density")}
     if (
         not median["speed"]
@@ -363,6 +385,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
         yield Question(
             f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0] or ONCE * follows,
             "median of its column" * follows, harmless=bool(found),
+            basis=Basis.COLUMN if found else Basis.CANCELS if cancels else Basis.ELSEWHERE,
         )  # fmt: skip
 
 
@@ -465,7 +488,8 @@ def _is_computed(raw: RawTable) -> bool:
 def _of_source(raw: RawTable) -> Iterator[Question]:
     kind = "cfd" if _is_computed(raw) else "unstated"
     why = "files of a solver" if kind == "cfd" else "not stated"
-    yield Question("source.kind", f"What the numbers are: {', '.join(TABLE_KINDS)}", "", kind, why, why, harmless=True)
+    yield Question("source.kind", f"What the numbers are: {', '.join(TABLE_KINDS)}", "", kind, why, why, harmless=True,
+                   basis=Basis.UNSTATED if kind == "unstated" else Basis.ELSEWHERE)  # fmt: skip
     yield Question("source.citation", "Their report, test or person", "", raw.path.resolve().name, "the file's name", "the file's name",
                    harmless=True)  # fmt: skip
 
@@ -477,7 +501,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         given is not None and isinstance(given.value, tuple)
     ):
         return q
-    if given is not None and given.contradicted and not q.why.startswith("median"):
+    if given is not None and given.contradicted and q.basis is not Basis.COLUMN:
         choices = f"{given.contradicted}; {q.choices}".rstrip("; ")
         return replace(
             q,
@@ -487,14 +511,16 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
             why=given.contradicted,
             asks=f"{q.asks}. {given.contradicted}",
             harmless=False,
+            basis=Basis.ELSEWHERE,
         )
     if given is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(given.value).casefold() in q.default.casefold():
             return replace(q, assumed=False)  # numbers and words agree
         against = f"{given.place}, but {q.default}: {q.why}"
         return replace(
-            q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against
-        )
+            q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against,
+            basis=Basis.ELSEWHERE,
+        )  # fmt: skip
     if (
         given is None
         or not given.offered
@@ -505,11 +531,11 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         )
     ):
         return q
-    if q.harmless and q.default and q.why.startswith("median"):
+    if q.harmless and q.default and q.basis is Basis.COLUMN:
         return q
     value = f"{given.value:.12g}" if isinstance(given.value, float) else str(given.value)
     value = value.casefold() if isinstance(given.value, bool) else value
-    return replace(q, default=value, why=given.place, short=given.place, shown="", assumed=False)
+    return replace(q, default=value, why=given.place, short=given.place, shown="", assumed=False, basis=Basis.ELSEWHERE)
 
 
 def _point(value: Any) -> str:
