@@ -181,10 +181,8 @@ def crossed(apart: float = 0.0) -> cf.Table:
     )
 
 
-def test_a_cross_term_is_drawn_in_slices_as_the_report_draws_them(
-    grid: cf.Table, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    result = cf.fit(grid, "manoeuvring_model", terms=["Yv", "Yr", "Yv|r|", "Nv", "Nr", "Nvvr"])
+def test_a_cross_term_is_drawn_in_slices_as_the_report_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = cf.fit(crossed(), "manoeuvring_model", terms=TERMS)
     law = next(m for m in result.fits[0].models if m.response == "Y")
     made = captured(monkeypatch, model)
     model.slices_figure(law, "m")
