@@ -195,7 +195,7 @@ def test_an_estimate_stays_where_it_brings_the_law_to_points_beyond_the_slope_an
     base = cf.vehicle("remus100", mass=30.5)
     bend = base["Yv|v|'"].value
     v = np.sin(np.radians(np.arange(-12.0, 13.0, 2.0)))
-    force = 2.0 * bend * v + bend / 0.19 * v**3
+    force = 0.3 * bend * v + bend / 0.19 * v**3
     columns = {"v' [1]": v, "Y' [1]": force, "N' [1]": 0.3 * bend * v}
     drift = cf.read_table(
         columns, name="drift", frame="FRD", length=1.33, density=1000, speed=2.0, about="nose, 0.611 m aft", accept=True
