@@ -42,6 +42,7 @@ from coeflab.vehicle.stability import ALONE, INDICES, Derived, missing_for_stabi
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
+SAID = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
 
@@ -141,7 +142,7 @@ def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
     c = known[0]
     rejected = c.status is Status.FORM_REJECTED
     row = AnswerRow(
-        symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
+        symbol, c.value, None if rejected else c.u95, c.status.replace("_", " ") if c.status in SAID else "" if c.u95 else "no U95",
         c.campaign or "", published, anchor=_place(study, c), printed=printed,
         assumed=tuple(dict.fromkeys(str(f["key"]) for f in assumed_of(study, c))),
     )  # fmt: skip
