@@ -83,8 +83,7 @@ def of_bodies(
         body = next((b for b in bodies if turned and (b.name, b.datum) == (t.body, t.datum)), None)
         has = None if body is None else quarter_turned(body, t.reference_point)
         if has is False:
-            facts = {"turned": t.by_symmetry, "body": t.body}
-            found.append(Finding.of("symmetry.body", t.name, Severity.WARN, **facts))
+            found.append(Finding.of("symmetry.body", t.name, Severity.WARN, turned=t.by_symmetry, body=t.body))
             continue
         kept.append(t)
         right |= {t.name} if has else set()
