@@ -113,10 +113,15 @@ def certain_miss(scatter: float | None, pairs: int, squares: float, freedom: int
     Parameters
     ----------
     scatter : float or None
-        Of so many ``pairs`` of repeated runs.
+        Of repeated runs.
+    pairs : int
+        Of these.
     squares : float
-        Of the readings about curves, with so much ``freedom``.
+        Of the readings about curves.
+    freedom : int
+        Of those squares.
     largest : float
+        Force.
 
     Examples
     --------
