@@ -47,6 +47,7 @@ CASES = (
     ("turned", "one power", True), ("turned", "one power, 5 % apart", False), ("turned", "one power, 20 % apart", False),
     ("beside", "one power", True), ("beside", "one power, 5 % apart", False), ("beside", "one power, 20 % apart", False),
     ("two runs", "one power", True), ("two runs", "one power, 20 % apart", False),
+    ("sign", "three powers", True), ("sign", "late bend", True), ("sign", "three powers, opposed", False), ("sign", "late bend, opposed", False),
 )  # fmt: skip
 HEADER = "declared,curve,true,noise %,campaigns,cover %,without it %,width,withdrawn %"
 OWN = {"beside": slice(0, None, 2), "two runs": [-4, -1]}  # settings that were run in the plane
