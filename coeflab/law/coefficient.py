@@ -64,6 +64,7 @@ class Status(StrEnum):
 
 # What a file has in the place of others: there the interval says that a sign is open, and the estimator what the form assumes.
 FILED = {Status.SIGN_OPEN: Status.OK, Status.SYMMETRY_ASSUMED: Status.FORM_ASSUMED}
+SAID = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)  # beside a value, wherever it stands
 IN_FILES = tuple(s for s in Status if s not in FILED)
 
 
@@ -194,7 +195,7 @@ class Coefficient:
         name = primed(self.symbol) if self.unit == "1" else self.symbol
         if self.value is None:
             return f"{name}: {self.status.replace('_', ' ')}"
-        assumed = ", symmetry assumed" if self.status is Status.SYMMETRY_ASSUMED else ""
+        assumed = " (symmetry assumed)" if self.status is Status.SYMMETRY_ASSUMED else ""
         return f"{name} = {plus_minus(self.value, self.u95)}{'' if self.unit == '1' else f' {self.unit}'}{assumed}"
 
     def __repr__(self) -> str:

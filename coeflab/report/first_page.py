@@ -16,7 +16,7 @@ from coeflab.core.wording import listed, spelled_out
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.straight_runs import SYMBOL
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import SAID, Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
@@ -42,7 +42,6 @@ from coeflab.vehicle.stability import ALONE, INDICES, Derived, missing_for_stabi
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
-SAID = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
 

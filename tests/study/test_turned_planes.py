@@ -13,6 +13,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.finding import Severity
 from coeflab.law.coefficient import Status
 from coeflab.report.tables.nouns import with_status
+from coeflab.report.tables.results import headline
 from coeflab.study.checks import symmetry
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
@@ -43,15 +44,19 @@ def carried_out(folder: Path, body: str = "") -> Study:
 
 
 def test_without_a_body_the_number_says_that_its_symmetry_is_assumed(tmp_path: Path) -> None:
-    (fit,) = carried_out(tmp_path).fits
+    study = carried_out(tmp_path)
+    (fit,) = study.fits
+    assert headline(study).count("(symmetry assumed)") == 2  # Zw' and Mw'
     assert fit.coefficients["Yv"].status is not Status.SYMMETRY_ASSUMED
     assert fit.coefficients["Zw"].status is Status.SYMMETRY_ASSUMED
     assert with_status(fit.coefficients["Zw"])[1].endswith(", symmetry assumed")
 
 
 def test_a_body_that_has_it_takes_the_word_away(tmp_path: Path) -> None:
-    (fit,) = carried_out(tmp_path, "tow_spheroid").fits
+    study = carried_out(tmp_path, "tow_spheroid")
+    (fit,) = study.fits
     assert fit.coefficients["Zw"].status is fit.coefficients["Yv"].status
+    assert "assumed" not in headline(study)
     assert "turned by symmetry" in fit.coefficients["Zw"].estimator
 
 
