@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import fdtrc
 
 from coeflab.core.axes import point_in_words
 from coeflab.core.finding import Finding, Severity
@@ -54,6 +55,7 @@ EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
 MOST_NAMED = 12  # rows that do not fit their neighbours
+UNLIKE = 0.05  # probability of as large a miss of runs by rows turned into their plane, below which those are withdrawn
 WIDER = 2.0  # U95 by a declared symmetry over that without it, above which it is withdrawn
 NODES = 41  # of the recommended curve, odd: one is at rest
 
@@ -304,7 +306,7 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         symbol=sweep.symbol,
         value=value,
         u95=u95,
-        status=Status.SIGN_OPEN if abs(value) <= u95 else Status.OK,
+        status=Status.SYMMETRY_ASSUMED if sweep.by_symmetry else Status.SIGN_OPEN if abs(value) <= u95 else Status.OK,
         body=sweep.body,
         parts=Parts(random=random, model_form=float(np.sqrt(u95**2 - random**2))),
         origin="fit",
@@ -366,9 +368,12 @@ def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
 
 
 def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepRows, str, str, str]]:
-    """Which table gives which coefficient: the one whose sweep has the most settings, the first among equals."""
+    """Which table gives which coefficient: the one whose sweep has the most settings, the first among equals.
+
+    Rows that were run come before those that a symmetry turns into their plane, whatever these would narrow.
+    """
     out: dict[str, tuple[SweepRows, str, str, str]] = {}
-    most: dict[str, int] = {}
+    most: dict[str, tuple[bool, int]] = {}
     for variable, odd in ODD.items():
         for table in (t for t in tables if variable in t.varies):
             rows = sweep_rows(table, variable, tables, length)
@@ -380,9 +385,44 @@ def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepR
                     continue
                 usable = table.usable[component][rows.rows]
                 settings = len(np.unique(levels(rows.x[rows.rows][usable])))
-                if settings > most.get(symbol, -1):
-                    out[symbol], most[symbol] = (rows, variable, component, parity), settings
+                rank = (settings >= FEWEST_SETTINGS and not table.by_symmetry, settings)
+                if rank > most.get(symbol, (False, -1)):
+                    out[symbol], most[symbol] = (rows, variable, component, parity), rank
     return out
+
+
+def _beside_runs(tables: Sequence[ForceTable], length: float) -> tuple[list[ForceTable], list[Finding]]:
+    """The tables without those by symmetry that runs in their plane rule out, and what was compared.
+
+    Of every odd component the runs are held against the curve of the turned rows, all of a table together.
+    """
+    kept, found = [], []
+    for table in tables:
+        squares, count, freedom = 0.0, 0, np.inf
+        for variable in (v for v in ODD if table.by_symmetry and v in table.varies):
+            runs = [t for t in tables if not t.by_symmetry and t.name != table.by_symmetry and variable in t.varies]
+            for component in (c for c in ODD[variable] if runs and c in table.forces):
+                every = collect_points(
+                    sweep_rows(table, variable, tables, length), component, length, np.zeros(len(table))
+                )
+                plane, points, _ = _on_one_side(sweep_rows(table, variable, tables, length), variable, "odd", every)
+                slope = origin_slope.estimate(*points[:3], odd=bool(plane))
+                for t in (t for t in runs if component in t.forces):
+                    at, y = collect_points(sweep_rows(t, variable, (), length), component, length, np.zeros(len(t)))[:2]
+                    moving = np.abs(at) > AT_REST
+                    more, own = origin_slope.miss_of(slope, at[moving], y[moving])
+                    squares, count, freedom = squares + more, count + int(moving.sum()), min(freedom, own)
+        share = float(fdtrc(count, freedom, squares / count)) if count else 1.0
+        if count:
+            found.append(
+                Finding.of(
+                    "symmetry.planes", table.name, Severity.WARN if share < UNLIKE else Severity.PASS, statistic=share, threshold=UNLIKE,
+                    turned=table.by_symmetry, readings=count, judged="apart" if share < UNLIKE else "alike",
+                )
+            )  # fmt: skip
+        if share >= UNLIKE:
+            kept.append(table)
+    return kept, found
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -406,7 +446,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     length = scaling.length
     wanted = tables[0].reference_point
     shift = arm_shift(tables)
-    tables = [t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables]
+    tables, beside = _beside_runs([t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables], length)
     sweeps: list[Sweep] = []
     last: tuple[Sweep, OriginSlope] | None = None
     for symbol, (rows, variable, component, parity) in _jobs(tables, length).items():
@@ -425,6 +465,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift, first),
-        sweeps=tuple(sweeps), straight=straight, findings=tuple(_no_symmetry(s) for s in sweeps if s.withdrawn is not None),
+        sweeps=tuple(sweeps), straight=straight, findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *beside),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

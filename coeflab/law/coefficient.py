@@ -37,6 +37,7 @@ class Status(StrEnum):
     ESTIMATE = "estimate"
     FORM_ASSUMED = "form_assumed"
     FORM_REJECTED = "form_rejected"
+    SYMMETRY_ASSUMED = "symmetry_assumed"
 
     @property
     def advice(self) -> str:
@@ -56,10 +57,15 @@ class Status(StrEnum):
             "the size of the noise does not show.",
             Status.FORM_REJECTED: "The residuals show that the form is wrong, and another would move the value by more than "
             "half of it: no U95. Add the missing term or fit a narrower range.",
+            Status.SYMMETRY_ASSUMED: "Not run: rows of another plane, turned by a symmetry that is declared and that neither runs nor a body "
+            "of the plan checks. U95 is that of those rows. Run some in this plane, or name the body.",
         }[self]
 
 
-IN_FILES = tuple(s for s in Status if s is not Status.SIGN_OPEN)  # there the interval says it
+# What a file has in the place of others: there the interval says that a sign is open, and the estimator what the form assumes.
+FILED = {Status.SIGN_OPEN: Status.OK, Status.SYMMETRY_ASSUMED: Status.FORM_ASSUMED}
+SAID = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)  # beside a value, wherever it stands
+IN_FILES = tuple(s for s in Status if s not in FILED)
 
 
 @stored()
@@ -189,7 +195,8 @@ class Coefficient:
         name = primed(self.symbol) if self.unit == "1" else self.symbol
         if self.value is None:
             return f"{name}: {self.status.replace('_', ' ')}"
-        return f"{name} = {plus_minus(self.value, self.u95)}{'' if self.unit == '1' else f' {self.unit}'}"
+        assumed = " (symmetry assumed)" if self.status is Status.SYMMETRY_ASSUMED else ""
+        return f"{name} = {plus_minus(self.value, self.u95)}{'' if self.unit == '1' else f' {self.unit}'}{assumed}"
 
     def __repr__(self) -> str:
         share = f" ({percent(self.u95, self.value)})" if self.u95 is not None else ""

@@ -62,7 +62,7 @@ def _cells(r: AnswerRow, many: bool = False) -> tuple[str, ...]:
     """Ours, where there is room for it with U95 in per cent, and the published values with the digits of their sources."""
     value, u95 = with_u95(r.value, r.u95)
     share = "" if many else f" ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})" if r.u95 else ""
-    ours = f"{value} +- {u95}{share}" if r.u95 else f"{value} {r.status}".strip()
+    ours = f"{value} +- {u95}{share} {r.status}".strip() if r.u95 else f"{value} {r.status}".strip()
     return (r.status if r.value is None else ours, *(text or ABSENT for text in r.shown))
 
 

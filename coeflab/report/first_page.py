@@ -16,7 +16,7 @@ from coeflab.core.wording import listed, spelled_out
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.straight_runs import SYMBOL
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import SAID, Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
@@ -141,7 +141,7 @@ def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
     c = known[0]
     rejected = c.status is Status.FORM_REJECTED
     row = AnswerRow(
-        symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
+        symbol, c.value, None if rejected else c.u95, c.status.replace("_", " ") if c.status in SAID else "" if c.u95 else "no U95",
         c.campaign or "", published, anchor=_place(study, c), printed=printed,
         assumed=tuple(dict.fromkeys(str(f["key"]) for f in assumed_of(study, c))),
     )  # fmt: skip

@@ -6,7 +6,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
 
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumName
@@ -14,6 +16,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located, named, shipped, stem, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
+from coeflab.core.types import Array
 from coeflab.fits import BY_DEFAULT, JOINT
 from coeflab.formats.export import PlannedExport
 from coeflab.law.scaling import Conditions, Scaling
@@ -22,6 +25,8 @@ from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedConversion, PlannedJoint, PlannedTow
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.reading import suited_fit, table_at
+from coeflab.tables.settings import of_datum, read_settings
+from coeflab.tables.words.points import POINT_OF
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.parameter_file import SHIPPED
@@ -60,6 +65,21 @@ def _parameters(value: Any, file: Path) -> Path:
     return beside if beside.is_file() else named(name, SHIPPED)
 
 
+class Place(NamedTuple):
+    """A point and the id of what it counts from, empty where that is not named."""
+
+    point: Array
+    datum: str = ""
+
+
+def _place(value: Any, file: Path) -> Place:
+    """A list, or words as readers of tables take them: ``-1.6 from nose``, ``midship``."""
+    if not isinstance(value, str):
+        return Place(np.array(takes.POINT.read(value, file)))
+    said = read_settings(POINT_OF, value)
+    return Place(np.array(said[POINT_OF], dtype=float), said.get("axes.datum", ""))
+
+
 Options = Annotated[Mapping[str, Any], takes.TABLE]
 
 
@@ -73,9 +93,9 @@ class StudyKeys(takes.Declaration):
         Of the folder of the results.
     title : str
         As the report prints it; the name unless given.
-    reference_point : (3,) array
-        [x, y, z] of all moments, m, FRD, from the datum; each campaign's own unless given. The rows of the tables are moved there and
-        fitted.
+    reference_point : Place
+        [x, y, z] of all moments, m, FRD, from the datum, or in words "-1.6 from nose"; each campaign's own unless given. The rows of the
+        tables are moved there and fitted.
     datum : str
         Id of the point of the body that the reference point counts from; each campaign's own unless given.
     datum_note : str
@@ -88,15 +108,25 @@ class StudyKeys(takes.Declaration):
 
     name: FileName
     title: takes.Words | None = None
-    reference_point: takes.Point | None = None
+    reference_point: (
+        Annotated[Place, takes.Takes(takes.POINT_WORDS, _place, {"anyOf": [takes.POINT.schema, {"type": "string"}]})]
+        | None
+    ) = None
     datum: DatumName | None = None
     datum_note: takes.Words | None = None
     wanted: Annotated[tuple[str, ...], takes.Takes("a list of texts", _derivatives, takes.TEXTS.schema)] = ()
     include_uncertain: takes.Flag = False
 
     def check(self) -> None:
-        """A note goes with a datum."""
-        if self.datum_note is not None and self.datum is None:
+        """A note goes with a datum, and one datum with a point."""
+        named = self.reference_point.datum if self.reference_point else ""
+        if named and self.datum is not None and not of_datum(named, self.datum):
+            raise InputError(
+                f"a point from {shown(named)} beside datum = {shown(self.datum)}",
+                "one of both",
+                column="reference_point",
+            )
+        if self.datum_note is not None and not (self.datum or named):
             raise InputError("a note without a datum", "datum, the id that it explains", column="datum_note")
 
 
@@ -487,6 +517,7 @@ def read_plan(path: str | Path) -> Plan:
         return _of_campaign(path)
     file = takes.declared(PlanFile, read_toml(path))
     study = file.study
+    datum = study.datum or (study.reference_point.datum if study.reference_point else "")
     tows = tuple(_tow(t, path, [own.campaign for own in file.table]) for t in file.tow)
     return Plan(
         name=study.name,
@@ -498,8 +529,8 @@ def read_plan(path: str | Path) -> Plan:
         tows=tows,
         conversions=tuple(PlannedConversion(c.campaign, c.of) for c in file.conversion),
         joint=tuple(PlannedJoint(tuple(map(table_at, j.campaigns)), j.fit, j.options) for j in file.joint or ()),
-        reference_point=study.reference_point,
-        datum=None if study.datum is None else Datum.named(study.datum, study.datum_note or ""),
+        reference_point=None if study.reference_point is None else study.reference_point.point,
+        datum=Datum.named(datum, study.datum_note or "") if datum else None,
         scaling=file.scaling,
         conditions=file.conditions,
         body=None if file.body is None else file.body.path,

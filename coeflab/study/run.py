@@ -6,6 +6,7 @@ What a plan names, read: tables about one reference point, bodies.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from coeflab.study.checking import checked
 from coeflab.study.checks.sizes import UNITS_APART, masses_of_models
 from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
 from coeflab.study.study import Conversion, Plan, Study
+from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
@@ -184,9 +186,12 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
     unfitted: dict[str, str] = {}
     ours = [t.added for t in plan.tows if t.added is not None]
     towed: set[str] = set()
+    by_body = frozenset[str]()
     for planned in plan.tables:
         read = [settled(t, plan) for t in read_tables(planned)]
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
+        read, right, ruled_out = of_bodies(read, _bodies(plan) if any(t.by_symmetry for t in read) else ())
+        by_body |= right
         scaling = plan.scaling or read[0].scaling
         is_ours = planned.campaign in ours
         towed |= {read[0].campaign} if is_ours else set()
@@ -200,7 +205,8 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
                 unfitted.setdefault(read[0].campaign, why.found)
                 continue
             budgets += found
-            fits.append(result)
+            fits.append(replace(result, findings=(*result.findings, *ruled_out)))
+            ruled_out = []
             of_fits.append((name, enough, scaling, planned.options.get(name, {})))
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
@@ -214,7 +220,7 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
         progress(f"fitted {result.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
     refuse_empty([f for f in fits if f.campaign not in towed])
-    return tables, list(rejoined(fits, of_fits)), budgets, unfitted
+    return tables, [confirmed(f, by_body) for f in rejoined(fits, of_fits)], budgets, unfitted
 
 
 def _hulls(
@@ -307,6 +313,15 @@ def _body(plan: Plan) -> Body | None:
     from coeflab.bodies.readers import read_body
 
     return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
+
+
+def _bodies(plan: Plan) -> tuple[Body, ...]:
+    """All that the plan names: its own, and the hulls of its parameter files."""
+    from coeflab.bodies.readers import read_body
+
+    hulls = dict.fromkeys(h for h in (plan.hull, *(g.hull for g in plan.parameter_files)) if h is not None)
+    others = (read_body(h / "body.toml" if h.is_dir() else h) for h in hulls)
+    return tuple(b for b in (_body(plan), *others) if b is not None)
 
 
 def _require_kilograms(tables: Sequence[ForceTable], body: Body | None) -> None:

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from coeflab.law.coefficient import Coefficient
+from coeflab.core.finding import Finding, Severity
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import read_factors
 from coeflab.study.study import Study
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.tables.force_table import ForceTable
 
 # What changes sign in each symmetry: in a mirror the motions across and the turns along it, in half a turn about x both across.
 FLIPS = {
@@ -53,3 +61,44 @@ def zeros(study: Study, campaign: str, among: Sequence[Coefficient]) -> tuple[Co
         c for c in among
         if c.value is not None and c.u95 is not None and abs(c.value) <= c.u95 and is_zero(c.symbol, under[c.body or ""])
     )  # fmt: skip
+
+
+def of_bodies(
+    tables: Sequence[ForceTable], bodies: Sequence[Body]
+) -> tuple[list[ForceTable], frozenset[str], list[Finding]]:
+    """The tables without those turned by a quarter of a turn that their body rules out; names of those that it confirms; what it rules out.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+    bodies : sequence of Body
+        Those that a plan names. A table whose body is none of them, or counts from another datum, stays, and is not confirmed.
+    """
+    from coeflab.bodies.images import quarter_turned
+
+    kept, right, found = [], set(), []
+    moving = {t.name: set(t.varies) for t in tables}
+    for t in tables:
+        turned = FOURFOLD in t.symmetry and moving[t.name] != moving.get(t.by_symmetry, moving[t.name])
+        body = next((b for b in bodies if turned and (b.name, b.datum) == (t.body, t.datum)), None)
+        has = None if body is None else quarter_turned(body, t.reference_point)
+        if has is False:
+            found.append(Finding.of("symmetry.body", t.name, Severity.WARN, turned=t.by_symmetry, body=t.body))
+            continue
+        kept.append(t)
+        right |= {t.name} if has else set()
+    return kept, frozenset(right), found
+
+
+def confirmed(fit: FitResult, by_body: frozenset[str]) -> FitResult:
+    """The fit whose coefficients of the tables of these names assume no symmetry, since their body has it."""
+
+    def of(c: Coefficient) -> Coefficient:
+        if c.status is not Status.SYMMETRY_ASSUMED or c.table not in by_body:
+            return c
+        is_open = c.value is not None and c.u95 is not None and abs(c.value) <= c.u95
+        return replace(c, status=Status.SIGN_OPEN if is_open else Status.OK)
+
+    return replace(
+        fit, coefficients=replace(fit.coefficients, coefficients=tuple(map(of, fit.coefficients.coefficients)))
+    )

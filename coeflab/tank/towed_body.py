@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
+from coeflab.bodies.images import MIRRORS, QUARTER, same
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import united
 from coeflab.bodies.mesh.topology import edges
@@ -71,8 +72,6 @@ class TowedBody:
 PANELS = 100_000  # of the whole surface, where it is made from equations
 FEWEST = 64
 DIGITS = 9  # of coordinates: a nanometre, in the file as in memory
-SAME = 1e-6  # of a piece's size: its image in a mirror is the same piece
-SPACING, NEAR = 1.0 / 200.0, 0.75  # points on a mesh file's surface, over its size; how near its image is, over that
 WORD = re.compile(r"[^A-Za-z0-9_.+-]")
 STRAIGHT: Mapping[str, float] = MappingProxyType({})
 
@@ -104,8 +103,8 @@ def towed(
     vertices, faces, which = _tidied(*_united(body, surfaces, origin))
     _require_closed(body, faces)
     patches, patch, chord = _patches(pieces, surfaces, vertices[faces].mean(axis=1) + origin, which)
-    x, y, z = (_same(surfaces, origin, turn, from_file) for turn in MIRRORS)
-    fourfold = _same(surfaces, origin, QUARTER, from_file)
+    x, y, z = (same(surfaces, origin, turn, from_file) for turn in MIRRORS)
+    fourfold = same(surfaces, origin, QUARTER, from_file)
     return TowedBody(body, vertices, faces, patches, patch, chord, (x, y, z), fourfold)
 
 
@@ -127,10 +126,6 @@ def stl(towed: TowedBody) -> bytes:
         own = rows[towed.patch == k]
         out.append(f"solid {name}\n" + (facet * len(own)) % tuple(own.ravel()) + f"endsolid {name}\n")
     return "".join(out).encode()
-
-
-MIRRORS = tuple(np.diag(signs) for signs in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]))
-QUARTER = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def _placed(
@@ -257,43 +252,3 @@ def _labelled(piece: Piece, surface: TriangleMesh, middles: Array) -> tuple[NDAr
     rings = np.unique(surface.vertices[:, 0])
     label[middles[:, 0] < rings[np.argmin(np.abs(rings - piece.stern))]] = STERN
     return label, {word: piece.chord, STERN: piece.chord}
-
-
-def _same(surfaces: list[TriangleMesh], origin: Array, turn: Array, from_file: bool) -> bool:
-    """Whether a mirror or a turn through the origin leaves the pieces as they are, one for another."""
-    about = [TriangleMesh(s.vertices - origin, s.faces) for s in surfaces]
-    return all(any(_like(s, other, turn, from_file) for other in about) for s in about)
-
-
-def _like(one: TriangleMesh, other: TriangleMesh, turn: Array, from_file: bool) -> bool:
-    """Whether one surface, turned, is the other: every corner on a corner; of a mesh file, near its surface."""
-    from scipy.spatial import cKDTree
-
-    image, size = one.vertices @ turn.T, float(np.ptp(one.vertices, axis=0).max())
-    low, high = (
-        np.abs(image.min(axis=0) - other.vertices.min(axis=0)),
-        np.abs(image.max(axis=0) - other.vertices.max(axis=0)),
-    )
-    within = NEAR * SPACING if from_file else SAME
-    if max(low.max(), high.max()) > within * size:
-        return False
-    points = _sampled(other, SPACING * size) if from_file else other.vertices
-    return bool(cKDTree(points).query(image, distance_upper_bound=within * size)[0].max() <= within * size)
-
-
-def _sampled(mesh: TriangleMesh, apart: float) -> Array:
-    """Points on a surface, no more than so far apart along each triangle's longest edge and across it, m."""
-    corners = mesh.vertices[mesh.faces]
-    edge = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    first = np.argmax(edge, axis=1)[:, None]
-    a, b, c = (np.take_along_axis(corners, ((first + k) % 3)[:, :, None], axis=1)[:, 0] for k in range(3))
-    longest = edge.max(axis=1)
-    height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / longest
-    parts = np.maximum(np.ceil(np.stack([longest, height], axis=1) / apart), 1).astype(int)
-    out = []
-    for n, m in np.unique(parts, axis=0):
-        own = np.all(parts == (n, m), axis=1)
-        along, up = (g.ravel() for g in np.meshgrid(np.arange(n + 1) / n, np.arange(m + 1) / m))
-        weight = np.stack([(1.0 - up) * (1.0 - along), (1.0 - up) * along, up], axis=1)
-        out.append(np.einsum("pk,ktx->tpx", weight, np.stack([a[own], b[own], c[own]])).reshape(-1, 3))
-    return np.concatenate(out)

@@ -24,7 +24,7 @@ from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
 from coeflab.fits.results.fit_result import covariance_of
 from coeflab.law.added_mass import potential_part
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import FILED, Coefficient, Status
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.law.terms import Factor
@@ -263,7 +263,7 @@ def _written(c: Coefficient, scaling: Scaling, conditions: Conditions, hull: Add
     potential = potential_part(c.symbol, hull, scaling, hull.density) if booked and hull is not None else None
     return replace(
         c, symbol=primed(c.symbol), value_si=si, unit_si=derivative(c.symbol).unit, potential=potential,
-        status=Status.OK if c.status is Status.SIGN_OPEN else c.status,  # its interval says so
+        status=FILED.get(c.status, c.status),
     )  # fmt: skip
 
 

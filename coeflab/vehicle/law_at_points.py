@@ -18,7 +18,14 @@ from coeflab.core.stored import Finite, Means, Name, NotNegative
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import NEAR_ZERO, not_belonging
-from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
+from coeflab.fits.statistics.diagnostics import (
+    NARROWEST,
+    about_a_curve,
+    allowed_miss,
+    certain_miss,
+    pairs_of_replicates,
+    scatter_of_replicates,
+)
 from coeflab.fits.tied_law import DRIFTS
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
 from coeflab.law.terms import read_term
@@ -285,14 +292,33 @@ def with_scatter(measured: Sequence[MeasuredTable], force: Force, length: float)
     out = []
     for m in measured:
         by = force(*m.states)
-        shares = np.column_stack([x / max(float(np.abs(x).max()), AT_REST) for x in m.primes(length).values()])
-        forces = []
+        shares, forces = _shares(m, length), []
         for f in m.forces:
             missed = _misses(f, by)
             rows = np.isfinite(missed)
             forces.append(f.model_copy(update={"scatter": scatter_of_replicates(shares[rows], missed[rows])}))
         out.append(m.model_copy(update={"forces": tuple(forces)}))
     return tuple(out)
+
+
+def _shares(m: MeasuredTable, length: float) -> Array:
+    """Motions of every row as shares of the largest."""
+    return np.column_stack([x / max(float(np.abs(x).max()), AT_REST) for x in m.primes(length).values()])
+
+
+def missed_for_certain(measured: Sequence[MeasuredTable], found: LawAtPoints, length: float) -> bool:
+    """Whether the noise of its table leaves its worst miss impossible: that of repeated runs, or of readings about curves of their own."""
+    m, f = next((m, f) for m in measured for f in m.forces if (m.table, f.component) == (found.table, found.component))
+    there = np.array([v is not None for v in f.values])
+    shares = _shares(m, length)[there]
+    readings = np.array([v for v in f.values if v is not None]) - np.array(f.at_rest)[there]
+    moving = np.abs(shares) > AT_REST
+    squares, freedom = 0.0, 0
+    for x, own in zip(shares.T, moving.T, strict=True):
+        alone = (moving.sum(1) == own) if own.any() else own
+        more, degrees = about_a_curve(x[alone], readings[alone])
+        squares, freedom = squares + more, freedom + degrees
+    return found.worst > certain_miss(f.scatter, pairs_of_replicates(shares), squares, freedom, found.largest)
 
 
 def _dominant(primes: Mapping[str, Array]) -> list[str]:

@@ -25,6 +25,7 @@ from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spoken
 from coeflab.vehicle.inertia import centre_of_gravity
+from coeflab.vehicle.law_at_points import missed_for_certain
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.sizes import size_findings
 from coeflab.vehicle.sources import acts_in
@@ -422,7 +423,8 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         if f.small:
             severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
         elif f.missed:
-            severity = Severity.FAIL
+            certain = missed_for_certain(parameters.measured, f, parameters.scaling.length)
+            severity = Severity.FAIL if certain else Severity.WARN
             tables = [m.response for m in parameters.models if f.component in acts_in(m)]
             longer = (
                 f"Its law is the table of {', '.join(tables)}: give that fit another degree or form (coeflab formats surface)" if tables
@@ -432,6 +434,8 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             comment = (
                 f"It misses {', '.join(f.missed)}. {longer}, or look for a coefficient or a sign that is not the fit's."
             )
+            if not certain:
+                comment = f"{comment} The scatter of the readings may be the reason: repeat more runs."
         elif f.beyond:
             severity = Severity.WARN
             comment = (

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from scipy import stats
 
-from tests.coverage.declared_campaigns import CASES, NOISE, TABLE
+from tests.coverage.declared_campaigns import CASES, NOISE, TABLE, campaigns, read
 from tests.coverage.stability_campaigns import TABLE as OF_HULLS
 
+GUARDED = ("sign", "beside", "two runs")
 PAGE = (Path(__file__).parents[2] / "docs" / "slope_at_origin.md").read_text()
 
 
@@ -29,17 +30,42 @@ def test_declarations_cover_where_they_are_true() -> None:
     assert (sum(int(r["campaigns"]) for r in true), withdrawn) == (320, 2)
 
 
+def test_what_is_withdrawn_or_runs_decide_covers_where_it_is_wrong() -> None:
+    """A false sign, and a false quarter of a turn beside runs of the plane: 300 campaigns a cell; without a guard 68, and 13 %."""
+    found = [r for r in rows(TABLE) if r["declared"] in GUARDED and r["true"] == "no"]
+    assert len(found) == 28
+    assert {r["campaigns"] for r in found} == {"300"}
+    assert min(int(r["cover %"]) for r in found) >= 90
+
+
+NAMED = (("sign", "one power, opposed", 0.03), ("sign", "saturating, opposed", 0.03), ("beside", "one power, 20 % apart", 0.01),
+         ("two runs", "one power, 20 % apart", 0.01))  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "curve", "noise"), NAMED)
+def test_named_cells_with_few_campaigns(kind: str, curve: str, noise: float) -> None:
+    """Ten of a third seed; a sign without its guard is covered in 68 to 84 % here, the turned rows in 77."""
+    found = [read(kind, curve, t, y)[0] for t, y in campaigns(kind, curve, noise, 10, 7)]
+    assert sum(abs(value - 1.0) <= u95 for value, u95, _ in found) >= 9
+    assert sum(off for _, _, off in found) >= 9
+
+
 @pytest.mark.parametrize(
-    ("curve", "text"),
+    ("kind", "curve", "text"),
     [
-        ("slow power", "slow powers {}"), ("twice M", "twice M: {}"), ("saturating", "; saturating {}"),
-        ("one power and a constant", "beside one power {}"), ("saturating and a constant", "beside a saturating bend {}"),
-        ("one power: opposed", "the other sign, one power {}"), ("saturating: opposed", "; the other sign, saturating {}; where true"),
-        ("one power: 5 % apart", "planes 5 % apart {}"), ("one power: 20 % apart", "; 20 % apart {} |"),
+        ("grows", "slow power", "slow powers {}"), ("bound", "twice M", "twice M: {}"), ("grows", "saturating", "; saturating {}"),
+        ("odd", "one power and a constant", "beside one power {}"), ("odd", "saturating and a constant", "beside a saturating bend {}"),
+        ("sign", "one power: opposed", "the other sign, one power {}"), ("sign", "saturating: opposed", "; the other sign, saturating {};"),
+        ("sign", "three powers: opposed", "; the other sign, three powers {};"),
+        ("sign", "late bend: opposed", "; the other sign, late bend {}; where true"),
+        ("turned", "one power: 5 % apart", "planes 5 % apart {}"), ("turned", "one power: 20 % apart", "; 20 % apart {} |"),
+        ("beside", "one power: 5 % apart", "runs count, planes 5 % apart {};"), ("beside", "one power: 20 % apart", "runs count, 20 % apart {} |"),
+        ("two runs", "one power: 20 % apart", "withdrawn or right, 20 % apart {} |"),
     ],
 )  # fmt: skip
-def test_the_page_says_what_a_wrong_declaration_covers(curve: str, text: str) -> None:
-    wrong = [r["cover %"] for r in rows(TABLE) if (r["curve"], r["true"]) == (curve, "no")]
+def test_the_page_says_what_a_wrong_declaration_covers(kind: str, curve: str, text: str) -> None:
+    wrong = [r["cover %"] for r in rows(TABLE) if (r["declared"], r["curve"], r["true"]) == (kind, curve, "no")]
+    assert len(wrong) == len(NOISE)
     assert text.format(", ".join(wrong)) in PAGE
 
 

@@ -16,6 +16,7 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics import origin_slope
 from coeflab.fits.statistics.many_rows import images
+from coeflab.law.coefficient import Status
 from coeflab.study.checks import coverage
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.force_table import ForceTable
@@ -162,6 +163,9 @@ def test_attack_from_drift_is_said_and_adds_nothing(tables: Reader, one_side: Fi
     assert cross == pytest.approx((zw.parts.random or 0.0) ** 2 / 4.0, rel=1e-5)
     assert "not run: synthetic/drift.csv turned by symmetry" in zw.estimator
     assert "not run" not in yv.estimator
+    assert (yv.status, zw.status) == (Status.OK, Status.SYMMETRY_ASSUMED)
+    assert zw.said.endswith(" (symmetry assumed)")
+    assert "assumed" not in yv.said
     for symbol, found in values(one_side).items():
         assert slopes[symbol] == pytest.approx(found, rel=1e-9)
     assert slopes["Zw"] == pytest.approx(slopes["Yv"], rel=1e-6)
@@ -285,3 +289,39 @@ def test_a_symmetry_that_the_points_rule_out_is_withdrawn(tables: Reader, consta
     assert found.sweep("Nv").symmetry == "port-starboard"
     value, u95 = values(found)["Yv"]
     assert abs(value + 0.02) <= u95
+
+
+# Rows turned by symmetry, beside runs in their plane
+
+
+def beside(tables: Reader, apart: float, degrees: Sequence[float]) -> FitResult:
+    """Attack turned from drift, and runs at some angles of a body whose vertical plane answers so much more, with noise of their own."""
+    head, *rows = csv_of(np.radians(degrees), "w", noise=1).splitlines()
+    cells = np.array([[float(x) for x in row.split(",")] for row in rows])
+    cells[:, 3:] *= 1.0 + apart
+    runs = "\n".join([head, *(",".join(f"{x:.9g}" for x in row) for row in cells)]) + "\n"
+    drift, attack = csv_of([0.0, *ANGLES]), csv_of([0.0, *ANGLES], "w")
+    return fitted(tables(BOTH, 'by_symmetry = "drift.csv"', drift=drift, attack=attack, runs=runs))
+
+
+def planes(found: FitResult) -> Severity:
+    (one,) = (f.severity for f in found.findings if f.code == "symmetry.planes")
+    return one
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.2])
+def test_runs_of_a_plane_count_in_the_place_of_rows_turned_into_it(tables: Reader, apart: float) -> None:
+    found = beside(tables, apart, [-10.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0])
+    zw = found.coefficients["Zw"]
+    assert (zw.table, zw.status) == ("synthetic/runs.csv", Status.OK)
+    assert abs((zw.value or 0.0) + 0.02 * (1.0 + apart)) <= (zw.u95 or 0.0)
+    assert planes(found) is (Severity.WARN if apart else Severity.PASS)
+
+
+@pytest.mark.parametrize(("apart", "status"), [(0.0, Status.SYMMETRY_ASSUMED), (0.2, Status.TOO_FEW_POINTS)])
+def test_two_runs_withdraw_turned_rows_that_are_not_like_them(tables: Reader, apart: float, status: Status) -> None:
+    found = beside(tables, apart, [6.0, 12.0])
+    assert found.coefficients["Zw"].status is status
+    assert (found.coefficients["Zw"].value is None) is bool(apart)
+    assert planes(found) is (Severity.WARN if apart else Severity.PASS)
+    assert found.coefficients["Yv"].status is Status.OK

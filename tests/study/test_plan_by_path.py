@@ -8,6 +8,7 @@ import pytest
 
 import coeflab
 from coeflab.core.errors import InputError
+from coeflab.study.plan import read_plan
 from coeflab.tables.campaign import read_campaign
 
 PLAN = """[study]
@@ -79,3 +80,42 @@ def test_a_file_of_another_kind_is_said_to_be_one(tmp_path: Path, head: str, wha
             read(tmp_path / "own.toml")
         assert (why.value.found, why.value.line, why.value.others) == (f"{what}, with [{head}]", 1, ())
         assert command in why.value.advice
+
+
+PLACED = '[study]\nname = "placed"\nreference_point = {}\n[[table]]\ncampaign = "suboff_roddy_2"\n'
+
+
+@pytest.mark.parametrize(
+    ("place", "point", "datum"),
+    [
+        ('"-1.6 from nose"', [-1.6, 0.0, 0.0], "nose"),
+        ('"nose -1600, 0, 200 mm"\ndatum = "nose"', [-1.6, 0.0, 0.2], "nose"),
+        ('"midship"\ndatum_note = "half of LBP"', [0.0, 0.0, 0.0], "midship"),
+        ('"-1.6"\ndatum = "nose"', [-1.6, 0.0, 0.0], "nose"),
+    ],
+)
+def test_a_point_in_words_is_the_one_that_tables_take(
+    tmp_path: Path, place: str, point: list[float], datum: str
+) -> None:
+    (tmp_path / "plan.toml").write_text(PLACED.format(place))
+    plan = read_plan(tmp_path / "plan.toml")
+    assert plan.reference_point is not None
+    assert plan.reference_point.tolist() == point
+    assert plan.datum is not None
+    assert plan.datum.id == datum
+
+
+@pytest.mark.parametrize(
+    ("place", "words"),
+    [
+        ('"-1.6 from nose"\ndatum = "midship"', 'a point from "nose" beside datum = "midship"'),
+        ('"1.6 m aft of nose"', "Leave out aft."),
+        ("[-1.6, 0.0]", "a point [x, y, z] in metres"),
+    ],
+)
+def test_a_point_that_cannot_be_told_is_refused_by_its_line(tmp_path: Path, place: str, words: str) -> None:
+    (tmp_path / "plan.toml").write_text(PLACED.format(place))
+    with pytest.raises(InputError, match="reference_point") as refused:
+        read_plan(tmp_path / "plan.toml")
+    assert "line 3" in str(refused.value)
+    assert words in str(refused.value)

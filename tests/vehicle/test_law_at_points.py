@@ -224,3 +224,46 @@ def test_rows_at_rest_belong_to_a_one_sided_range_that_ends_at_rest(
     held = HeldRange(component="Y", variable="asin(v/U)", campaign=measured.campaign, **ends)
     at_rest = {"v": np.full(len(measured.labels), 5e-5)}
     assert set(_within(measured, "Y", [held], at_rest)) == {kept}
+
+
+EVEN = {"Yv|v|'": "Yvv'", "Yvvv'": "Yvvvv'"}  # v v for v|v| in the law
+
+
+def judged(noise: float, pairs: int, rng: np.random.Generator, *, mutated: bool) -> Severity:
+    """Of one campaign whose law is fitted to its readings."""
+    v = np.concatenate([V, V[:pairs]])
+    table = planted({"Yv": -0.03, "Yv|v|": -0.1}, {"v": v})
+    y = np.array(table.forces["Y"])
+    table = replace(table, forces={"Y": y + noise * np.abs(y).max() * rng.standard_normal(len(y))})
+    columns = np.stack([v, v * np.abs(v)], 1)
+    slope = np.linalg.lstsq(columns, table.primed_force("Y", 2.0), rcond=None)[0][0]
+    law = made([slopes(table, Yv=slope), beyond(table, Yv=slope)], table)
+    if mutated:
+        wrong = tuple(replace(c, symbol=EVEN.get(c.symbol, c.symbol)) for c in law.coefficients)
+        law = law.model_copy(update={"coefficients": wrong})
+        law = law.model_copy(update={"law_at_points": points_of(law)})
+    return worst(law)
+
+
+@pytest.mark.parametrize("pairs", [0, 1, 3])
+def test_few_repeated_runs_fail_no_right_law_and_let_no_wrong_one_pass(pairs: int) -> None:
+    """5 % noise. Three scatters of one pair failed right laws in a fifth, of none in most; its quantile, 64, let most wrong ones off."""
+    rng = np.random.default_rng((39, pairs))
+    right = [judged(0.05, pairs, rng, mutated=False) for _ in range(20)]
+    wrong = [judged(0.05, pairs, rng, mutated=True) for _ in range(20)]
+    assert right.count(Severity.FAIL) <= 1
+    assert wrong.count(Severity.FAIL) >= 18
+
+
+def test_a_miss_that_scatter_may_explain_says_so() -> None:
+    """One pair that lies within .2 % of the largest, the other readings within 5 %."""
+    rng = np.random.default_rng(39)
+    table = planted(TRUTH, {"v": np.concatenate([V, V[:1]])})
+    y = np.array(table.forces["Y"])
+    noisy = replace(table, forces={**table.forces, "Y": y + 0.05 * np.abs(y).max() * rng.standard_normal(len(y))})
+    law = made([slopes(noisy, **SLOPES), beyond(noisy, **SLOPES)], noisy)
+    (m,) = law.measured
+    forces = tuple(f.model_copy(update={"scatter": 0.002 * max(abs(x or 0.0) for x in f.values)}) for f in m.forces)
+    law = law.model_copy(update={"measured": (m.model_copy(update={"forces": forces}),)})
+    warned = next(c for c in law_findings(law) if c.subject.startswith("Y"))
+    assert (warned.severity, "repeat more" in warned.comment) == (Severity.WARN, True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.special import chdtrc, fdtrc
+from scipy.special import chdtrc, fdtrc, stdtrit
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import Factorised, Index
@@ -55,25 +55,84 @@ def scatter_of_replicates(settings: Array, residuals: Array) -> float | None:
         Each column as a share of its largest value; rows within `REPEATED` of each other repeat a setting.
     residuals : (n,) array
     """
-    if len(residuals) < 2:
-        return None
+    row, nearest = _repeats(settings)
+    return float(np.sqrt(np.mean((residuals[row] - residuals[nearest]) ** 2) / 2.0)) if len(row) else None
+
+
+def pairs_of_replicates(settings: Array) -> int:
+    """Pairs of runs behind `scatter_of_replicates`: its degrees of freedom."""
+    return len({frozenset(pair) for pair in zip(*_repeats(settings), strict=True)})
+
+
+def _repeats(settings: Array) -> tuple[Index, Index]:
+    """Rows that repeat a setting, and the nearest other row of each."""
+    if len(settings) < 2:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     away, other = cKDTree(settings).query(settings, k=2, p=np.inf)
     # Of rows at no distance either may come first.
-    own = other[:, 0] == np.arange(len(residuals))
-    nearest = np.where(own, other[:, 1], other[:, 0])
-    near = away[:, 1] <= REPEATED
-    if not np.any(near):
-        return None
-    return float(np.sqrt(np.mean((residuals[near] - residuals[nearest[near]]) ** 2) / 2.0))
+    nearest = np.where(other[:, 0] == np.arange(len(settings)), other[:, 1], other[:, 0])
+    near = np.flatnonzero(away[:, 1] <= REPEATED)
+    return near, nearest[near]
 
 
 SHARE, SCATTERS = 0.05, 3.0
+CERTAIN, SINGULAR = 0.995, 1e-6  # below Student's quantile, 1 % on both sides; of the largest singular value
 NARROWEST = 0.5  # of the range of the data, in which a law that is to hold over it may be said to hold
 
 
 def allowed_miss(scatter: float | None, largest: float) -> float:
     """What a law may miss a point by: three times the scatter of repeated runs plus 5 % of the largest force."""
     return SCATTERS * (scatter or 0.0) + SHARE * largest
+
+
+def about_a_curve(x: Array, y: Array) -> tuple[float, int]:
+    """Sum of squares of readings of one motion about a smooth curve of their own, and its degrees of freedom.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+
+    Examples
+    --------
+    >>> x = np.linspace(-1.0, 1.0, 13)
+    >>> squares, freedom = about_a_curve(x, x + 0.4 * x * np.abs(x))
+    >>> freedom, squares < 1e-20
+    (7, True)
+    """
+    a = np.abs(x)
+    columns = np.stack([np.ones_like(x), x, x * a, x * x, x**3, a**3], 1)[:, : len(x) // 2 + 1]
+    along, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    along = along[:, sizes > SINGULAR * sizes[:1]]
+    rest = y - along @ (along.T @ y)
+    return float(rest @ rest), len(x) - along.shape[1]
+
+
+def certain_miss(scatter: float | None, pairs: int, squares: float, freedom: int, largest: float) -> float:
+    """`allowed_miss`, or more: Student's quantile of the scatter of repeated runs or of readings about a curve of their own, the smaller.
+
+    Parameters
+    ----------
+    scatter : float or None
+        Of repeated runs.
+    pairs : int
+        Of these.
+    squares : float
+        Of the readings about curves.
+    freedom : int
+        Of those squares.
+    largest : float
+        Force.
+
+    Examples
+    --------
+    >>> [round(certain_miss(1.0, pairs, 0.0, 0, 0.0), 2) for pairs in (1, 2, 5, 20)]
+    [63.66, 9.92, 4.03, 3.0]
+    >>> round(certain_miss(1.0, 1, 16.0, 4, 0.0), 2)
+    9.21
+    """
+    by = [(scatter or 0.0, pairs), (float(np.sqrt(squares / max(freedom, 1))), freedom)]
+    noise = min((float(stdtrit(n, CERTAIN)) * size for size, n in by if n), default=0.0)
+    return max(allowed_miss(scatter, largest), noise + SHARE * largest)
 
 
 def lack_of_fit(f: Factorised, residuals: Array, x: Array, tolerance: float, known_errors: bool) -> float:

@@ -171,6 +171,26 @@ def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
     return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
 
 
+def miss_of(slope: OriginSlope, at: Array, readings: Array) -> tuple[float, float]:
+    """Squares of other readings about the fitted curve, over the variance of both, and the degrees of freedom of the noise.
+
+    Parameters
+    ----------
+    slope : OriginSlope
+    at, readings : (m,) array
+
+    Returns
+    -------
+    float, float
+        Over m it is F-distributed where the readings are of the curve; zero without a value.
+    """
+    spread, freedom = curve_spread(slope)
+    if spread is None or not len(at):
+        return 0.0, freedom
+    miss = readings - curve(slope, at)[0]
+    return float(miss @ np.linalg.solve(spread(at) + slope.noise**2 * np.eye(len(at)), miss)), freedom
+
+
 def curve_spread(slope: OriginSlope) -> tuple[Callable[[Array], Array] | None, float]:
     """Covariance (m, m) of the fitted curve as a function of settings (m,), and the degrees of freedom of the noise; None without a value."""
     design = slope.design

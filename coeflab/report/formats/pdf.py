@@ -147,7 +147,9 @@ def _answer(answer: Answer) -> dict[str, Any]:
 
 def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
     """Its cells as texts; the share of U95 that the difference is, which the bar shows, or None."""
-    ours = row.status if row.value is None else plus_minus(row.value, row.u95)
+    ours = (
+        row.status if row.value is None else f"{plus_minus(row.value, row.u95)} {row.status * bool(row.u95)}".rstrip()
+    )
     published = [*row.shown, *[None] * columns][:columns]
     within = percent(row.u95, row.value) if row.value is not None and row.u95 is not None else ""
     return {

@@ -11,7 +11,7 @@ from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, as_printed, coefficient, percent, plus_minus, with_u95
 from coeflab.core.texts import remark
 from coeflab.core.wording import in_sentences, listed
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import SAID, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.results import NO_DATA
@@ -205,7 +205,7 @@ def by_campaign(study: Study) -> Table:
             if c is None or c.value is None:
                 cells.append(NO_DATA if c is None or c.status is Status.NO_TABLE else noun_tables.without_value(c))
             else:
-                without = ", form rejected" if c.status is Status.FORM_REJECTED else ""
+                without = f", {c.status.replace('_', ' ')}" if c.status in SAID else ""
                 cells.append(plus_minus(c.value, c.u95) + without)
         rows.append((primed(symbol), *cells))
     bodies = {f.campaign: f.body for f in study.fits}

@@ -49,9 +49,10 @@ def with_status(c: Coefficient) -> tuple[str, str]:
     """Value and U95, or the status that says why one of them is none."""
     if c.value is None:
         return without_value(c), ABSENT
-    return (
-        (with_u95(c.value, None)[0], REJECTED) if c.status == REJECTED.replace(" ", "_") else with_u95(c.value, c.u95)
-    )
+    if c.status is Status.FORM_REJECTED:
+        return with_u95(c.value, None)[0], REJECTED
+    value, u95 = with_u95(c.value, c.u95)
+    return value, f"{u95}, {_mark(c)}" if c.status is Status.SYMMETRY_ASSUMED else u95
 
 
 def without_value(c: Coefficient) -> str:

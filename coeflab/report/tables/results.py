@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.core.axes import point_in_words
 from coeflab.core.finding import Severity
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, plus_minus
+from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.core.texts import words
 from coeflab.core.wording import listed
 from coeflab.fits.rows.sweeps import arm_shift
@@ -157,7 +157,7 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
         return ""
     by: dict[str, list[str]] = {}
     for c in chosen:
-        by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
+        by.setdefault(c.campaign or "", []).append(c.said)
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
     return f"{each} (U95; covers {covers(study, chosen)})."
 

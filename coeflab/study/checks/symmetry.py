@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across a plane of symmetry, in motions along it"
 citations = ("wahba1990",)
 ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
+RULED_OUT = ("symmetry.withdrawn", "symmetry.planes", "symmetry.body")
 NOTHING, LARGE = 1e-3, 0.05
 
 
@@ -58,7 +59,7 @@ def check(study: Study) -> Sequence[Check]:
         largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
-    ruled_out = [f for fit in study.fits for f in fit.findings if f.code == "symmetry.withdrawn"]
+    ruled_out = [f for fit in study.fits for f in fit.findings if f.code in RULED_OUT]
     found = [as_check("symmetry", f) for f in (*biases(study), *ruled_out)]
     return [c for s in odd if (c := _intercept(s)) is not None] + found + across
 
