@@ -136,7 +136,8 @@ def merged(
     if not taken and lost:
         told = words(lost[0])
         raise InputError(told.statement.rstrip("."), "what the move takes, in the same fit", advice=told.advice)
-    if not taken:
+    _refuse_other_tables(other, base)
+    if not taken and not other.models:
         has = "estimates only" if any(c.status is Status.ESTIMATE for c in theirs.coefficients) else _nothing(other)
         raise InputError(
             f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
@@ -228,6 +229,18 @@ def _nothing(other: ParameterFile) -> str:
     """What a file without estimates and without numbers lacks, in words."""
     open_ones = [c.symbol for c in other.coefficients if c.value is None]
     return f"no value of {listed(open_ones)}" if open_ones else "no coefficient"
+
+
+def _refuse_other_tables(other: ParameterFile, base: ParameterFile) -> None:
+    """Fitted tables are taken whole: about their own point, and by their own length."""
+    at, own = (np.array(p.reference_point.point) for p in (base, other))
+    same = abs(other.scaling.length / base.scaling.length - 1.0) < SAME_LENGTH
+    if other.models and not (same and np.allclose(at, own, atol=1e-6)):
+        named = [f"{p.name}: {p.scaling}, about {tuple(map(float, p.reference_point.point))} m" for p in (other, base)]
+        raise InputError(
+            f"fitted tables by another length or about another point ({named[0]})", f"those of the vehicle ({named[1]})",
+            advice="Tables are not moved: give the vehicle the length and the point of the tables, or merge the campaign.",
+        )  # fmt: skip
 
 
 def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:
@@ -324,6 +337,7 @@ def _written(
         potential = potential_part(c.symbol, hull, base.scaling, hull.density) if booked and hull is not None else None
         rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
     taken = [r.symbol for r in replaced if r.after is not None]
+    taken += [f"the table of {m.response}" for m in other.models]
     notes = [f"from {other.name}: {', '.join(taken)}"]
     for what, estimated in (("estimates", True), ("numbers that are no estimates", False)):
         gone = [

@@ -14,13 +14,14 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from coeflab.vehicle.comparison import coefficient_set, compare
-from coeflab.vehicle.force_law import full_force, points_of
+from coeflab.vehicle.force_law import full_force, motion_law, points_of
 from coeflab.vehicle.law_at_points import law_at_points
 from coeflab.vehicle.matching import by_plain_names
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import imported_file, own_number, own_numbers, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
+from tests.vehicle.hybrid import hybrid
 
 DENSITY = 1000.0  # of the added mass; the files' is another
 
@@ -54,6 +55,23 @@ def whole(*point: float) -> ParameterFile:
         density=DENSITY, u95=np.diag([0.0, 5.0, 0.0, 0.0, 0.0, 1.0]),
     )  # fmt: skip
     return made.model_copy(update={"added_mass": hull})
+
+
+def test_tables_alone_go_into_a_vehicle_of_their_point_and_length_and_no_other() -> None:
+    """A law over incidence beside rates, mass and thrusters that somebody states: the force is that of one file with both."""
+    law = hybrid(rates={}).model_copy(update={"mass": None, "thrusters": (), "added_mass": None})
+    vehicle = hybrid(models=())
+    done = merged(vehicle, law).parameters
+    nu, still = np.array([[1.1, 0.2, -0.1, 0.0, 0.1, -0.3]]), np.zeros((1, 3))
+    forces = [motion_law(p, tables=False)[0].force(nu, still) for p in (done, hybrid(), vehicle)]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-12)
+    assert forces[0][0, 1] != pytest.approx(forces[2][0, 1], rel=1e-3)
+    assert done.thrusters == vehicle.thrusters
+    assert any("the table of C_n" in n for n in done.provenance.notes)
+    longer = law.model_copy(update={"scaling": replace(law.scaling, length=1.1 * law.scaling.length)})
+    for other in (at(law, -0.2, 0.0, 0.0), longer):
+        with pytest.raises(InputError, match="fitted tables by another length or about another point"):
+            merged(vehicle, other)
 
 
 def test_what_is_taken_whole_is_about_the_point_of_the_base() -> None:
