@@ -17,7 +17,15 @@ from coeflab.motion.vehicle import vehicle as moving
 from coeflab.vehicle.parameter_file import ParameterFile
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
-MOTION = {"speed": "speed", "sway": "speed", "heave": "speed", "climb": "speed", "yaw_rate": "rate", "roll": "angle", "pitch": "angle"}
+MOTION = {
+    "speed": "speed",
+    "sway": "speed",
+    "heave": "speed",
+    "climb": "speed",
+    "yaw_rate": "rate",
+    "roll": "angle",
+    "pitch": "angle",
+}
 UPRIGHT = frozenset({"w", "pitch", "climb", "ds", "db"})
 
 __all__ = ["AXES", "CONTROLS", "LinearModel", "LinearSchedule", "Trim", "linear_as_json", "linear_model", "trim"]

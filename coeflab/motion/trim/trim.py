@@ -218,9 +218,7 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
         raise InputError(shown(strange[0]), f"some of {', '.join(units)}", column="motion")
     for name, value in motion.items():
         if not abs(value) <= limits.FASTEST:
-            raise InputError(
-                f"{name} = {value:g} {units[name]}", f"at most {limits.FASTEST:g} either way", column=name
-            )
+            raise InputError(f"{name} = {value:g} {units[name]}", f"at most {limits.FASTEST:g} either way", column=name)
     speed = max(abs(motion.get("u", 0.0)), vehicle.speed)
     unknowns = [_motion(vehicle, name, motion, speed) for name in MOTION]
     orders = command_unknowns(vehicle, speed)

@@ -84,7 +84,10 @@ def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Seque
         cells = [u.shown(found.point.values[u.name]).partition(" ")[0] if model else ABSENT for u in commands]
         if upright:
             pitch, (climb, _) = found.point.values["pitch"], found.figures["climb"]
-            cells += [number(np.degrees(pitch), 4) if model else ABSENT, number(0.0 if found.depth_is_kept else climb, 4) if model else ABSENT]
+            cells += [
+                number(np.degrees(pitch), 4) if model else ABSENT,
+                number(0.0 if found.depth_is_kept else climb, 4) if model else ABSENT,
+            ]
         mode = (_eigenvalue(model.modes[0]), _parts(model.modes[0])) if model else (ABSENT, found.point.outcome.value)
         rows.append((number(speed), *cells, *mode))
     told: dict[str, list[str]] = {}
