@@ -10,10 +10,10 @@ from coeflab.api.result import Result
 from coeflab.bodies import body as plain
 from coeflab.core.files import stem
 from coeflab.core.machine import one_thread
-from coeflab.law.scaling import Conditions
-from coeflab.law.water import FRESH_WATER
+from coeflab.law.water import conditions_of
 from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
+from coeflab.vehicle.from_shape import Stated
 
 
 @one_thread()
@@ -52,9 +52,13 @@ def estimate(
     (True, 'estimate')
     """
     hull = read_body(body)
-    conditions = Conditions(
-        FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
-        FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
-    )  # fmt: skip
-    result = estimated(Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method), hull)
+    conditions, unstated = conditions_of(
+        None if density is None else above_zero(density, "density", "density"),
+        None if speed is None else above_zero(speed, "speed", "speed"),
+    )
+    result = estimated(
+        Plan(stem(hull.name), hull.title or hull.name, (), conditions=conditions, method=method),
+        hull,
+        Stated(unstated=unstated),
+    )
     return Result(tuple(result.fits))

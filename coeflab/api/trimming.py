@@ -17,8 +17,16 @@ from coeflab.motion.vehicle import vehicle as moving
 from coeflab.vehicle.parameter_file import ParameterFile
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
-MOTION = {"speed": "speed", "sway": "speed", "heave": "speed", "yaw_rate": "rate", "roll": "angle", "pitch": "angle"}
-UPRIGHT = frozenset({"w", "pitch", "ds", "db"})
+MOTION = {
+    "speed": "speed",
+    "sway": "speed",
+    "heave": "speed",
+    "climb": "speed",
+    "yaw_rate": "rate",
+    "roll": "angle",
+    "pitch": "angle",
+}
+UPRIGHT = frozenset({"w", "pitch", "climb", "ds", "db"})
 
 __all__ = ["AXES", "CONTROLS", "LinearModel", "LinearSchedule", "Trim", "linear_as_json", "linear_model", "trim"]
 
@@ -55,7 +63,7 @@ def trim(
         Fitted tables come before derivatives.
     accelerations : {"measured", "computed"}
     **motion
-        speed, sway, heave (m/s), yaw_rate (rad/s), roll, pitch (rad), or with a unit: ``speed="3 kn"``.
+        speed, sway, heave, climb (m/s; 0 keeps the depth), yaw_rate (rad/s), roll, pitch (rad), or with a unit: ``speed="3 kn"``.
 
     Returns
     -------

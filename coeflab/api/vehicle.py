@@ -31,9 +31,8 @@ from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import fits_about
 from coeflab.formats.export import Export
 from coeflab.law.coefficient import Coefficient
-from coeflab.law.scaling import Conditions
 from coeflab.law.symbols import primed
-from coeflab.law.water import FRESH_WATER
+from coeflab.law.water import conditions_of
 from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
@@ -434,16 +433,15 @@ def vehicle(
     hull = read_body(body)
     if isinstance(coefficients, Result) and coefficients.fits:
         hull = _of_datum(hull, coefficients)
-    conditions = None
-    if density is not None or speed is not None:
-        conditions = Conditions(
-            FRESH_WATER.density if density is None else above_zero(density, "density", "density"),
-            FRESH_WATER.speed if speed is None else above_zero(speed, "speed", "speed"), FRESH_WATER.viscosity,
-        )  # fmt: skip
+    conditions, unstated = conditions_of(
+        None if density is None else above_zero(density, "density", "density"),
+        None if speed is None else above_zero(speed, "speed", "speed"),
+    )
     stated = Stated(
         None if mass is None else above_zero(mass, "mass", "mass"),
         None if centre_of_gravity is None else three(centre_of_gravity, "length", "centre_of_gravity"),
         None if inertia is None else np.diag(three(inertia, "inertia", "inertia")),
+        unstated,
     )
     called = stem(name or hull.name)
     result = estimated(Plan(called, hull.title or called, (), conditions=conditions, method=method), hull, stated)

@@ -27,6 +27,7 @@ def command(
     yaw_rate: str = "",
     roll: str = "",
     pitch: str = "",
+    climb: str = "",
     commands: list[str],
     near: list[str],
     free: str = "",
@@ -58,7 +59,7 @@ def command(
     wanted, several = linear or out is not None, len(speeds) > 1
     if not wanted and (several or also or lag):
         raise InputError("several speeds" if several else "--also" if also else "--lag", "--linear", column="--linear")
-    given = {"sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
+    given = {"sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch, "climb": climb}
     motion = {k: _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
     lags = named_numbers(lag, "--lag")
     vehicle = cf.read_vehicle(file)
@@ -117,7 +118,7 @@ def _measured(name: str, text: str, option: str) -> float:
     try:
         bare = float(text)
     except ValueError:
-        dimension = "speed" if name in AXES else "rate" if name == "yaw_rate" else "angle"
+        dimension = "speed" if name in (*AXES, "climb") else "rate" if name == "yaw_rate" else "angle"
         return quantity(text, dimension, key=option)
     return _si(name, bare, option)
 

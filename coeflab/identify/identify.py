@@ -183,18 +183,24 @@ def _identified(
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
-        tuple(balances), (*map(remark, found), *_shared(shared), *_statements(series, body, moving, share, library, half, o)),
+        tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o)),
         (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings)),
     )  # fmt: skip
 
 
-def _shared(motions: Sequence[str]) -> tuple[str, ...]:
-    """Why there are no intervals, where neighbouring rows share their noise."""
+def _shared(motions: Sequence[str], series: Sequence[MotionSeries]) -> tuple[str, ...]:
+    """Why there are no intervals, where neighbouring rows share their noise, and what would give some."""
     if not motions:
         return ()
+    derived = {m for s in series for f in s.findings if f.code == "record.derived" for m in f["columns"]} & {*motions}
+    advice = (
+        f"{', '.join(m for m in motions if m in derived)} follow of x, y and psi, so there are no unfiltered rows of them: give recorded ones, of a speed log or a rate gyro."
+        if derived
+        else "Use unfiltered rows, or thin them."
+    )
     return (
         f"No intervals: neighbouring rows share the noise of {', '.join(motions)}, as a filter leaves it. Even and odd rows are "
-        "then no instruments for each other, and the values are biased. Use unfiltered rows, or thin them.",
+        f"then no instruments for each other, and the values are biased. {advice}",
     )
 
 

@@ -32,18 +32,19 @@ as its restoring moment does not grow with speed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
-from coeflab.law.symbols import ANGULAR, MOTIONS
+from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, primed
 from coeflab.motion.approach import along
 from coeflab.motion.dynamics import STEP, from_euler, modes
 from coeflab.motion.vehicle import PLANES, Vehicle, vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import SEED
 
 STEPS = 200
 TOLERANCE = 1e-11
@@ -439,6 +440,7 @@ def run(theta: Array, thrust: Array, times: Array, start: Array | None = None) -
 PLANE_OF = {"G_h": ("v", "r"), "G_v": ("w", "q")}
 SLOWEST_SHARE, FASTEST, SPEEDS = 0.1, 2.0, 39  # of the file's speed, in steps of 0.05
 CLOSE = 1e-6  # bisection of a speed at which stability changes
+DRAWN, SHARE_WITHOUT = 1000, 0.025
 
 
 @brief
@@ -462,6 +464,10 @@ class RootLocus:
         Whether weight and buoyancy are in it.
     statement : str
         What is in it, and what a critical speed would need.
+    lacking : tuple of str
+        Accelerations of the plane that no added mass is known of: with the rigid body alone the roots are those in air.
+    drawn : (n,) array
+        The critical speed by draws of the four derivatives, not a number where a draw has none; empty without their covariance.
     """
 
     index: str
@@ -471,11 +477,23 @@ class RootLocus:
     critical: float | None
     is_restored: bool
     statement: str
+    lacking: tuple[str, ...] = ()
+    drawn: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "speed", locked(self.speed))
         object.__setattr__(self, "roots", locked(self.roots, complex))
         object.__setattr__(self, "at_speed", locked(self.at_speed, complex))
+        object.__setattr__(self, "drawn", locked(self.drawn))
+
+    @property
+    def limits(self) -> tuple[float, float] | None:
+        """95 % limits of the critical speed, m/s; None without draws, or where more than the half of 5 % of them have none."""
+        found = np.isfinite(self.drawn)
+        if not found.size or np.mean(~found) > SHARE_WITHOUT:
+            return None
+        low, high = np.quantile(self.drawn[found], (SHARE_WITHOUT, 1.0 - SHARE_WITHOUT))
+        return float(low), float(high)
 
 
 def root_locus(parameters: ParameterFile, index: str) -> RootLocus:
@@ -495,16 +513,52 @@ def root_locus(parameters: ParameterFile, index: str) -> RootLocus:
     body = vehicle(parameters, PLANE_OF[index])
     has_angle = index == "G_v" and parameters.hydrostatics is not None
     speed = parameters.conditions.speed * np.linspace(SLOWEST_SHARE, FASTEST, SPEEDS)
-    roots = np.array([roots_at(body, index, float(u), has_angle) for u in speed])
+    matrices = np.array([_matrix_at(body, index, float(u), has_angle) for u in speed])
+    roots = np.array([modes(one) for one in matrices])
     critical = _critical(body, index, has_angle, speed, roots[:, 0].real) if has_angle else None
+    at = [MOTIONS.index(m) for m in PLANE_OF[index]]
+    lacking = tuple(f"{COMPONENTS[i]}{MOTIONS[i]}dot'" for i in at if body.water.matrix[i, i] <= 0.0)
+    drawn = _drawn(parameters, body, at, speed, matrices) if critical is not None and not lacking else np.empty(0)
     return RootLocus(
         index, speed, roots, roots_at(body, index, parameters.conditions.speed, has_angle), critical, has_angle,
-        _statement(index, has_angle, critical, speed),
+        _statement(index, has_angle, critical, speed), lacking, drawn,
     )  # fmt: skip
+
+
+def _drawn(parameters: ParameterFile, body: Vehicle, at: Sequence[int], speed: Array, matrices: Array) -> Array:
+    """Critical speeds (n,) of draws of Zw', Zq', Mw', Mq' with their covariance; empty where they have none."""
+    symbols = [primed(f"{COMPONENTS[i]}{MOTIONS[j]}") for i in at for j in at]
+    place = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+    rows = [place.get(s) for s in symbols]
+    cells = [[None if i is None or j is None else parameters.covariance.matrix[i][j] for j in rows] for i in rows]
+    covariance = np.array([[np.nan if v is None else v for v in row] for row in cells])
+    if not np.all(np.isfinite(covariance)):
+        return np.empty(0)
+    draws = np.random.default_rng(SEED).multivariate_normal(np.zeros(4), covariance, DRAWN, method="eigh")
+    units = [parameters.scaling.unit(s, parameters.conditions.density, parameters.conditions.speed) for s in symbols]
+    forces = (draws * units / parameters.conditions.speed).reshape(-1, 2, 2)  # by speed ahead
+    rates = np.linalg.inv(body.effective_mass[np.ix_(at, at)]) @ forces
+    moved = np.broadcast_to(matrices, (DRAWN, *matrices.shape)).copy()
+    moved[:, :, :2, :2] += speed[:, None, None] * rates[:, None]
+    return first_zero(speed, np.linalg.eigvals(moved).real.max(axis=-1))
+
+
+def first_zero(at: Array, values: Array) -> Array:
+    """Where rows of values (n, k) first change their sign between the places (k,), by straight lines; not a number where none does."""
+    turns = np.sign(values[:, 1:]) != np.sign(values[:, :-1])
+    i, rows = np.argmax(turns, axis=1), np.arange(len(values))
+    low, high = values[rows, i], values[rows, i + 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(turns.any(axis=1), at[i] + (at[i + 1] - at[i]) * low / (low - high), np.nan)
 
 
 def roots_at(body: Vehicle, index: str, speed: float, has_angle: bool) -> NDArray[np.complex128]:
     """(k,) eigenvalues at a speed, 1/s; with the pitch angle as a state where asked for."""
+    return modes(_matrix_at(body, index, speed, has_angle))
+
+
+def _matrix_at(body: Vehicle, index: str, speed: float, has_angle: bool) -> Array:
+    """(k, k) of small motions at a speed."""
     at = [MOTIONS.index(m) for m in PLANE_OF[index]]
     nu, still = along(body, speed), np.zeros(6)
 
@@ -518,7 +572,7 @@ def roots_at(body: Vehicle, index: str, speed: float, has_angle: bool) -> NDArra
     if has_angle:
         rates = np.column_stack([rates, states[:, len(at) - 1]])
     ahead, back = np.split(rates, 2)
-    return modes(((ahead - back) / (2.0 * STEP * scale)[:, None]).T)
+    return np.asarray(((ahead - back) / (2.0 * STEP * scale)[:, None]).T)
 
 
 def _critical(body: Vehicle, index: str, has_angle: bool, speed: Array, growth: Array) -> float | None:

@@ -37,7 +37,7 @@ from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.reference import Comparison, Reference, Relation
-from coeflab.vehicle.stability import ALONE, INDICES, Derived, missing_for_stability, sense, stability
+from coeflab.vehicle.stability import ALONE, FAST, INDICES, Derived, missing_for_stability, sense, stability
 
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
@@ -315,19 +315,21 @@ def _absent(rows: tuple[AnswerRow, ...], for_body: str) -> str:
 
 
 def _chips(study: Study) -> tuple[Chip, ...]:
-    return tuple(c for c in (_stability(study), _warnings(study), _exports(study)) if c is not None)
+    return (*_stability(study), *(c for c in (_warnings(study), _exports(study)) if c is not None))
 
 
-def _stability(study: Study) -> Chip:
-    """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
+def _stability(study: Study) -> tuple[Chip, ...]:
+    """Of the first parameter file that has an index, a chip a plane."""
     every = [index for p in study.parameter_files.values() for index in stability(p)]
     if not every:
         files = tuple(study.parameter_files.values())
         words = no_index(min((missing_for_stability(p) for p in files), key=len)) if files else "no parameter file"
-        return Chip("Stability", words, Severity.NOTE, "stability" if files else "")
-    first = [index for index in every if index.subject == every[0].subject]
-    d: Derived = min(first, key=lambda index: index.name != "G_h")
-    words = sense(d).removesuffix(ALONE).partition(" at ")[0]
+        return (Chip("Stability", words, Severity.NOTE, "stability" if files else ""),)
+    return tuple(_of_plane(study, index) for index in every if index.subject == every[0].subject)
+
+
+def _of_plane(study: Study, d: Derived) -> Chip:
+    words = sense(d).removesuffix(ALONE).partition(f" {FAST}")[0]
     grave = (
         Severity.PASS
         if words == "stable" and d.result is not None
@@ -336,12 +338,12 @@ def _stability(study: Study) -> Chip:
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
-    plane = "horizontal" if d.name == "G_h" else "vertical"
+    plane, fast = ("horizontal", "") if d.name == "G_h" else ("vertical", f" {FAST}")
     file = next(p for p in study.parameter_files.values() if p.name == d.subject)
     stated = from_literature(file, d.name)
     published = f" ({', '.join(stated)} published)" if 0 < len(stated) < len(INDICES[d.name]) - 1 else ""
     several = len(study.parameter_files) > 1
-    name = f"{_of_study_named(study, d.subject)}, {plane}" if several else f"Stability, {plane} plane"
+    name = f"{_of_study_named(study, d.subject)}, {plane}{fast}" if several else f"Stability, {plane} plane{fast}"
     return Chip(name, f"{words}, {d.name} = {value}{published}", grave, "stability")
 
 

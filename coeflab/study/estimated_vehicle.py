@@ -33,7 +33,7 @@ from coeflab.formats.exporting import exports_of
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling, require_hull
 from coeflab.law.symbols import CONTROLS
-from coeflab.law.water import FRESH_WATER
+from coeflab.law.water import FRESH_WATER, conditions_of, water_of
 from coeflab.motion.approach import along, mirrored, yaw_acceleration
 from coeflab.motion.manoeuvre import UPRIGHT, Simulation
 from coeflab.motion.simulation import manoeuvres_of, moved, simulate
@@ -144,8 +144,8 @@ def estimated(
     shape = body.require_shape()
     require_orientation(body)
     conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
-    conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
-    words = [*mesh_statements(body), *_assumed(plan, conditions)]
+    conditions = replace(conditions, viscosity=conditions.viscosity or water_of(conditions.density)[1])
+    words = [*mesh_statements(body), *_assumed(plan, conditions, stated.unstated)]
     if scaling is None:
         if not shape.length > 0.0:
             hollow = "" if any(c.volume for c in body.configurations) else f" It has no volume either. {CLOSED}"
@@ -213,10 +213,15 @@ def angles_at(trajectory: Trajectory, rows: Array) -> Array:
     return np.column_stack([np.asarray(trajectory.controls.get(c, none))[rows] for c in CONTROLS])
 
 
-def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
-    if plan.conditions is not None:
-        return ()
-    return (f"assumed: {conditions.speed:g} m/s in fresh water of 20 deg C, {conditions.density:g} kg/m^3",)
+def _assumed(plan: Plan, conditions: Conditions, unstated: Sequence[str]) -> tuple[str, ...]:
+    """What of speed, density and viscosity nobody stated."""
+    lacking = {"density", "speed"} if plan.conditions is None else set(unstated)
+    water = f"{water_of(conditions.density)[0]} water of 20 deg C"
+    parts = [f"{conditions.speed:g} m/s"] * ("speed" in lacking)
+    parts += [f"{water}, {conditions.density:g} kg/m^3"] * ("density" in lacking)
+    if "density" not in lacking and plan.conditions is not None and plan.conditions.viscosity is None:
+        parts.append(f"the viscosity of {water}, {conditions.viscosity:g} m^2/s")
+    return (f"assumed: {(' in ' if 'density' in lacking else ', ').join(parts)}",) if parts else ()
 
 
 def _drift_limit(parameters: ParameterFile) -> tuple[str, ...]:
@@ -416,19 +421,16 @@ def asked(
     weight = positive_typed(mass, "mass", "--mass") if mass else None
     centre = np.array(three_typed(cg, "length", "--cg")) if cg else None
     turning = None if not inertia else np.diag(three_typed(inertia, "inertia", "--inertia"))
-    conditions = None
-    if speed or density:
-        conditions = Conditions(
-            positive_typed(density, "density", "--density") if density else FRESH_WATER.density,
-            positive_typed(speed, "speed", "--speed") if speed else FRESH_WATER.speed,
-            FRESH_WATER.viscosity,
-        )
+    conditions, unstated = conditions_of(
+        positive_typed(density, "density", "--density") if density else None,
+        positive_typed(speed, "speed", "--speed") if speed else None,
+    )
     require_hull(length, "--length")
     scaling = Scaling(positive_typed(length, "length", "--length"), "length") if length else None
     exports = tuple(PlannedExport(target, accept_loss) for target in dict.fromkeys(to))
     title = body.title if body.title and not body.datum.id.endswith(body.title) else body.name
     plan = Plan(stem(body.name), title, (), conditions=conditions, scaling=scaling, exports=exports, method=method)
-    return plan, Stated(weight, centre, turning)
+    return plan, Stated(weight, centre, turning, unstated)
 
 
 def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tuple[ParameterFile, Scaling]:

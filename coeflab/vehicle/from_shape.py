@@ -49,11 +49,14 @@ class Stated:
         Of gravity, m, FRD, from the body's datum.
     inertia : (3, 3) array or None
         About the centre of gravity, kg m^2.
+    unstated : tuple of str
+        Of the conditions, density and speed: which are assumed.
     """
 
     mass: float | None = None
     centre: NDArray[np.float64] | None = None
     inertia: NDArray[np.float64] | None = None
+    unstated: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("centre", "inertia"):

@@ -18,6 +18,7 @@ from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import words
 from coeflab.core.types import Array, brief
 from coeflab.core.units import also_written, positive_typed, three_typed, unit_ratio
 from coeflab.core.version import VERSION
@@ -37,6 +38,7 @@ from coeflab.vehicle.parameter_parts import (
     ParameterSurface,
     ParameterThruster,
 )
+from coeflab.vehicle.sizes import far_centre
 
 STATED, BY_HAND = "stated", "--set"
 EXAMPLE = '"Yv\'=-0.0278 +- 0.0014" or "Yv=-35.5 N/(m/s)"'
@@ -350,6 +352,8 @@ def typed_file(
     except InputError as why:
         raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
+    for found in map(words, far_centre(result)):
+        raise InputError(f"{shown(cg)}. {found.statement.rstrip('.')}", found.rule, column="--cg", advice=found.advice)
     driven, surfaces = typed_thrusters(thrusters, conditions), typed_surfaces(rudder, stern_planes, bow_planes)
     return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})
 

@@ -229,3 +229,19 @@ def test_r_squared_is_about_the_mean_only_with_an_intercept():
     for columns, constant in ((np.stack([x, x**2], 1), False), (np.stack([x, x - 1.0, x**2], 1)[:, :2], True)):
         weighted = sm.WLS(noisy, np.stack([np.ones(11), x], 1) if constant else columns, errors**-2.0).fit()
         assert fit_linear(columns, noisy, errors).r_squared == pytest.approx(weighted.rsquared, rel=1e-9)
+
+
+def test_rows_that_repeat_each_other_to_the_last_digit_show_no_noise() -> None:
+    """Mirrored copies of rounded rows leave no residual of the slope that they alone fix; the others keep their U95."""
+    v = np.array([0.07, -0.07, 0.07, -0.07, 0.0, 0.0, 0.0, 0.0])
+    r = np.array([0.5, 0.5, -0.5, -0.5, 0.25, 0.5, 0.75, -0.5])
+    columns = np.column_stack([np.ones(8), r**2, v**2, v * r])
+    y = np.round(columns @ [-3.1, -0.1, 4.0, 8.48], 4)
+    found = fit_linear(columns, y)
+    assert np.isfinite(found.half_width[:2]).all()
+    assert np.isnan(found.half_width[3])
+    assert found.freedom[3] == 0.0
+    noisy = fit_linear(columns, y + 1e-4 * np.array([1.0, -1.0, -1.0, 0.5, 0.3, -0.4, 0.2, 0.1]))
+    assert np.isfinite(noisy.half_width).all()
+    exact = fit_linear(columns[:, :3], columns[:, :3] @ [1.0, 2.0, 3.0])
+    assert np.isfinite(exact.half_width).all()

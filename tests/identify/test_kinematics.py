@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
+from coeflab.identify.identify import _shared
 from coeflab.identify.kinematics import by_positions, contradicted, readings
 from coeflab.identify.series import read_series
 from coeflab.motion.vehicle import vehicle
@@ -113,3 +115,14 @@ def test_a_bad_cell_of_a_file_without_names_has_its_line(tmp_path: Path) -> None
     file.write_text("\n".join(rows))
     with pytest.raises(InputError, match=r"line 21.*nan"):
         read_series(file, BODY, "t [s], u [m/s]")
+
+
+def test_what_would_give_intervals_is_what_the_file_can_have() -> None:
+    """Rows of u, v, r that follow of positions are filtered by that: no unfiltered ones can be given."""
+    derived = Finding.of("record.derived", "log.csv", Severity.NOTE, columns=("u", "r"), places=("x", "y", "psi"))
+    (of_places,), (recorded,) = (_shared(("u", "v"), [SimpleNamespace(findings=found)]) for found in ((derived,), ()))
+    assert of_places.endswith(
+        "u follow of x, y and psi, so there are no unfiltered rows of them: give recorded ones, of a speed log or a rate gyro."
+    )
+    assert recorded.endswith("Use unfiltered rows, or thin them.")
+    assert _shared((), [SimpleNamespace(findings=(derived,))]) == ()

@@ -6,6 +6,7 @@ import io
 import json
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.trim.linear_model import LinearModel, content, linear_model
 from coeflab.motion.trim.trim import MOTION, Trim, trim
 from coeflab.motion.vehicle import vehicle
+from coeflab.report.tables.linear_model import schedule_table
 from coeflab.vehicle.parameter_file import read_parameter_file
 
 TIME = 0.8  # s, near one time constant of the fastest motion
@@ -164,3 +166,40 @@ def test_octave_loads_the_schedule(tmp_path: Path) -> None:
     first, *others = done.stdout.split()
     assert float(first) == found.A[1, 2, 1]
     assert others == ["2", "u", "v", "r"]
+
+
+def test_a_climb_that_is_asked_for_is_an_equation_and_each_model_names_its_steady_motion() -> None:
+    auv = vehicle(read_parameter_file(Path("remus100")))
+    free, level, rising = (
+        trim(auv, {"u": 1.5, "yaw_rate": 0.0, "roll": 0.0, **more}, starts=2)
+        for more in ({"pitch": 0.05}, {"climb": 0.0}, {"climb": 0.1})
+    )
+    nu, (roll, pitch) = rising.motion.state(rising.point.found.point)
+    (across, down), (sin, cos) = nu[1:3], (np.sin(roll), np.cos(roll))
+    assert np.sin(pitch) * nu[0] - np.cos(pitch) * (across * sin + down * cos) == pytest.approx(0.1, abs=1e-9)
+    assert rising.figures["climb"][0] == pytest.approx(0.1, abs=1e-9)
+    assert (free.depth_is_kept, level.depth_is_kept, rising.depth_is_kept) == (False, True, False)
+    assert len(level.point.equations) == len(free.point.equations) + 1
+    words = linear_model(free).state
+    assert words.startswith("steady motion at u = 1.500 m/s: pitch 2.865 deg, climb ")
+    assert words.endswith("depth not kept")  # its pitch is given: no climb could be asked for
+    assert linear_model(level).state.endswith(", depth kept")
+    assert "climb = 0 asks for it" in linear_model(rising).state
+    assert linear_model(level).state in json.loads(content([linear_model(level)], ".json"))["statements"]
+
+
+def test_over_the_speed_stands_what_stands_at_one() -> None:
+    auv = vehicle(read_parameter_file(Path("remus100")), ("u", "w", "q"), "vertical")
+    trims = [trim(auv, {"u": u, "pitch": 0.05}, starts=2) for u in (1.0, 2.0)]
+    table = schedule_table([1.0, 2.0], trims, [linear_model(t) for t in trims])
+    at = [table.headers.index(name) for name in ("pitch [deg]", "climb [m/s]")]
+    assert [[float(row[i]) for i in at] for row in table.rows] == [
+        pytest.approx([np.degrees(0.05), t.figures["climb"][0]], rel=1e-3) for t in trims
+    ]
+    assert any(note.startswith("Depth is not kept.") for note in table.notes)
+    for found in trims:
+        assert all(any(words in note for note in table.notes) for words in found.point.doubts())
+    held = replace(trims[0].point.found, held=np.array([u.name == "ds" for u in trims[0].point.unknowns]))
+    bound = replace(trims[0], point=replace(trims[0].point, found=held))
+    notes = schedule_table([1.0], [bound], [linear_model(bound)]).notes
+    assert any("ds is held at its bound of" in note for note in notes)

@@ -8,6 +8,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.motion.steady_state import root_locus, roots_at
 from coeflab.motion.vehicle import vehicle
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import stability_index
 from tests.motion.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made
 
@@ -82,3 +83,40 @@ def test_without_hydrostatics_it_says_that_there_is_no_critical_speed() -> None:
 def test_a_file_without_mass_is_refused() -> None:
     with pytest.raises(InputError, match="without mass"):
         root_locus(made().model_copy(update={"mass": None}), "G_h")
+
+
+def with_u95(share: float) -> ParameterFile:
+    """NOSE_UP in water, its four derivatives of the vertical plane independent, with such half-widths as shares of their sizes."""
+    file = made({**NOSE_UP, "Zwdot": -2e-2, "Mqdot": -1e-3}, HEIGHT)
+    symbols = ("Zw'", "Zq'", "Mw'", "Mq'")
+    variances = [(share * NOSE_UP[s.removesuffix("'")] / 2.0) ** 2 for s in symbols]
+    update = {"symbols": symbols, "matrix": tuple(map(tuple, np.diag(variances).tolist()))}
+    return file.model_copy(update={"covariance": file.covariance.model_copy(update=update)})
+
+
+def test_the_limits_of_the_critical_speed_are_those_of_its_derivatives() -> None:
+    """Against first order, by the critical speed of each derivative moved alone."""
+    share, file = 0.05, with_u95(0.05)
+    found = root_locus(file, "G_v")
+    assert found.critical is not None
+    moved = []
+    for symbol in ("Zw", "Zq", "Mw", "Mq"):
+        larger = {**NOSE_UP, "Zwdot": -2e-2, "Mqdot": -1e-3, symbol: NOSE_UP[symbol] * (1.0 + 0.1 * share)}
+        moved.append(10.0 * (root_locus(made(larger, HEIGHT), "G_v").critical - found.critical))
+    half = float(np.linalg.norm(moved))
+    low, high = found.limits
+    assert (high - low) / 2.0 == pytest.approx(half, rel=0.1)
+    assert (low + high) / 2.0 == pytest.approx(found.critical, abs=0.2 * half)
+
+
+def test_a_critical_speed_that_some_draws_have_none_of_has_no_limits() -> None:
+    found = root_locus(with_u95(3.0), "G_v")
+    assert found.critical is not None
+    assert 0.025 < np.mean(np.isnan(found.drawn)) < 1.0
+    assert found.limits is None
+
+
+def test_accelerations_without_an_added_mass_are_named() -> None:
+    assert root_locus(made(NOSE_UP, HEIGHT), "G_v").lacking == ("Zwdot'", "Mqdot'")
+    assert root_locus(made(NOSE_UP, HEIGHT), "G_v").drawn.size == 0
+    assert root_locus(with_u95(0.05), "G_v").lacking == ()

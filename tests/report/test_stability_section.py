@@ -19,6 +19,7 @@ from tests.motion.vehicles import STABLE, UNSTABLE, made
 from tests.report.studies import FULL, small_study
 
 M = 60.0 / (0.5 * 1000.0 * 2.0**3)
+IN_WATER = {**STABLE, "Yvdot": -2e-2, "Nrdot": -1e-3, "Zwdot": -2e-2, "Mqdot": -1e-3}
 NEARLY = {**STABLE, "Nv": -4e-2 * -1e-2 / (4e-3 - M) * 1.01}  # G_h = 1 - 1.01: next to nothing, below zero
 
 
@@ -27,22 +28,36 @@ def with_files(*files):
 
 
 def test_stability_has_indices_roots_and_figures():
-    (section,) = stability_sections(with_files(made()))
+    (section,) = stability_sections(with_files(made(IN_WATER)))
     indices, roots = section.tables
     made_of = section.subsections[0].tables[0]
     assert [row[1] for row in indices.rows] == ["G_h", "G_v", "r'/dr"]
     assert [row[:2] for row in made_of.rows] == [("synthetic", "G_h"), ("synthetic", "G_v")]
     assert [row[4] for row in indices.rows[:2]] == ["stable, no U95", "stable at high speed, no U95"]
     assert all("no U95" in row[5] for row in indices.rows)
-    assert [row[-1] for row in roots.rows] == ["none", "none"]
+    assert [row[4] for row in roots.rows] == ["none", "none"]
     assert len(section.figures) == 2
     assert all(f.panels for f in section.figures)
 
 
 def test_stability_without_hydrostatics_says_what_is_missing():
-    (section,) = stability_sections(with_files(made().model_copy(update={"hydrostatics": None})))
-    assert section.tables[1].rows[1][-1] == "no value: no BG"
+    (section,) = stability_sections(with_files(made(IN_WATER).model_copy(update={"hydrostatics": None})))
+    assert section.tables[1].rows[1][4] == "no value: no BG"
     assert "no hydrostatics" in section.figures[1].caption
+
+
+def test_roots_and_critical_speed_are_withheld_without_the_added_mass_of_their_plane():
+    known = {**STABLE, "Mw": 6e-2, "Zwdot": -2e-2, "Mqdot": -1e-3}
+    (section,) = stability_sections(with_files(made(known, 0.02)))
+    level, upright = section.tables[1].rows
+    assert level[2:] == ("-", "-", "no value: no added mass (Yvdot', Nrdot')", "-")
+    assert float(upright[4]) > 0.0
+    assert upright[5] == "none: a derivative has no U95"
+    assert "acceleration derivatives" in " ".join(section.tables[1].notes)
+    assert [f.anchor for f in section.figures] == ["roots-0-v"]
+    (section,) = stability_sections(with_files(made({**known, **IN_WATER, "Mqdot": 0.0}, 0.02)))
+    assert section.tables[1].rows[1][4] == "no value: no added mass (Mqdot')"
+    assert "added mass" not in section.tables[1].rows[0][4]
 
 
 def with_u95(values, half):
@@ -199,6 +214,8 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, horizontal plane"]
     assert chip.text.startswith("stable, G_h = ")
     assert chip.text.endswith(", no U95")
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability, vertical plane at high speed"]
+    assert chip.text.startswith("unstable, G_v = ")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
     assert "BG is unknown" in found.comment

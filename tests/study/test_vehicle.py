@@ -544,3 +544,21 @@ def test_a_body_that_is_not_alike_to_both_sides_turns_as_it_coasts(bare: Body) -
     (move,) = from_shape(PLAN, bare, heavy).manoeuvres
     assert move.vehicle.free == ("u", "v", "r")
     assert np.any(move.trajectory.velocity[:, 5])
+
+
+@pytest.mark.parametrize(
+    ("density", "speed", "viscosity", "assumed"),
+    [
+        ("", "", 1.0034e-6, ["assumed: 2 m/s in fresh water of 20 deg C, 998.2 kg/m^3"]),
+        ("1025", "", 1.0508e-6, ["assumed: 2 m/s, the viscosity of sea water of 20 deg C, 1.0508e-06 m^2/s"]),
+        ("1000", "3 kn", 1.0034e-6, ["assumed: the viscosity of fresh water of 20 deg C, 1.0034e-06 m^2/s"]),
+        ("", "3", 1.0034e-6, ["assumed: fresh water of 20 deg C, 998.2 kg/m^3"]),
+    ],
+)
+def test_a_density_brings_the_viscosity_of_its_water_and_what_is_assumed_stays_named(
+    bare: Body, density: str, speed: str, viscosity: float, assumed: list[str]
+) -> None:
+    plan, stated = asked(bare, density=density, speed=speed, method="ellipsoid")
+    ((_, made),) = from_shape(plan, bare, stated).parameter_files.items()
+    assert made.conditions.viscosity == viscosity
+    assert [n for n in made.provenance.notes if n.startswith("assumed: ") and "water of 20" in n] == assumed

@@ -323,3 +323,45 @@ def test_a_constant_stays_one_in_a_vehicle_of_another_speed() -> None:
     assert yv.u95 == pytest.approx(0.1 * abs(yv.value or 0.0))
     assert found.covariance.matrix[0][0] == pytest.approx((0.05 * (yv.value or 0.0)) ** 2)
     assert [f["symbols"] for f in found.findings] == [("Nr",)]
+
+
+STATED = {"length": "3 m", "length_name": "LOA", "speed": "2 m/s", "density": "1025", "mass": "200 kg"}
+
+
+@pytest.mark.parametrize(
+    ("value", "warned"), [("-260", "Yv' = -260 (2)"), ("-2.1", "Yv' = -2.1 (2)"), ("-2.1 +- 0.2", ""), ("-1.9", "")]
+)
+def test_a_prime_beyond_that_of_a_plate_is_named(value: str, warned: str) -> None:
+    p = typed_file("auv", [f"Yv'={value}", "Nv'=-0.02"], about="cg", inertia="3,120,120", **STATED)
+    found = [c for c in plausibility(p) if c.subject == "Yv'" and c.severity is Severity.WARN]
+    assert [c.statistic for c in found] == [warned] * bool(warned)
+    other = p.model_copy(update={"scaling": Scaling(1.0, "1 m")})  # of no body: no plate of that side
+    assert not [c for c in plausibility(other) if c.subject == "Yv'" and c.severity is Severity.WARN]
+
+
+@pytest.mark.parametrize(
+    ("about", "cg", "refused"),
+    [
+        ("nose", "-1500,0,30", "1499 m from the middle of LOA = 3 m"),
+        ("nose", "1.4,0,0.03", "2.9 m from the middle"),
+        ("nose", "-1.4,0,0.03", ""),
+        ("midship", "-1.6,0,0", "1.6 m from the midship"),
+        ("midship", "-1400 mm,0,30 mm", ""),
+        ("paper_axes", "-2.9,0,0", ""),
+        ("paper_axes", "-3.1,0,0", "3.1 m from the paper_axes"),
+    ],
+)
+def test_a_centre_of_gravity_beyond_the_ends_of_the_body_is_refused(about: str, cg: str, refused: str) -> None:
+    def typed(at: str) -> ParameterFile:
+        return typed_file("auv", ["Yv=-260 kg/s"], about=about, cg=at, **STATED)
+
+    if not refused:
+        typed(cg)
+        return
+    with pytest.raises(InputError, match="--cg") as why:
+        typed(cg)
+    assert refused in str(why.value)
+    inside = typed("-1,0,0" if about != "midship" else "0,0,0")
+    assert inside.mass is not None
+    far = inside.model_copy(update={"mass": mass_of(200.0, np.array([9.0, 0.0, 0.0])).primed(inside.scaling, 1025.0)})
+    assert [c.subject for c in plausibility(far) if "ends of the body" in c.rule] == ["auv"]

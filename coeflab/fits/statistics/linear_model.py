@@ -33,6 +33,7 @@ from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, s
 from coeflab.law.terms import Term, design
 
 FULL_LEVERAGE = 1.0 - 1e-9
+SILENT = 1e-6  # of the pooled scatter: less is no noise but rows that repeat each other to the last digit, and no U95
 CONSTANT = 1e-9  # share of a constant that the columns may leave over
 
 
@@ -99,7 +100,7 @@ class LinearFit:
     covariance : (p, p) array
         HC2.
     freedom : (p,) array
-        Bell-McCaffrey degrees of freedom of every coefficient.
+        Bell-McCaffrey degrees of freedom of every coefficient; zero where its rows repeat each other to the last printed digit.
     half_width : (p,) array
         95 % half-widths, HC2.
     residuals : (n,) array
@@ -218,14 +219,16 @@ def fit_linear(
     spread = f.back @ moved
     covariance = free @ (spread @ spread.T) @ free.T
     freedom = _freedom(f, free, constraint is not None)
+    remaining = float(np.sum(weighted**2))
+    variance = remaining / f.freedom if f.freedom > 0 else float("nan")
+    pooled = np.sum((free @ f.back) ** 2, axis=1) * np.nan_to_num(variance)
+    freedom = np.where(np.diag(covariance) < SILENT**2 * pooled, 0.0, freedom)
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
     undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
     coefficients = np.where(undetermined, np.nan, coefficients)
     total = variation(f, response)
-    remaining = float(np.sum(weighted**2))
     left_out = residuals / room
-    variance = remaining / f.freedom if f.freedom > 0 else float("nan")
     size = np.where(deviation > 0, deviation, 1.0)
     return LinearFit(
         coefficients=coefficients,

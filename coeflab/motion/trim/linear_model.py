@@ -92,7 +92,9 @@ class LinearModel:
     statements : tuple of str
         Of the derivatives.
     remarks : tuple of str
-        Of the steady motion: what no data cover, what was assumed.
+        Of the steady motion: whether it is the only one, what a bound holds, what no data cover, what was assumed.
+    state : str
+        Of the steady motion: speed, pitch and climb.
     """
 
     vehicle: str
@@ -103,6 +105,7 @@ class LinearModel:
     modes: tuple[Mode, ...]
     statements: tuple[str, ...]
     remarks: tuple[str, ...] = ()
+    state: str = ""
 
     def __repr__(self) -> str:
         names = (", ".join(v.name for v in which) for which in (self.states, self.commands))
@@ -257,7 +260,7 @@ def as_json(model: LinearModel) -> dict[str, Any]:
             }
             for m in model.modes
         ],
-        "statements": [*model.statements, *model.remarks],
+        "statements": [*model.statements, model.state, *model.remarks],
     }  # fmt: skip
 
 
@@ -290,7 +293,7 @@ def content(models: Sequence[LinearModel], ending: str, speeds: Sequence[float] 
     names = (
         _names(models[0])
         | _axes(arrays, speeds is not None)
-        | {"remarks": list(dict.fromkeys(r for m in models for r in (*m.statements, *m.remarks)))}
+        | {"remarks": list(dict.fromkeys(r for m in models for r in (*m.statements, m.state, *m.remarks)))}
     )
     return npz(arrays, names) if ending == ".npz" else mat(arrays, names)
 
@@ -364,7 +367,7 @@ def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float
     )
     return LinearModel(
         found.motion.vehicle.name, states, commands, a, b, found_modes, (*_accuracy(a, b), *_kinks(a, b, states, commands)),
-        found.point.statements,
+        (*found.point.doubts(), *found.point.statements), found.state_in_words(),
     )  # fmt: skip
 
 

@@ -177,11 +177,19 @@ class OperatingPoint:
             out += [self._direction(d) for d in f.family.T]
             if len(f.others):
                 out.append(f"{len(f.others)} other local least{'s' * (len(f.others) > 1)} of the rule, each with more.")
-        out += [f"{u.name} is held at its bound of {u.shown(b)}." for u, b in self.saturated]
+        out += self._held()
         if self.growth is not None:
             slowest = self.modes[0]
             out.append(f"Small motions about it are {self.growth}: largest real part {slowest.real:.4g} 1/s.")
         return (*out, *self.statements)
+
+    def doubts(self) -> tuple[str, ...]:
+        """That it is not the only solution, and what a bound holds."""
+        first = {Outcome.FAMILY, Outcome.SEVERAL, Outcome.SINGULAR} & {self.outcome}
+        return (*self.words()[: len(first)], *self._held())
+
+    def _held(self) -> list[str]:
+        return [f"{u.name} is held at its bound of {u.shown(b)}." for u, b in self.saturated]
 
     def _least(self) -> str:
         worst = max((abs(self.residuals[e.name]) / e.size for e in self.violated), default=0.0)

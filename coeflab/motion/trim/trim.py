@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
+CLIMB = "climb"
 LEANS = {"p": "roll", "q": "pitch"}
 PLACES = {"depth": "m", "heading": "rad"}
 FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch": "q"}
@@ -59,12 +60,15 @@ class SteadyMotion:
     unknowns : tuple of Unknown
         Of `MOTION`, then the commands; given ones have equal bounds.
     equations : tuple of Equation
-        Forces along what the vehicle is free to do.
+        Forces along what the vehicle is free to do, and the climb where it is given.
+    climb : float or None
+        Rate of rising that is given, m/s: zero keeps the depth.
     """
 
     vehicle: Vehicle
     unknowns: tuple[Unknown, ...]
     equations: tuple[Equation, ...]
+    climb: float | None = None
 
     def state(self, x: Array) -> tuple[Array, Array]:
         """(6,) velocities and (2,) roll and pitch.
@@ -84,12 +88,17 @@ class SteadyMotion:
         return np.array([values.get(c, 0.0) for c in CONTROLS]), self.vehicle.wrench(ordered)
 
     def left(self, x: Array) -> Array:
-        """Forces that would accelerate the vehicle, along its free motions."""
+        """Forces that would accelerate the vehicle, along its free motions, and the climb beyond the one given."""
         nu, lean = self.state(x)
         controls, wrench = self.commands(x)
         attitude = from_euler(lean[0], lean[1], 0.0)
         total = self.vehicle.unbalanced(nu[None, :], attitude[None, :], controls[None, :], wrench)[0]
-        return np.asarray(total[list(self.vehicle.free_columns)])
+        beyond = [] if self.climb is None else [self.rising(x) - self.climb]
+        return np.concatenate([total[list(self.vehicle.free_columns)], beyond])
+
+    def rising(self, x: Array) -> float:
+        """Climb, m/s."""
+        return -float(self.place_rates(x, self.departed(x))[0])
 
     @property
     def command_unknowns(self) -> tuple[Unknown, ...]:
@@ -193,7 +202,7 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
     ----------
     vehicle : Vehicle
     motion : mapping
-        Of `MOTION`, SI.
+        Of `MOTION` and ``climb``, SI.
     commands : mapping
         Thrusters, ``name.tilt``, ``dr`` ``ds`` ``db``, or ``thrust`` where the file has no thrusters; SI, tilts and surfaces
         in rad.
@@ -203,14 +212,13 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
     InputError
         A name that is unknown, or a command beyond its limits.
     """
-    strange = sorted(set(motion) - set(MOTION))
+    units = {**MOTION, CLIMB: "m/s"}
+    strange = sorted(set(motion) - set(units))
     if strange:
-        raise InputError(shown(strange[0]), f"some of {', '.join(MOTION)}", column="motion")
+        raise InputError(shown(strange[0]), f"some of {', '.join(units)}", column="motion")
     for name, value in motion.items():
         if not abs(value) <= limits.FASTEST:
-            raise InputError(
-                f"{name} = {value:g} {MOTION[name]}", f"at most {limits.FASTEST:g} either way", column=name
-            )
+            raise InputError(f"{name} = {value:g} {units[name]}", f"at most {limits.FASTEST:g} either way", column=name)
     speed = max(abs(motion.get("u", 0.0)), vehicle.speed)
     unknowns = [_motion(vehicle, name, motion, speed) for name in MOTION]
     orders = command_unknowns(vehicle, speed)
@@ -229,7 +237,9 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
             unknowns.append(u.at(commands[u.name]))
         else:
             unknowns.append(u if motion or not commands else u.at(min(max(0.0, u.low), u.high)))
-    return SteadyMotion(vehicle, tuple(unknowns), _equations(vehicle, speed))
+    climb = motion.get(CLIMB)
+    kept = () if climb is None else (Equation("climb beyond the one given", "m/s", speed),)
+    return SteadyMotion(vehicle, tuple(unknowns), (*_equations(vehicle, speed), *kept), climb)
 
 
 def _motion(vehicle: Vehicle, name: str, motion: Mapping[str, float], speed: float) -> Unknown:
@@ -277,6 +287,7 @@ def _equations(vehicle: Vehicle, speed: float) -> tuple[Equation, ...]:
 
 
 STRAIGHT = 1e-9
+LEVEL = 1e-6  # of the speed
 
 
 @suggesting
@@ -357,17 +368,31 @@ class Trim:
         u, v, w = self.velocity[:3]
         speed = float(np.linalg.norm(self.velocity[:3]))
         alpha, beta = (float(a[0]) for a in incidence(np.array([u]), np.array([v]), np.array([w])))
-        turn, pitch, roll = (self.point.values[k] for k in ("yaw_rate", "pitch", "roll"))
-        sinking = -np.sin(pitch) * u + np.cos(pitch) * (np.sin(roll) * v + np.cos(roll) * w)
-        level = float(np.sqrt(max(speed**2 - sinking**2, 0.0)))
+        turn, climb = self.point.values["yaw_rate"], self.motion.rising(self.point.found.point)
+        level = float(np.sqrt(max(speed**2 - climb**2, 0.0)))
         turning = abs(turn) * self.motion.vehicle.length > STRAIGHT * max(level, STRAIGHT)
         p, q, r = (float(x) + 0.0 for x in self.velocity[3:])
         out: dict[str, tuple[float | None, str]] = {
             "speed": (speed, "m/s"), "alpha": (alpha + 0.0, "rad"), "beta": (beta + 0.0, "rad"),
-            "climb": (float(-sinking) + 0.0, "m/s"), "p": (p, "rad/s"), "q": (q, "rad/s"), "r": (r, "rad/s"),
+            CLIMB: (climb + 0.0, "m/s"), "p": (p, "rad/s"), "q": (q, "rad/s"), "r": (r, "rad/s"),
             "radius": (level / abs(turn) if turning else None, "m"),
         }  # fmt: skip
         return out if self.solved else {name: (None, unit) for name, (_, unit) in out.items()}
+
+    @property
+    def depth_is_kept(self) -> bool:
+        """Whether the solution neither rises nor sinks."""
+        climb, speed = (self.figures[name][0] or 0.0 for name in (CLIMB, "speed"))
+        return abs(climb) <= LEVEL * max(speed, STRAIGHT)
+
+    def state_in_words(self) -> str:
+        """Speed, pitch and climb of the solution; empty of an unsolved one."""
+        if not self.solved:
+            return ""
+        pitch = next(u for u in self.point.unknowns if u.name == "pitch")
+        climb = "depth kept" if self.depth_is_kept else f"climb {number(self.figures[CLIMB][0], 4)} m/s, depth not kept"
+        ask = f"; {CLIMB} = 0 asks for it" if pitch.low < pitch.high and not self.depth_is_kept else ""
+        return f"steady motion at u = {number(self.point.values['u'], 4)} m/s: pitch {pitch.shown(self.point.values['pitch'], 4)}, {climb}{ask}"
 
     def figure_table(self) -> Table:
         """What the solution means, angles in degrees."""

@@ -11,7 +11,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.wording import grouped, in_sentences, listed
 from coeflab.law.symbols import primed
-from coeflab.motion.steady_state import RootLocus, root_locus
+from coeflab.motion.steady_state import DRAWN, RootLocus, root_locus
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table
@@ -19,7 +19,7 @@ from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Relation
-from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SIGN_OPEN, Derived, by_mass, sense, stability
+from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SEED, SIGN_OPEN, Derived, by_mass, sense, stability
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
 TEXT = (
@@ -35,6 +35,13 @@ TURNING_TEXT = (
 
 
 REVERSAL_TEXT = "U_c is the critical speed of the stern planes: slower, planes to dive make it rise. U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]."
+
+NOT_KNOWN = "no value: no added mass"
+NO_ADDED_MASS = (
+    "Without added mass roots, times and critical speed would be those in air. Under [[parameter_file]] of the plan, added_mass names a body with a "
+    "shape to compute it from, literature a column of published.toml with the acceleration derivatives named."
+)
+DRAWN_TEXT = f"95 % limits: {DRAWN} draws of the four derivatives with their covariance, seed {SEED}; added mass and mass have no error in them."
 
 
 def in_words(study: Study) -> list[str]:
@@ -144,12 +151,20 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
                 refused.append(f"{name}, {IN_PLANE[index]}: no roots, as the file has {why}")
                 continue
             roots.append(_roots(name, locus))
-            figures.append(root_locus_figure(locus, name, f"roots-{i}-{index[-1]}"))
+            if not locus.lacking:
+                figures.append(root_locus_figure(locus, name, f"roots-{i}-{index[-1]}"))
     if not rows:
         return ()
     tables = [_shown(rows, study)]
     if roots:
-        heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
+        heads = (
+            "parameter file",
+            "plane",
+            "roots 1/s",
+            "time to double or halve s",
+            "critical speed m/s",
+            "95 % limits m/s",
+        )
         speeds: dict[str, list[str]] = {}
         for name in dict.fromkeys(row[0] for row in roots):
             speeds.setdefault(f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", []).append(name)
@@ -160,7 +175,9 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
         )
         each = "; ".join(f"{u}: {listed(names)}" for u, names in speeds.items())
         notes = [f"speed of the parameter file: {each}."] if len(speeds) > 1 else []
-        tables.append(Table(at, heads, tuple(roots), tuple(notes), frozenset({0, 1, 2, 4})))
+        notes += [NO_ADDED_MASS] * any(NOT_KNOWN in row[4] for row in roots)
+        notes += [DRAWN_TEXT] * any(row[5] != ABSENT for row in roots)
+        tables.append(Table(at, heads, tuple(roots), tuple(notes), frozenset({0, 1, 2, 4, 5})))
     made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
     used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
     mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
@@ -277,14 +294,27 @@ def _printed(study: Study, name: str, index: str) -> tuple[str, str]:
 
 
 def _roots(name: str, locus: RootLocus) -> tuple[str, ...]:
+    plane = IN_PLANE[locus.index].removeprefix("the ")
+    if locus.lacking:
+        return name, plane, ABSENT, ABSENT, f"{NOT_KNOWN} ({', '.join(locus.lacking)})", ABSENT
     real = float(locus.at_speed[0].real)
     time = f"{'doubles' if real > 0.0 else 'halves'} in {number(np.log(2.0) / abs(real), 3)}" if real else ABSENT
+    limits = ABSENT
     if locus.critical is not None:
-        critical = number(locus.critical)
+        critical, limits = number(locus.critical), _limits(locus)
     else:
         critical = "none" if locus.is_restored or locus.index == "G_h" else "no value: no BG"
     left = "" if locus.is_restored or locus.index == "G_h" else ", BG left out"
-    return name, IN_PLANE[locus.index].removeprefix("the ") + left, _pairs(locus.at_speed), time, critical
+    return name, plane + left, _pairs(locus.at_speed), time, critical, limits
+
+
+def _limits(locus: RootLocus) -> str:
+    """95 % limits of the critical speed, or why it has none."""
+    if not locus.drawn.size:
+        return "none: a derivative has no U95"
+    if locus.limits is None:
+        return f"none: {np.mean(np.isnan(locus.drawn)):.0%} of the draws have no critical speed up to {number(locus.speed[-1], 3)} m/s"
+    return " .. ".join(number(x, 3) for x in locus.limits)
 
 
 def _pairs(values: NDArray[np.complex128]) -> str:

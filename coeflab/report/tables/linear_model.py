@@ -30,6 +30,7 @@ def matrix_tables(model: LinearModel) -> tuple[Table, Table]:
     """A and B with the units of their rows."""
     notes = (
         f"{ABOUT}; {AXES}.",
+        f"{model.state[:1].upper()}{model.state[1:]}.",
         *(f"{words}." for words in senses(model)),
         *(f"{words}." for words in model.statements),
     )
@@ -75,21 +76,31 @@ def _parts(mode: Mode) -> str:
 
 
 def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Sequence[LinearModel | None]) -> Table:
-    """A row a speed: the commands of the steady motion and the eigenvalue of the least stable mode; a speed without one is named."""
+    """A row a speed: the commands of the steady motion, its pitch and climb where they are free, and the eigenvalue of the least stable mode; a speed without one is named."""
     commands = trims[0].motion.command_unknowns
+    upright = bool({"w", "q"} & {*trims[0].motion.vehicle.free})
     rows = []
     for speed, found, model in zip(speeds, trims, models, strict=True):
         cells = [u.shown(found.point.values[u.name]).partition(" ")[0] if model else ABSENT for u in commands]
+        if upright:
+            pitch, (climb, _) = found.point.values["pitch"], found.figures["climb"]
+            cells += [
+                number(np.degrees(pitch), 4) if model else ABSENT,
+                number(0.0 if found.depth_is_kept else climb, 4) if model else ABSENT,
+            ]
         mode = (_eigenvalue(model.modes[0]), _parts(model.modes[0])) if model else (ABSENT, found.point.outcome.value)
         rows.append((number(speed), *cells, *mode))
     told: dict[str, list[str]] = {}
     for speed, found in zip(speeds, trims, strict=True):
-        for words in found.point.statements:
+        for words in (*found.point.doubts(), *found.point.statements):
             told.setdefault(words, []).append(number(speed))
+    if rising := [number(s) for s, t in zip(speeds, trims, strict=True) if t.solved and not t.depth_is_kept]:
+        told["Depth is not kept. climb = 0 (--climb 0) asks for a motion that keeps it."] = rising
     notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in told.items())
     headers = (
         "u [m/s]",
         *(f"{u.name} [{u.shown(0.0).partition(' ')[2]}]" for u in commands),
+        *(("pitch [deg]", "climb [m/s]") if upright else ()),
         "least stable, 1/s",
         "motion",
     )
@@ -155,7 +166,7 @@ def _m_file(model: LinearModel) -> str:
             "%   at    = struct of columns: states and commands in the steady motion, where x and d are zero",
             *(
                 line
-                for words in (*model.statements, *model.remarks)
+                for words in (*model.statements, model.state, *model.remarks)
                 for line in folded(one_line(f"{words.rstrip('.')}."), 78, "%   ", "%     ")
             ),
             "",

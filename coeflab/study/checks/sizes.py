@@ -12,6 +12,7 @@ from coeflab.core.table import Check
 from coeflab.law.friction_line import friction_line
 from coeflab.law.scaling import NOBODYS
 from coeflab.law.symbols import primed
+from coeflab.vehicle.sizes import LARGEST
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
@@ -25,7 +26,6 @@ summary = (
 )
 citations = ("ittc1957", "schlichting1979", "hoerner1965", "jones1946")
 
-LARGEST = {"X0": 1.2, **dict.fromkeys(("Yv", "Zw"), 2.0), **dict.fromkeys(("Nv", "Mw", "Yr", "Zq", "Nr", "Mq"), 1.0)}
 SLENDER = 20.0  # lengths of a body over its diameter: torpedoes and gliders have 6 to 15
 WATER = 0.8e-6  # m^2/s, at 30 deg C: the thinnest that tests are run in, where the campaign states none
 OF_FRICTION = {"X0": 1.0, "Yv": 0.5, "Zw": 0.5}
