@@ -122,7 +122,7 @@ def test_the_length_of_moment_coefficients_is_accepted_as_an_assumption(tmp_path
     done = invoke("import", file, "--out", tmp_path / "out", *known, "--accept")
     assert done.exit_code == 0, done.output
     assert read_campaign(tmp_path / "out" / "campaign.toml").tables[0].assumed == ("coefficients.length",)
-    (found,) = (f for f in table_of(tmp_path / "out").findings if f.code == "assumed.key")
+    (found,) = (f for f in table_of(tmp_path / "out").findings if dict(f.facts).get("key") == "coefficients.length")
     assert dict(found.facts)["value"] == "4"
     assert dict(found.facts)["components"] == ("K", "M", "N")
     said = (*known, "--set", "coefficients.length=2 m", "--accept")
