@@ -155,7 +155,9 @@ def new(
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
     path = typed(out) / f"{name}.parameters.json"
     if path.exists():
-        raise OutputError(f"{path} exists. Name another, or change it: coeflab merge {path} --set SYMBOL=VALUE.")
+        raise OutputError(
+            f"{path} exists. Name another, delete it, or change it: coeflab merge {path} --set SYMBOL=VALUE."
+        )
     write_all(path.parent, {path.name: result.to_json()})
     found = plausibility(result)
     if json:

@@ -30,7 +30,9 @@ PLACES = ("x", "y", "psi")  # over ground, and the heading
 LEFT = "-"  # in the place of a name: a column that is passed over
 SAME_PLACE = {
     "north": "x",
+    "northing": "x",
     "east": "y",
+    "easting": "y",
     "heading": "psi",
     "yaw": "psi",
 }  # where the file has no column of the other name

@@ -312,5 +312,7 @@ class Scaling(takes.Declaration):
         """
         if self.length_name != other.length_name or abs(self.length / other.length - 1.0) > 1e-9:
             raise ScalingMismatchError(
-                f"coefficients primed by {self} and by {other} do not mix; rescale one of them first (to_length)."
+                f"coefficients primed by {self} and by {other} do not mix. Two lengths of one hull: to_length rescales one of them. "
+                "Two sizes of a hull: each in a plan of its own, with its own length; where they are geometrically similar the primes of one "
+                'are those of the other but for the Reynolds number: coeflab merge ONE.parameters.json --set "Yr\'=VALUE".'
             )

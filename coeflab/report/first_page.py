@@ -5,6 +5,7 @@ Everything that shows it takes it from here: terminal, notebook, HTML, PDF, and 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -263,16 +264,21 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
+        failing = {s for c in study.checks if c.severity is Severity.FAIL for s in re.findall(r"([^\s,]+)/", c.subject)}
+        every, valued = valued, [r for r in valued if r.source not in failing]
         bounded = sum(r.u95 is not None for r in valued)
         of = (
             {1: "the", 2: "both"}.get(len(rows), f"all {spelled_out(len(rows))}")
             if len(valued) == len(rows)
-            else f"{spelled_out(len(valued))} of {spelled_out(len(rows))}"
+            else f"{spelled_out(len(valued)) if valued else 'none'} of {spelled_out(len(rows))}"
         )
+        fails = f"{spelled_out(len(every) - len(valued))} from tables that fail a check"
         s = "s" * (len(rows) > 1)
         wanted = "wanted " * (not study.plan.wanted or any(r.symbol in study.plan.wanted for r in rows))
-        first = f"{name}: {of} {wanted}coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
+        first = f"{name}: {of} {wanted}coefficient{s} found"
+        first += f", {'each' if bounded == len(valued) else spelled_out(bounded)} with U95" * bool(valued)
         first += _open([r for r in valued if r.symbol in study.plan.wanted or r.symbol[0] != ROLL] or valued)
+        first += f", {fails}" * (len(valued) < len(every))
         compared = ((FITS.load(r.fit).printed_inside, r) for r in study.fits if r.fit in FITS.names())
         inside, printed = map(sum, zip((0, 0), *(count(r) for count, r in compared if count is not None), strict=True))
         words = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""

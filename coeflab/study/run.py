@@ -54,7 +54,8 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
         raise ScalingMismatchError(
             f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "
             f'state the reference point from one datum. Where both are one point: datum = "{plan.datum.id}" under [axes] of '
-            f"the campaign.toml of {table.campaign}. A body names its own under [body] of its body.toml; that of a mesh is its origin."
+            f"the campaign.toml of {table.campaign}; where the {table.datum.id} lies elsewhere, that and its place from the {plan.datum.id}, such as "
+            f"the centre of gravity of body.toml, as reference_point. A body names its own under [body] of its body.toml; that of a mesh is its origin."
         )
     return table.about(plan.reference_point)
 

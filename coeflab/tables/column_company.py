@@ -17,7 +17,6 @@ from coeflab.tables.column_map import (
     FORCES,
     SETTINGS,
     read_column_map,
-    share,
 )
 from coeflab.tables.column_names import UNKNOWN, named_as
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, PURE, Proposal, proposed
@@ -307,14 +306,11 @@ def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     given = one.said
     if given is None or given.name not in FORCES or not given.primed:
         return one
-    length = known.get(LENGTH_OF, known.get("scaling.length"))
+    length = known.get(LENGTH_OF)
     moment = given.name in MOMENTS
     sizes = f"A={quantity(area, 'area')!r} m^2" + (
         f" L={OPEN if length is None else repr(quantity(length, 'length'))} m" if moment else ""
     )
-    counted = re.search(r"\[([^\]]*)\]", one.text)
-    if counted and share(counted[1]) is not None:  # a coefficient has no power of ten of its own
-        return one
     text = f"{str(given).partition(' [')[0].rstrip(chr(39))} [coefficient {sizes.replace(f'L={OPEN} m', f'L={OPEN}')}]"
     return replace(one, text=text, why=f"{one.why}, by 1/2 rho U^2 A{' L' * moment}, as said")
 

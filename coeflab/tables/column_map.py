@@ -132,7 +132,15 @@ class ColumnMap:
         return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
 
 
-_SHARE = re.compile(r"(?i)(?:[x*×·]\s*)?(?:1e|10\s*(?:\^|\*\*)\s*)\(?(?P<power>[+-]?\d{1,2})\)?|(?P<percent>%)")
+_TEN = r"(?:1[eE]|10\s*(?:\^|\*\*)\s*)\(?[+-]?\d{1,2}\)?"
+_SHARE = re.compile(rf"(?:[xX*×·]\s*)?(?P<power>{_TEN})|(?P<percent>%)")
+_SCALED = (  # M' x1000 and M' * 7; M' (x1e3) and M' [x10^-3]; X'E3; 1000 M'; Z1000
+    rf"(?P<name>.*?[^\s,;])[,;]?(?:\s*[*×·⋅]|(?:\s+|(?<=['′’)\]])_?)[xX])\s*(?P<power>{_TEN}|\d[\d.,]*)",
+    rf"(?P<name>.*?\S)\s*[(\[<]\s*(?P<times>[xX*×·⋅])?\s*(?P<power>{_TEN}|100+|%)\s*[)\]>]",
+    r"(?P<name>.*['′’])\s*(?P<power>1?[eE]\d)",
+    rf"(?P<power>{_TEN}|100+)(?:\s*[xX*×·⋅](?![a-z])|_)?\s*(?P<name>[A-Za-z].*)",
+    rf"(?P<name>[XYZKMN])[\s_]*(?P<power>{_TEN}|100+)",
+)
 _RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
 
 
@@ -140,10 +148,42 @@ def share(unit: str) -> float | None:
     """What a pure number is counted in, 0.001 of ``1e-3``, ``10^-3`` and ``10⁻³``, 0.01 of ``%``; None of anything else."""
     plain = unit.strip()
     plain = plain[1:-1].strip() if plain[:1] + plain[-1:] in ("[]", "()", "<>") else plain
-    m = _SHARE.fullmatch(re.sub(r"^10(?=[+-])", "10^", plain.translate(_RAISED)))
-    if m is None:
-        return None
-    return 0.01 if m["percent"] else 10.0 ** int(m["power"])
+    m = _SHARE.fullmatch(_flat(plain))
+    return None if m is None else 0.01 if m["percent"] else 10.0 ** _exponent(m["power"])
+
+
+def _flat(text: str) -> str:
+    """10^3 of 10³, 10^-3 of 10-3."""
+    return re.sub(r"(?<!\d)10(?=[⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹+−-])", "10^", text).translate(_RAISED)
+
+
+def _exponent(power: str) -> int:
+    """Of 1000, 1e3, E3 and 10^(3)."""
+    return int(re.split(r"[eE^*]+\s*", power)[-1].strip("()")) if power.strip("10") else power.count("0")
+
+
+def counted_in(name: str, unit: str = "") -> tuple[str, str]:
+    """A name without the factor in it, and what its numbers are counted in: nothing without a factor, ? where it reads both ways.
+
+    A factor beside a symbol is a product, and 1000 M' is counted in 1e-3; one in brackets is a unit. Products below one, and units
+    above one behind a times sign, are more often meant the other way round.
+
+    Examples
+    --------
+    >>> counted_in("M' x1000"), counted_in("10^3 CX"), counted_in("Z'", "x10^-3"), counted_in("N' x 10^-3"), counted_in("Mx")
+    (("M'", '1e-3'), ('CX', '1e-3'), ("Z'", '1e-3'), ("N'", '?'), ('Mx', ''))
+    """
+    pure = unit in ("", "-", "1")
+    text = _flat(name.strip() if pure else f"{name.strip()} [{unit}]")
+    for form in _SCALED:
+        if m := re.fullmatch(form, text):
+            if not re.fullmatch(rf"{_TEN}|1?[eE]\d|100*", m["power"]):
+                return m["name"], m["power"] if m["power"] == "%" else "?"
+            power, bracketed = _exponent(m["power"]), form is _SCALED[1]
+            doubted = power > 0 and m["times"] if bracketed else power < 0
+            return m["name"], "?" if doubted else f"1e{power if bracketed else -power}"
+    bare, counted = (name, "") if pure else counted_in(name)
+    return bare, "?" if counted else ""
 
 
 def unturned(name: str, said: ColumnMap) -> str:

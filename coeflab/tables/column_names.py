@@ -11,7 +11,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.units import fits
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR
-from coeflab.tables.column_map import ACROSS, FORCES, ROLES, WIND, WORDS, read_column_map
+from coeflab.tables.column_map import ACROSS, FORCES, ROLES, WIND, WORDS, counted_in, read_column_map
 from coeflab.tables.raw_table import RawColumn
 from coeflab.tables.vocabulary import folded, recorded, vocabulary
 
@@ -42,7 +42,7 @@ def name_of(column: RawColumn) -> tuple[str, str, bool]:
 
 def named_as(name: str) -> str:
     """What a column is by its name alone, ``beta`` of sideslip; empty where it has no known name."""
-    return _whole_name(RawColumn(name, "", np.empty(0)))[0]
+    return _whole_name(RawColumn(counted_in(name)[0], "", np.empty(0)))[0]
 
 
 def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
@@ -90,6 +90,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
     return f"{prefix}{name}{prime}", "its name", False
 
 
+_IN_SYMBOLS = re.compile(r"\b[A-Za-z]['′’](?![A-Za-z])|100")  # M' and a factor are no words
 _OF_ALL = re.compile(
     r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$"
 )
@@ -103,7 +104,7 @@ def _knows(bare: str) -> bool:
 
 def _in_other_words(name: str) -> str:
     """What a name is by its words in another order, or cut short: Angle of drift, drift ang, Lift coeff; empty where it is nothing."""
-    words, parts = vocabulary(), _words(name)
+    words, parts = vocabulary(), _words("" if _IN_SYMBOLS.search(name) else name)
     full = [w for part in parts if (w := words.short.get(part, part))]
     every = (
         ("".join(some) for some in permutations(full)) if len(full) <= 3 and (full != parts or len(full) > 1) else ()

@@ -51,7 +51,7 @@ _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
 _RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate
 UNNAMED = "NAME:UNIT"
 UNIT_ASKED = ":UNIT"  # degrees and radians a second differ by 57: nothing but a person says which
-SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4; with p=. too, p2p5 as 2.5"
+SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4; with p=. too, p2p5 as 2.5. A sign behind its number, b04P, is written in a list of runs (--runs)"
 BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 

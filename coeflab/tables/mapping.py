@@ -18,7 +18,17 @@ from coeflab.core.types import Array, brief
 from coeflab.core.units import factor, fits
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
+from coeflab.tables.column_map import (
+    EXAMPLES,
+    OPEN_SIZES,
+    PER,
+    WORDS,
+    ColumnMap,
+    counted_in,
+    read_column_map,
+    share,
+    unturned,
+)
 from coeflab.tables.columns import Columns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
@@ -182,11 +192,11 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
         stated = column.unit.strip(" -1")
         if fits(stated, said.dimension):
             raise fault("tables.unit_of_pure_number", raw, column, unit=column.unit, said=said)
-        counted = share(column.unit)
-        if counted is None and any(ch.isdigit() for ch in stated):
-            raise fault("tables.digits_in_a_unit", raw, column, unit=column.unit, said=said)
-        declared = share(said.unit)
-        if declared and stated and counted != declared:
+        by_header = counted_in(column.name, column.unit)[1]
+        counted, declared = share(by_header), share(said.unit)
+        if not declared if by_header == "?" else counted is None and any(ch.isdigit() for ch in stated):
+            raise fault("tables.digits_in_a_unit", raw, column, unit=header(column), said=said)
+        if declared and stated and counted is not None and counted != declared:
             raise fault(
                 "tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit="-")
             )

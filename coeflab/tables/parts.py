@@ -17,7 +17,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.wording import natural
+from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.column_company import proposals
 from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
@@ -449,6 +449,11 @@ def with_shared_words(parts: Sequence[Part]) -> tuple[Part, ...]:
                 if p.name in placed:
                     one[key] = placed[p.name]
             continue
+        if silent := [p.name for p in parts if p.name not in placed]:
+            placed = {
+                n: replace(s, place=f"{s.place}, for {listed(silent)} too, without words of its own")
+                for n, s in placed.items()
+            }
         values = {str(s.value) for _, s in have}
         split = key in ("conditions.speed", "conditions.density")
         for p, one in zip(parts, stated, strict=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,10 +18,11 @@ from coeflab.tables.column_map import (
     OPEN_SIZES,
     WORDS,
     ColumnMap,
+    counted_in,
     read_column_map,
     share,
 )
-from coeflab.tables.column_names import UNKNOWN, either_unit, is_pure, name_of
+from coeflab.tables.column_names import UNKNOWN, either_unit, is_pure, name_of, named_as
 from coeflab.tables.evidence import TURN
 from coeflab.tables.mapping import MARKS, Assigned
 from coeflab.tables.raw_table import RawColumn
@@ -29,6 +30,7 @@ from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.primes import SCALE
 
 OPEN = "?"
+SCALED = "its name holds a factor that may go either way"
 EITHER = "which of them the numbers are in"
 US = {"force": "lbf", "moment": "lbf*ft", "speed": "ft/s", "length": "ft"}
 PURE = ("", "-", "1")
@@ -39,10 +41,6 @@ ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
 }  # fmt: skip
-_PRIME = r"([XYZKMN])['\u2032\u2019]?"
-_THOUSAND = re.compile(
-    rf"{_PRIME}[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3|10³)|(?:1000|1e3|10\^3|10³)[\s_]*[x*×·]?[\s_]*{_PRIME}"
-)
 _BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may be a unit behind a name
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 
@@ -122,10 +120,19 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(
             f"U [{unit} ship {scale!r}]", f"of the ship, over the root of the scale {scale:g}: the speed of the model"
         )
+    bare, counted = counted_in(column.name, column.unit)
+    bare += "'" * (bare in COMPONENTS)
+    if (
+        counted
+        and not column.means
+        and (symbol := named_as(bare))
+        and read_column_map(symbol).role in ("force", "error", "velocity")
+    ):
+        if counted == OPEN:
+            prime = symbol.partition(" ")[0].rstrip("'") + "'"
+            return Proposal("", f"{SCALED}: {prime} [1e-3] or [1e3] if it is a prime; else rename the column")
+        column = replace(column, name=bare, unit=counted)
     name, why, certain = name_of(column)
-    if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
-        prime = m[1] or m[2]
-        return Proposal(f"{prime}' [1e-3]", f"its name: 1000 {prime}', a prime by the campaign's length")
     if not name:
         if column.is_text:
             held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))
@@ -149,7 +156,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
             )
         return Proposal("label", "text")
     said_of = stated or {}
-    by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
+    by = (said_of.get(AREA), said_of.get(LENGTH_OF))
     one, system = _with_unit(column, given, why, certain, by), said_of.get(UNITS_OF)
     if one.text.endswith(f"[{OPEN}]") and not one.unread and system and given.dimension not in ("angle", "none"):
         either = either_unit(unit, given.dimension)
@@ -216,7 +223,7 @@ def lacks_sizes(column: RawColumn, said: ColumnMap) -> bool:
 
 def coefficient_as_said(said: ColumnMap, known: Mapping[str, object]) -> Proposal:
     """A column that a person called a coefficient, by the area and the length that all coefficients share, or as a prime."""
-    area, length = known.get(AREA), known.get(LENGTH_OF, known.get("scaling.length"))
+    area, length = known.get(AREA), known.get(LENGTH_OF)
     name, why = f"{'-' * said.negative}{said.plain}", "as said"
     if area == "prime":
         return Proposal(f"{name}' [-]", why, certain=True)

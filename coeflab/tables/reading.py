@@ -159,6 +159,8 @@ def read_raw(
     readable(path)
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
+            if any((options or {}).get(option) for option in OF_RUNS):
+                raise input_error("tables.names_of_one_table", path, name=path.name)
             return upright(importer.raw(path, dict(options or {})))
     return _of_runs(path, name, options or {}, [str((options or {}).get("names", ""))], progress)[0]
 

@@ -140,6 +140,7 @@ def _assumed(
     same = "the reference point, " if not np.any(at != point) else ""
     words["table.arm_point"] = f"{same}{_place(at)} from the {campaign.datum.id}"
     words |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
+    words["coefficients.length"] = f"{campaign.scaling.length:g}"
     words["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
     keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
     turns = bool(np.any(motion["q"]) or np.any(motion["r"]))

@@ -25,7 +25,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.interpretation import interpreted
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.reading import read_tables
+from coeflab.tables.reading import read_raw, read_tables
 from coeflab.tables.settings import Setting, read_setting
 from tests.cli.conftest import Run, flat
 from tests.cli.survey import too_long
@@ -133,6 +133,24 @@ def test_several_files_of_one_folder_become_one_campaign(drift: Path, tmp_path: 
     (words := drift.with_name("words.txt")).write_text("no table\n")
     assert "several files of one folder" in refused(invoke("import", drift, other))[0]
     assert "words.txt: no table by its content" in refused(invoke("import", drift, words))[0]
+
+
+def test_a_pattern_of_names_for_one_table_is_refused_with_the_way(drift: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as why:
+        read_raw(drift, "table", {"names": "b{beta:deg}"})
+    assert "a folder of runs" in why.value.expected
+    assert "in columns" in why.value.advice
+
+
+def test_what_one_table_says_for_another_is_named(tmp_path: Path) -> None:
+    """Words over the first sheet counted for the second, and the form named the first alone."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    rows = "".join(f"{b},1.5,{-3.0 * b},{2.0 * b}\n" for b in (-8, -4, 0, 4, 8))
+    (folder / "one.csv").write_text(f'"Moments about midship",,,\nbeta [deg],U [m/s],Y [N],N [Nm]\n{rows}')
+    (folder / "two.csv").write_text(f"alpha [deg],U [m/s],Z [N],M [Nm]\n{rows}")
+    form = flat(invoke("import", folder, "--out", tmp_path / "out").output)
+    assert """one, line 1: "Moments about midship", for two too, without words of its own""" in form
 
 
 def test_the_command_of_the_form_settles_it(drift: Path, tmp_path: Path) -> None:

@@ -86,9 +86,10 @@ def test_velocities_follow_of_positions_and_heading() -> None:
     np.testing.assert_allclose(found["r"], R[1:-1], atol=2e-5)
 
 
-def text(folder: Path, c: dict[str, np.ndarray], separator: str) -> Path:
+def text(folder: Path, c: dict[str, np.ndarray], separator: str, head: str = "") -> Path:
     file = folder / "run.txt"
-    file.write_text("\n".join(separator.join(f"{x:.9g}" for x in row) for row in zip(*c.values(), strict=True)) + "\n")
+    rows = "\n".join(separator.join(f"{x:.9g}" for x in row) for row in zip(*c.values(), strict=True))
+    file.write_text(f"{head}\n{rows}\n".removeprefix("\n"))
     return file
 
 
@@ -106,6 +107,13 @@ def test_columns_of_a_file_without_names_are_named(tmp_path: Path, separator: st
         read_series(file, BODY, "t [s], y [m], x [m], psi [deg], -")
     with pytest.raises(InputError, match="miss"):
         read_series(file, BODY, "t [s], x [m], y [m], psi [deg], u [m/s]")
+
+
+def test_easting_northing_and_heading_are_positions(tmp_path: Path) -> None:
+    c = path()
+    named = {"t [s]": c["t"], "easting [m]": c["y"], "northing [m]": c["x"], "heading [rad]": c["psi"]}
+    found = read_series(text(tmp_path, named, ",", ",".join(named)), BODY)
+    np.testing.assert_allclose(found.velocity[:, 5], R[1:-1], atol=1e-4)
 
 
 def test_a_bad_cell_of_a_file_without_names_has_its_line(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from coeflab.cli import show
 from coeflab.cli.show import plain_lines
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import in_digits_of, percent, with_u95
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import first_page
@@ -368,6 +368,19 @@ def test_a_headline_names_an_open_roll_moment_only_where_it_is_asked_for(wanted:
     said = answer(replace(study, plan=replace(study.plan, wanted=wanted), fits=(turned,)), drawn=False)
     assert [r.symbol for r in said.rows] == ["Yv", "Kv"]
     assert ("sign open of Kv'" in said.sentence) == bool(wanted)
+
+
+def test_values_from_a_table_that_fails_a_check_are_not_counted():
+    """A wrong length failed the checks of every table, and the sentence counted all of their coefficients."""
+    study = small_study(FULL)
+    campaign = study.fits[0].campaign
+    bad = Finding.of("sizes", f"tow X {campaign}/table.csv", Severity.FAIL)
+    said = answer(replace(study, checks=(*study.checks, bad)), drawn=False).sentence
+    assert said.startswith("Study tow: none of three wanted coefficients found, two from tables that fail a check;")
+    other = replace(study, checks=(*study.checks, Finding.of("sizes", "tow X other/table.csv", Severity.FAIL)))
+    assert answer(other, drawn=False).sentence.startswith(
+        "Study tow: two of three wanted coefficients found, each with U95;"
+    )
 
 
 def test_without_published_values_the_forest_is_over_ours():

@@ -451,6 +451,45 @@ def test_a_name_with_its_symbol_behind_it(name: str, unit: str, what: str) -> No
     assert proposed(RawColumn(name, unit, np.array([1.0, 2.0]))).text == what
 
 
+@pytest.mark.parametrize(("name", "unit", "what", "size"), [
+    *((name, "", "M' [1e-3]", 1e-3) for name in (
+        "1000 M'", "M' x1000", "M' x 10^3", "M'x1000", "M'X1000", "M'*1000", "M′·10³", "M' ×1e3", "M'E3", "M', x1000", "10^3 M'", "1000xM'")),
+    ("M'", "x10^-3", "M' [1e-3]", 1e-3), ("M' (10^-3)", "", "M' [1e-3]", 1e-3), ("M'", "10^3", "M' [1e3]", 1e3),
+    ("CX x 1000", "", "X [coefficient A=2.0 m^2]", 1e-3), ("10^3 CX", "-", "X [coefficient A=2.0 m^2]", 1e-3),
+    ("se_M' x1000", "", "se_M' [1e-3]", 1e-3), ("r' x 100", "", "r' [1e-2]", 1e-2), ("M x", "Nm", "K [Nm]", 1.0),
+])  # fmt: skip
+def test_a_factor_at_a_symbol_is_what_its_numbers_are_counted_in(name: str, unit: str, what: str, size: float) -> None:
+    """``M' x1000`` was the roll moment, by its letters M and x."""
+    column = RawColumn(name, unit, np.array([1.0, 2.0]))
+    offer = proposed(column, {"coefficients.area": "2 m^2"})
+    assert offer.text == what
+    assert with_unit(RawTable(Path("table.csv"), ()), column, read_column_map(offer.text)).factor == pytest.approx(
+        size, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(("name", "unit"), [
+    ("M' x 10^-3", ""), ("M' (x1e3)", ""), ("M'", "x10^3"), ("M' x 500", ""), ("M x1000", "N m"), ("10^-3 M'", ""),
+])  # fmt: skip
+def test_a_factor_that_reads_both_ways_is_asked(name: str, unit: str) -> None:
+    column = RawColumn(name, unit, np.array([1.0, 2.0]))
+    offer = proposed(column)
+    assert (offer.text, offer.why.partition(":")[2]) == (
+        "",
+        " M' [1e-3] or [1e3] if it is a prime; else rename the column",
+    )
+    raw = RawTable(Path("table.csv"), ())
+    if unit != "N m":
+        with pytest.raises(InputError, match="power of ten"):
+            with_unit(raw, column, read_column_map("M' [-]"))
+        assert with_unit(raw, column, read_column_map("M' [1e-3]")).factor == 1e-3
+
+
+@pytest.mark.parametrize("name", ["M' x y", "M'_x100", "M x 1000 y"])
+def test_a_prime_and_a_factor_are_no_words_of_a_name(name: str) -> None:
+    assert not proposed(RawColumn(name, "", np.array([1.0, 2.0]))).text.startswith("K")
+
+
 @pytest.mark.parametrize("words", [
     "Kräfte im körperfesten System, Momente um Hauptspant", "forces, body-fixed", "Forces in body axes", "efforts, repère lié",
 ])  # fmt: skip

@@ -113,6 +113,37 @@ def test_a_prime_by_its_name_alone_is_accepted_as_an_assumption(tmp_path: Path) 
     assert read_campaign(tmp_path / "said" / "campaign.toml").tables[0].assumed == ()
 
 
+def test_the_length_of_moment_coefficients_is_accepted_as_an_assumption(tmp_path: Path) -> None:
+    """It was the campaign's length without a question and without a mark: by a chord N' would be another number."""
+    file = drift(tmp_path, "LOA = 4 m", 0.2)
+    file.write_text(file.read_text().replace("Y'", "CY").replace("N'", "CN"))
+    known = (*KNOWN, "--set", "coefficients.area=0.2 m^2")
+    assert invoke("import", file, "--out", tmp_path / "out", *known).exit_code == 2
+    done = invoke("import", file, "--out", tmp_path / "out", *known, "--accept")
+    assert done.exit_code == 0, done.output
+    assert read_campaign(tmp_path / "out" / "campaign.toml").tables[0].assumed == ("coefficients.length",)
+    (found,) = (f for f in table_of(tmp_path / "out").findings if dict(f.facts).get("key") == "coefficients.length")
+    assert dict(found.facts)["value"] == "4"
+    assert dict(found.facts)["components"] == ("K", "M", "N")
+    said = (*known, "--set", "coefficients.length=2 m", "--accept")
+    assert invoke("import", file, "--out", tmp_path / "said", *said).exit_code == 0
+    assert read_campaign(tmp_path / "said" / "campaign.toml").tables[0].assumed == ()
+    assert np.allclose(table_of(tmp_path / "said").forces["N"] * 2.0, table_of(tmp_path / "out").forces["N"])
+
+
+def test_primes_counted_in_thousandths_are_by_the_area_that_is_said(tmp_path: Path) -> None:
+    """They stayed primes by L^2."""
+    file = drift(tmp_path, "LOA = 4 m; 1/2 rho U^2 L T, draught 0.25 m", 1.0)
+    plain = file.read_text()
+    assert invoke("import", file, "--out", tmp_path / "plain", *KNOWN, "--accept").exit_code == 0
+    file.write_text(plain.replace("Y'", "1000 Y'").replace("N'", "N' x1000"))
+    assert invoke("import", file, "--out", tmp_path / "counted", *KNOWN, "--accept").exit_code == 0
+    for force in "YN":
+        assert np.allclose(
+            table_of(tmp_path / "counted").forces[force] * 1e3, table_of(tmp_path / "plain").forces[force]
+        )
+
+
 def test_an_area_without_its_size_is_open(tmp_path: Path) -> None:
     file = drift(tmp_path, "LOA = 4 m; coefficients by 0.5 rho L T U^2", 1.0)
     assert left_open(invoke("import", file, "--out", tmp_path / "out", *KNOWN, "--accept")) == ["coefficients.area"]
