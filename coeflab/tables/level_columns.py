@@ -14,8 +14,9 @@ from coeflab.tables.column_map import PROPELLER
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.levels import APART, MOST_LEVELS, SHARE, levels_of, slopes_by_level
-from coeflab.tables.mapping import Assigned
+from coeflab.tables.mapping import Assigned, at_higher_mach
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.vocabulary import folded, vocabulary
 
 SHOWN = 5  # levels in a warning
 LEVEL, UPRIGHT = ("Y", "N", "side"), ("Z", "M", "lift")  # forces of motions in the horizontal and in the vertical plane
@@ -33,7 +34,12 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
     speed = next((c.values for c in columns if c.said.role == "speed"), None)
     used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
-    for idle in (c for c in raw.columns if c.name not in used and not c.means):
+    mach, higher = at_higher_mach(raw, columns)
+    if np.any(higher):
+        used |= {mach}
+        yield Evidence(f"rows above the lowest {mach} are left out, as a prime holds at one; {mach}=label takes all")
+    remarks = {c.name for c in raw.columns if c.is_text and vocabulary().columns.get(folded(c.name)) == "ignore"}
+    for idle in (c for c in raw.columns if c.name not in used | remarks and not c.means):
         names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
         if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed, _most(names)):
             yield from _by_column(numbers, [*names], settings, columns, speed)

@@ -236,13 +236,18 @@ def _factor(unit: str, dimension: str) -> float | None:
 def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]:
     """Rows with a number in every setting, and of several Mach numbers those of the lowest."""
     blank = [_lacking(one) for one in columns if one.said.role in SETTINGS]
-    return np.flatnonzero(~np.logical_or.reduce([_at_higher_mach(raw, columns)[1], *blank]))
+    return np.flatnonzero(~np.logical_or.reduce([at_higher_mach(raw, columns)[1], *blank]))
 
 
-def _at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDArray[np.bool_]]:
-    """The column of a Mach number that varies, where nobody uses it, and the rows above `INCOMPRESSIBLE`, else above its lowest level.
+def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDArray[np.bool_]]:
+    """The column of a Mach number, where nobody uses it, and the rows above `INCOMPRESSIBLE`, else above its lowest level.
 
     A prime holds at one Mach number; rows of several in one sweep would give a slope of none of them.
+
+    Parameters
+    ----------
+    raw : RawTable
+    columns : sequence of Assigned
     """
     used = {one.column.name for one in columns}
     for one in (c for c in raw.columns if c.name not in used and len(c.values)):
@@ -262,7 +267,7 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
         if blank.size:
             above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
             yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
-    mach, higher = _at_higher_mach(raw, columns)
+    mach, higher = at_higher_mach(raw, columns)
     if np.any(higher):
         yield f'left out, above the lowest {mach}: {places(raw, np.flatnonzero(higher))}; --map "{mach}=label" takes all'
 

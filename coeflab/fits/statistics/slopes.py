@@ -64,7 +64,8 @@ EVEN = (
     Family("{x}^2 + |{x}|^3", ("1", "x2", "|x|3")),
 )
 SAME_LEVEL = 0.02
-FALLEN, SCATTERS, FEWEST_BEFORE = 0.1, 4.0, 3  # of a peak; standard deviations; settings of a side up to it
+# Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
+FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
@@ -180,7 +181,7 @@ def before_stall(x: Array, y: Array) -> tuple[float, float]:
         at, group = np.unique(np.round(side * x[side * x > 0.0], 6), return_inverse=True)
         size = np.abs(np.bincount(group, y[side * x > 0.0]) / np.bincount(group) - middle)
         bent = np.diff(size, 2)
-        noise = SCATTERS * 1.4826 * float(np.median(np.abs(bent))) / np.sqrt(6.0) if len(bent) else 0.0
+        noise = SCATTERS * 1.4826 * float(np.median(np.abs(bent))) / np.sqrt(6.0) if len(size) >= DENSE else 0.0
         highest = np.maximum.accumulate(size)
         fallen = (highest - size > np.maximum(FALLEN * highest, noise)) & (highest > size.max(initial=0.0) / 3.0)
         peak = int(np.argmax(size[: int(np.argmax(fallen)) + 1])) if np.any(fallen) else 0
