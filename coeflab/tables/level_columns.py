@@ -34,23 +34,18 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
     speed = next((c.values for c in columns if c.said.role == "speed"), None)
     used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
-    mach, higher = at_higher_mach(raw, columns)
-    if np.any(higher):
-        used |= {mach}
+    mach = at_higher_mach(raw, columns)[0]
+    if mach:
         yield Evidence(f"rows above the lowest {mach} are left out, as a prime holds at one; {mach}=label takes all")
-    remarks = {c.name for c in raw.columns if c.is_text and vocabulary().columns.get(folded(c.name)) == "ignore"}
-    for idle in (c for c in raw.columns if c.name not in used | remarks and not c.means):
+    used |= {mach, *(c.name for c in raw.columns if c.is_text and vocabulary().columns.get(folded(c.name)) == "ignore")}
+    for idle in (c for c in raw.columns if c.name not in used and not c.means):
         names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
-        if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed, _most(names)):
+        most = max(len(names) + 1, MOST_LEVELS)  # words are levels however many they are
+        if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed, most):
             yield from _by_column(numbers, [*names], settings, columns, speed)
 
 
-def _most(names: Sequence[str]) -> int:
-    """Levels of a setting; words are levels however many they are."""
-    return max(len(names) + 1, MOST_LEVELS)
-
-
-def _has_levels(column: RawColumn, speed: Array | None, most: int = MOST_LEVELS) -> bool:
+def _has_levels(column: RawColumn, speed: Array | None, most: int) -> bool:
     """Whether a column has a few levels, other than those of the speed, each of hardly any width: a result of the rows has none."""
     if not np.all(np.isfinite(column.values)) or not len(column.values):
         return False
@@ -78,7 +73,7 @@ def _by_column(
         alone = np.logical_and.reduce([*others, np.ones(len(idle.values), dtype=bool)])
         for force in (c for c in columns if c.said.role == "force" and c.said.name in SWEPT[name]):
             y = force.values if force.said.pure or speed is None else force.values / speed**2
-            found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone], _most(names))
+            found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone], max(len(names), MOST_LEVELS))
             if found is not None and (found.depends or found.offsets > SHARE):
                 levels = [str(names[round(v)]) if len(names) else f"{v:.6g}" for v in found.levels]
                 kind, size = ("slope", found.spread) if found.depends else ("offset", found.offsets)

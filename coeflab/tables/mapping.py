@@ -251,10 +251,11 @@ def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDA
     """
     used = {one.column.name for one in columns}
     for one in (c for c in raw.columns if c.name not in used and len(c.values)):
-        mach, levels = np.nan_to_num(one.values), np.unique(one.values).size
-        by_levels = one.name.strip() == "M" and mach.min() > 0.0 and 1 < levels <= len(mach) / 2
-        if (folded(one.name) in vocabulary().lists["mach"] or by_levels) and mach.max() > INCOMPRESSIBLE:
-            return one.name, mach > max(INCOMPRESSIBLE, float(mach.min()) * (1.0 + APART))
+        mach = np.nan_to_num(one.values)
+        lowest = max(INCOMPRESSIBLE, float(mach.min()) * (1.0 + APART))
+        by_levels = one.name.strip() == "M" and mach.min() > 0.0 and np.unique(mach).size <= len(mach) / 2
+        if np.any(mach > lowest) and (by_levels or folded(one.name) in vocabulary().lists["mach"]):
+            return one.name, mach > lowest
     return "", np.zeros(len(raw), dtype=bool)
 
 
@@ -268,7 +269,7 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
             above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
             yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
     mach, higher = at_higher_mach(raw, columns)
-    if np.any(higher):
+    if mach:
         yield f'left out, above the lowest {mach}: {places(raw, np.flatnonzero(higher))}; --map "{mach}=label" takes all'
 
 

@@ -253,7 +253,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             continue
         zone = next(iter(case.listed(part, "cellZone") or case.listed(part, "cellSet")), "")
         share = _share_of_mesh(case, zone) if zone else None
-        stands = body & covered(_still_patches(case, part), known)
+        stands = body & covered(case.listed(part, "nonRotatingPatches"), known)
         rotor = (
             "as the option rotation says so" if wanted == "none"
             else "" if wanted == "body"
@@ -279,10 +279,6 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             advice="Give the option rotation=none, and the rates in a list of runs.",
         )  # fmt: skip
     return out[0] if out else None
-
-
-def _still_patches(case: FoamCase, part: Foam) -> list[str]:
-    return case.listed(part, "nonRotatingPatches")
 
 
 def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:

@@ -31,9 +31,8 @@ _LISTED = re.compile(rb"\b(symmetryPlane|symmetry)\s+([A-Za-z_][\w.\-]*)\s*\(\s*
 _HEAD = re.compile(rb'("[^"]*"|[^\s{}();"]+)?\s*\Z')
 _NAME = re.compile(rb"\bname\s+([^\s;{}]+)\s*;")
 _TIME = re.compile(r"\d+(?:\.\d+)?")  # a steady run often keeps its last time alone
-_ALL_KINDS = re.compile(
-    rb"\bprocessor\s*\{\s*type\s+processor"
-)  # a copy of caseDicts/setConstraintTypes: no patch of the case
+# A copy of caseDicts/setConstraintTypes: no patch of the case.
+_ALL_KINDS = re.compile(rb"\bprocessor\s*\{\s*type\s+processor")
 _INCLUDED = re.compile(rb'#include(?:IfPresent)?\s+"([^"$<]+)"')
 
 
