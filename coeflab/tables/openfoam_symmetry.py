@@ -17,11 +17,8 @@ from coeflab.core.text.foam import FoamCase
 from coeflab.core.text.series import opened
 from coeflab.tables.openfoam_forces import listed
 
-MIRRORS = (
-    "symmetryPlane",
-    "symmetry",
-    "basicSymmetry",
-)  # types of patches on whose other side the image of the flow lies
+# Types of patches on whose other side the image of the flow lies.
+MIRRORS = ("symmetryPlane", "symmetry", "basicSymmetry")
 MOST = 60  # files of one folder
 PROCESSORS = 4  # of them as many are looked at: each names every patch
 _COMMENTS = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
