@@ -12,6 +12,7 @@ from coeflab.api.exporting import export as export
 from coeflab.api.fitted_law import Evaluated as Evaluated
 from coeflab.api.fitted_law import FittedLaw as FittedLaw
 from coeflab.api.fitting import fit as fit
+from coeflab.api.listing import plugins as plugins
 from coeflab.api.motion import Motion as Motion
 from coeflab.api.motion import manoeuvres as manoeuvres
 from coeflab.api.motion import simulate as simulate

@@ -61,7 +61,7 @@ PAGES = {  # name of the page: title, what it is about, public names in their or
     "api_study": (
         "Study",
         "A plan.toml carried out, and its report.",
-        ("run", "Study", "Plan", "read_plan", "validation", "rendered", "shipped", "shipped_names"),
+        ("run", "Study", "Plan", "read_plan", "validation", "rendered", "shipped", "shipped_names", "plugins"),
     ),
     "api_tow": ("Tow", "A body in the virtual tow tank.", ("tow", "Tow")),
     "api_errors": (

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from coeflab.bodies.simplify.simplified import Simplification
+
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
 MIDDLE = ("midship", "midships", "amidships", "mid-length", "midlength")
@@ -104,6 +106,11 @@ class Body(plain.Body):
         What it looks like; ``shape.length``, ``shape.volume`` in m and m^3.
     configurations : tuple
         Volume, wetted surface, centres and mass with each state of appendages.
+    pieces : tuple
+        Hull, sail and fins as closed pieces where the reader knows them: of shapes that a body.toml states; none of a bare mesh,
+        whose pieces `simplify` finds.
+    outline : Outline or None
+        Hulls, foils and rings that estimates see, of a mesh by recognition.
     place : Path or None
         File that it was read from.
 
@@ -179,6 +186,36 @@ class Body(plain.Body):
         found = added_masses(self, rho, method, options or None).recommended
         found = replace(found, density=rho, statements=all_spoken(found.statements))
         return AddedMass(**{f.name: getattr(found, f.name) for f in fields(law.AddedMass)})
+
+    def simplify(self, parts: int | None = None, *, panels: int = 6_000) -> Simplification:
+        """The mesh as cylinders, plates, ellipsoids and boxes, held against it.
+
+        Parameters
+        ----------
+        parts : int, optional
+            How many there must be.
+        panels : int
+            Of the panel method on the mesh; 0: added mass is not compared.
+
+        Returns
+        -------
+        Simplification
+            ``body`` of the parts, ``shape.parts``, ``statements``.
+
+        Raises
+        ------
+        InputError
+            No mesh, another number of parts.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> len(cf.read_body("huuv_mesh").simplify(panels=0).shape.parts) > 1
+        True
+        """
+        from coeflab.api.simplifying import simplify
+
+        return simplify(self, parts=parts, panels=panels)
 
     def plot(self, view: str = "side", ax: Axes | None = None) -> Axes:
         """The outline, m, FRD, from the datum.

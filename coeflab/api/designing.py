@@ -20,7 +20,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, typed
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import one_thread
-from coeflab.core.missed import suggesting
+from coeflab.core.missed import suggesting, was_method
 from coeflab.core.types import in_angles
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
@@ -83,13 +83,14 @@ class NextTests(plain_tests.NextTests):
         ]  # fmt: skip
         return pd.DataFrame(rows, columns=["test", "variable", "setting", "unit"])
 
+    @property
     def matrix(self) -> str:
         """Drifts, attacks and rates of the runs as the [matrix] of a tank.toml, for `coeflab tow BODY --matrix`; each once.
 
         Examples
         --------
         >>> import coeflab as cf
-        >>> "yaw = [" in cf.next_tests("suboff_bare_hull", "Yr'", runs=5).matrix()
+        >>> "yaw = [" in cf.next_tests("suboff_bare_hull", "Yr'", runs=5).matrix
         True
         """
         settings = {t.variable: t.angles for t in self.tests if t.variable in MATRIX}
@@ -99,7 +100,7 @@ class NextTests(plain_tests.NextTests):
                 f'"{np.degrees(x):.4g} deg"' if key in ANGLES else f"{x:.4g}" for x in settings.get(variable, ()) if x
             ]
             lines.append(f"{key} = [{', '.join(dict.fromkeys(values))}]")
-        return "\n".join(["[matrix]", *lines, ""])
+        return was_method("matrix", "\n".join(["[matrix]", *lines, ""]))
 
 
 @one_thread()

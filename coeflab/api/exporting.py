@@ -33,7 +33,7 @@ def export(
     vehicle : Vehicle, str or Path
         A parameter file, or the name of a shipped one.
     to : str
-        xdyn, gazebo, mss, mujoco, fmu, c ...: ``coeflab formats exporters``.
+        xdyn, gazebo, mss, mujoco, fmu, c ...: ``cf.plugins("exporters")``.
     out : str or Path, optional
         Folder to write into; without it nothing is written, and ``files`` has the contents.
     accept_loss : bool

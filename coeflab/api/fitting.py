@@ -44,8 +44,9 @@ def fit(
     tables : Table, str, Path or sequence of these
         From `coeflab.read_table`, or what that reads without keywords.
     by : str
-        Name of the fit; by default the recommended slopes at the origin, of each campaign by itself. One that joins campaigns,
-        such as ``manoeuvring_model``, takes all tables together.
+        Name of the fit; by default ``slope_at_origin``, the recommended slopes, of each campaign by itself: two campaigns that both
+        give Yv' are not pooled, ``result.of("drift")["Yv'"]`` is that of one. ``terms=[...]`` or ``"manoeuvring_model"`` fits all tables
+        jointly. Names: ``cf.plugins("fits")``.
     length : float or str, optional
         Of the primes, m; the tables' own unless given.
     length_name : str, optional
@@ -53,7 +54,8 @@ def fit(
     include_uncertain : bool
         Use cells that the source marks as doubtful.
     **options
-        Of the fit: ``cf.fit(drift, "polynomial", variable="beta", degree=3)``, ``cf.fit(drift, terms=["Yv", "Yv|v|"])``. A list of
+        Of the fit, as ``cf.plugins("slope_at_origin")`` lists them, angles in degrees or with a unit: ``cf.fit(drift, largest_angle="6 deg")``,
+        ``cf.fit(drift, "polynomial", variable="beta", degree=3)``, ``cf.fit(drift, terms=["Yv", "Yv|v|"])``. A list of
         terms trusts its form: of six rates Yr' may have a U95 of 5 %, where the recommended slope, which holds every smooth
         form, has 37 %.
 

@@ -195,7 +195,7 @@ def simulate(
     vehicle : Vehicle, str or Path
         A parameter file, or the name of a shipped one.
     manoeuvre : str
-        zigzag, turning_circle, spiral, stop ...: ``coeflab formats manoeuvres``.
+        zigzag, turning_circle, spiral, stop ...: ``cf.plugins("manoeuvres")``.
     free, hold : sequence of str
         Motions that may change, of u v w p q r; those of them that are held.
     current : (3,) sequence of float

@@ -10,8 +10,17 @@ from coeflab.vehicle.inertia import ACCELERATIONS
 __all__ = ["ACCELERATIONS", "CONTROLS", "FLOW_ANGLES", "FRESH_DENSITY", "primed", "shipped_names", "slopes"]
 
 
+class Shipped(dict[str, list[str]]):
+    """Names by kind; of a kind that is not shipped the error says where names of plugins are."""
+
+    def __missing__(self, kind: str) -> list[str]:
+        raise KeyError(
+            f"no {kind} among {', '.join(self)}; fits, exporters, simulators and other plugins: coeflab.plugins()"
+        )
+
+
 def shipped_names() -> dict[str, list[str]]:
-    """Names that a reader takes without a path: of campaigns, bodies, vehicles and plans.
+    """Names that a reader takes without a path: of campaigns, bodies, vehicles and plans. Those of plugins has `coeflab.plugins`.
 
     Examples
     --------
@@ -23,10 +32,10 @@ def shipped_names() -> dict[str, list[str]]:
     def folders(kind: str, file: str) -> list[str]:
         return sorted(place.parent.name for place in shipped(kind).glob(f"*/{file}"))
 
-    return {
-        "campaigns": folders("cfd_data", "campaign.toml"), "bodies": folders("geometry", "body.toml"),
-        "vehicles": sorted(by_name("*.parameters.json")), "plans": folders("cfd_data", "plan.toml"),
-    }  # fmt: skip
+    return Shipped(
+        campaigns=folders("cfd_data", "campaign.toml"), bodies=folders("geometry", "body.toml"),
+        vehicles=sorted(by_name("*.parameters.json")), plans=folders("cfd_data", "plan.toml"),
+    )  # fmt: skip
 
 
 def slopes() -> tuple[str, ...]:

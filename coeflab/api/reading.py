@@ -90,7 +90,7 @@ def read_table(
     frame : str or sequence of str, optional
         Axes of the columns: FRD, FLU, CFD, or where x, y and z point.
     alpha, beta : {"+", "-"} or formula, optional
-        Sign of an angle: ``"+"`` of beta is v = +U sin(beta).
+        Sign of an angle: ``"+"`` of beta is v = +U sin(beta), v to starboard, of alpha w = +U sin(alpha), w down, whatever `frame` is.
     about : str, float or (3,) sequence, optional
         Point of the moments: ``"nose, 1.0 m aft"``, ``"-1.0 from nose"``, or x or x, y, z from `datum`, m, x forward.
     datum : str, optional
@@ -119,8 +119,8 @@ def read_table(
         Ix, Iy, Iz about it, kg m^2.
     area, moment_length : float or str, optional
         What makes coefficients of the forces, m^2 and m; ``"prime"``: the length.
-    units : {"SI"}, optional
-        Of columns that state none.
+    units : {"SI", "US"}, optional
+        Of columns that state none: m, m/s, N; or ft, ft/s, lbf.
     columns : mapping of str to str, optional
         What a column is: ``{"Fy": "Y [N]", "psi": "-beta [deg]", "run": "label", "note": "ignore"}``.
     body, kind, citation, name : str, optional

@@ -10,7 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.missed import suggesting
+from coeflab.core.missed import suggesting, was_method
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
 from coeflab.core.texts import remark
@@ -297,13 +297,14 @@ class Result(Mapping[str, Coefficient]):
         out.attrs["without_u95"] = [self.symbols[i] for i in range(len(every)) if i not in selected]
         return out
 
+    @property
     def checks(self) -> tuple[Check, ...]:
         """What the checks of a study find in tables and fits, the gravest of which a reader should know; computed once.
 
         Examples
         --------
         >>> import coeflab as cf
-        >>> {str(c.severity) for c in cf.fit("suboff_roddy_2").checks()} <= {"pass", "note", "warn", "fail"}
+        >>> {str(c.severity) for c in cf.fit("suboff_roddy_2").checks} <= {"pass", "note", "warn", "fail"}
         True
         """
         if not self._found:
@@ -316,7 +317,7 @@ class Result(Mapping[str, Coefficient]):
                 comparisons=(), parameter_files={}, inputs=(),
             )  # fmt: skip
             self._found.append(tuple(c for c in checked(study).checks if c.name != "law at points"))
-        return tuple(c.spoken() for c in self._found[0])
+        return was_method("checks", tuple(c.spoken() for c in self._found[0]))
 
     def _straight(self, symbol: str) -> StraightRuns | None:
         """Runs at several speeds that give X0', where no sweep does."""
@@ -385,8 +386,8 @@ class Result(Mapping[str, Coefficient]):
         Parameters
         ----------
         symbol : str or sequence of str, optional
-            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to; of `laws` that law.
-            None or several: a forest, or the one law.
+            One symbol: the points, the curve and the slope with U95; of ``Yv|v|'`` the law that it belongs to, of a cross term such as
+            ``Yv|r|'`` its slices; of `laws` that law. None or several: a forest, or the one law.
         ax : Axes, optional
             To draw into, in the style that is set; by default that of a new figure. A colour of your own:
             ``with matplotlib.pyplot.style.context({"lines.color": "k"})``, or of the Axes that come back ``ax.lines[0].set_color("k")``.

@@ -25,7 +25,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import stem, write_atomically
 from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
-from coeflab.core.missed import suggesting
+from coeflab.core.missed import suggesting, was_method
 from coeflab.core.table import Check
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import fits_about
@@ -42,6 +42,7 @@ from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, stated_beside, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
+from coeflab.vehicle.stability import DRAWS, INDICES, missing_for_stability, sense, stability
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,6 +84,8 @@ class Vehicle:
             The file has none of that symbol.
         """
         found = self.file.coefficient(primed(symbol.removesuffix("'")))
+        if found is None and symbol in INDICES:
+            raise KeyError(f"{symbol} is no coefficient: it is a row of .stability()")
         if found is None:
             raise KeyError(f"no {symbol} among {', '.join(c.symbol for c in self.file.coefficients)}")
         return found
@@ -97,8 +100,8 @@ class Vehicle:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a reader has to know, in words."""
-        return all_spoken(self.file.remarks)
+        """What a reader has to know, in words; where the law holds, if that is less than the data span."""
+        return all_spoken((*self.file.remarks, *self.file.narrowed))
 
     def frame(self) -> pd.DataFrame:
         """A row a coefficient: value and u95 primed, value_si with its unit, status, origin.
@@ -120,6 +123,47 @@ class Vehicle:
             for c in self.file.coefficients
         ]  # fmt: skip
         return pd.DataFrame(rows, index=pd.Index([c.symbol for c in self.file.coefficients], name="symbol"))
+
+    def stability(self, draws: int = DRAWS) -> pd.DataFrame:
+        """G_h and G_v, the indices of straight-line stability: a row each that mass and derivatives give.
+
+        Parameters
+        ----------
+        draws : int
+            Of the Monte Carlo limits beside the linear half-width.
+
+        Returns
+        -------
+        DataFrame
+            value; u95, NaN where it is unknown or stands for no interval; low, high of 95 %; says: stable, unstable, sign open.
+
+        Raises
+        ------
+        InputError
+            Neither plane has mass and four derivatives.
+
+        Examples
+        --------
+        >>> import coeflab as cf
+        >>> list(cf.vehicle("suboff_bare_hull", mass=700).stability().index)
+        ['G_h', 'G_v']
+        """
+        import pandas as pd
+
+        indices = stability(self.file, draws)
+        if not indices:
+            lacks = ", ".join(missing_for_stability(self.file))
+            raise InputError(f"{self.name} without {lacks}", "mass and four derivatives of a plane", column="stability")
+        rows = [
+            {
+                "value": found.value, "u95": np.nan if found.half_width is None else found.half_width,
+                "low": np.nan if found.interval is None else found.interval[0],
+                "high": np.nan if found.interval is None else found.interval[1], "says": sense(found),
+            }
+            for found in indices
+        ]  # fmt: skip
+        columns = ["value", "u95", "low", "high", "says"]
+        return pd.DataFrame(rows, columns=columns, index=pd.Index([i.name for i in indices], name="index"))
 
     def save(self, path: str | Path | None = None) -> Path:
         """Write the parameter file.
@@ -259,16 +303,17 @@ class Vehicle:
         """A steady motion; see `coeflab.trim`."""
         return trim(self, **asked)
 
+    @property
     def checks(self) -> tuple[Check, ...]:
         """What ``coeflab params check`` finds: signs, sizes, what stands twice.
 
         Examples
         --------
         >>> import coeflab as cf
-        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks()} <= {"pass", "note", "warn", "fail"}
+        >>> {str(c.severity) for c in cf.read_vehicle("remus100").checks} <= {"pass", "note", "warn", "fail"}
         True
         """
-        return tuple(c.spoken() for c in plausibility(self.file))
+        return was_method("checks", tuple(c.spoken() for c in plausibility(self.file)))
 
     def simulate(self, manoeuvre: str, **options: Any) -> Motion:
         """A manoeuvre; see `coeflab.simulate`."""

@@ -53,7 +53,7 @@ def command(
     if not json:
         show.not_used(parameters)
     result, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
-    found = vehicle.checks()
+    found = vehicle.checks
     if not json and not show.whole() and any(one.loss is not None for one in result):
         show.text("Differences force by force: the .loss.txt beside the files, or --wide.")
     if not json:

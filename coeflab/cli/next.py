@@ -51,7 +51,7 @@ def command(
             manoeuvre=manoeuvre, **of_manoeuvre(manoeuvre, ctx.args),
         )  # fmt: skip
     if to is not None:
-        text = found.matrix() if to.suffix == ".toml" else found.frame().to_csv(index=False)
+        text = found.matrix if to.suffix == ".toml" else found.frame().to_csv(index=False)
         write_all(to.parent, {to.name: text.encode()})
     if json:
         show.json_object(as_json(found) | {"files": [] if to is None else [str(to)]})

@@ -1,4 +1,4 @@
-"""An attribute that a noun has not: what people call it elsewhere, and its name here."""
+"""An attribute that a noun has not: what people call it elsewhere, and its name here; one that was a method."""
 
 from __future__ import annotations
 
@@ -31,8 +31,7 @@ ELSEWHERE = {
     "laws['NAME'].evaluate(...)": "predict evaluate eval call",
     "evaluate(...)": "predict eval value call at",
     "samples(n)": "sample draw bootstrap random montecarlo mc",
-    "checks()": "check validate verify warning issue problem finding",
-    "checks": "warning issue problem finding",
+    "checks": "check validate verify warning issue problem finding",
     "remarks": "note remark warning comment message",
     "notes": "note remark warning comment message",
     "statements": "note remark warning statement comment message",
@@ -151,3 +150,43 @@ def _missed(noun: object, name: str) -> Any:
     raise AttributeError(
         f"{kind.__name__!r} has no {name!r}.{meant}" if meant else f"{kind.__name__!r} has no {name!r}; it has {every}"
     )
+
+
+class _Called:
+    """A value that a method gave until 0.2: called, it warns and gives itself."""
+
+    def __call__(self) -> Any:
+        import warnings
+
+        name = vars(self)["called"]
+        warnings.warn(
+            f"{name} is an attribute: .{name} without (); {name}() goes in 0.4", DeprecationWarning, stacklevel=2
+        )
+        return self
+
+
+class _CalledTuple(_Called, tuple[Any, ...]):
+    pass
+
+
+class _CalledText(_Called, str):
+    pass
+
+
+class _CalledDict(_Called, dict[str, Any]):
+    pass
+
+
+def was_method(name: str, value: Noun) -> Noun:
+    """The value of an attribute that was a method without arguments, which may go on being called.
+
+    Parameters
+    ----------
+    name : str
+        Of the attribute.
+    value : tuple, str or dict
+    """
+    kinds: dict[type, Any] = {tuple: _CalledTuple, str: _CalledText, dict: _CalledDict}
+    out = kinds[type(value)](value)
+    out.called = name
+    return out  # type: ignore[no-any-return]

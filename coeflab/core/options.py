@@ -20,24 +20,29 @@ Options = TypeVar("Options")
 TURNING = {"angle": "deg", "rate": "deg/s"}  # unit of a bare number on the command line
 
 
-def bounded(default: float, low: float, high: float) -> Any:
+def bounded(default: float, low: float, high: float, *, degrees: bool = False) -> Any:
     """A dataclass field with bounds; an int default takes whole numbers only.
 
     Parameters
     ----------
     default, low, high : float
         The bounds are allowed values.
+    degrees : bool
+        An angle whose bare number is in degrees everywhere; a text has its unit, ``"0.1 rad"``.
     """
     whole = isinstance(default, int) and not isinstance(default, bool)
     kind = "whole number" if whole else "number"
 
     def read(value: Any, _file: Path) -> float:
+        if degrees and isinstance(value, str):
+            value = math.degrees(with_unit(value, "angle"))
         right = not isinstance(value, bool) and isinstance(value, int if whole else (int, float))
         if not right or not low <= value <= high:
             raise InputError(shown(value), f"a {kind} from {low:g} to {high:g}")
         return cast(float, value)
 
-    return _option(default, f"{kind}, {low:.10g} to {high:.10g}", read)
+    within = f"{low:.10g} to {high:.10g}"
+    return _option(default, f"angle, {within} deg, bare or with its unit" if degrees else f"{kind}, {within}", read)
 
 
 def measured(default: float, low: float, high: float, dimension: str, frequency: bool = False) -> Any:

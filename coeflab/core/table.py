@@ -372,6 +372,9 @@ class Check:
     def __repr__(self) -> str:
         return in_angles(self, f"{self.severity}, {self.name}: {self.subject}: {self.statistic}")
 
+    def __str__(self) -> str:
+        return f"{self.severity}, {self.subject}: {self.statistic}{f' {self.comment}' if self.comment else ''}"
+
     def spoken(self) -> Check:
         """The finding in the words of whoever reads it: options in a shell, else keywords."""
         statistic, rule, comment = all_spoken((self.statistic, self.rule, self.comment))

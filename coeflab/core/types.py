@@ -6,9 +6,10 @@ Nouns that show themselves in a line.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from enum import Enum
-from functools import wraps
+from functools import partial, wraps
+from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ParamSpec, TypeVar
@@ -34,7 +35,7 @@ Made = TypeVar("Made")
 
 
 def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
-    """Keep the last results of a pure function of arrays and plain values, by the bytes of the arrays.
+    """Keep the last results of a pure function of arrays, plain values and frozen dataclasses of such, by their content.
 
     Parameters
     ----------
@@ -47,10 +48,7 @@ def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, M
 
         @wraps(function)
         def called(*args: Given.args, **more: Given.kwargs) -> Made:
-            given = (
-                (a.shape, a.dtype.str, a.tobytes()) if isinstance(a, np.ndarray) else a for a in (*args, *more.values())
-            )
-            key = (*given, *more)
+            key = _content((*args, *more.values(), *more))
             if key not in known:
                 while len(known) >= many:
                     del known[next(iter(known))]
@@ -60,6 +58,19 @@ def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, M
         return called
 
     return decorated
+
+
+def _content(value: Any) -> Any:
+    """What tells a value from another one: arrays by a hash of their bytes, dataclasses by their fields, the rest by itself."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.dtype.str, sha256(value.tobytes()).digest()
+    if isinstance(value, tuple):
+        return tuple(map(_content, value))
+    if isinstance(value, partial):
+        return value.func, _content((*value.args, *value.keywords.values(), *value.keywords))
+    if is_dataclass(value) and not isinstance(value, type):
+        return type(value), *(_content(getattr(value, f.name)) for f in fields(value))
+    return value
 
 
 Noun = TypeVar("Noun")

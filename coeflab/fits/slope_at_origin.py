@@ -79,7 +79,7 @@ class Options:
         Largest drift or attack angle that is used, degrees.
     """
 
-    largest_angle: float = bounded(90.0, 1.0, 90.0)
+    largest_angle: float = bounded(90.0, 1.0, 90.0, degrees=True)
 
 
 def _within(limit: float, points: _Points) -> _Points:

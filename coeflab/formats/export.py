@@ -271,6 +271,11 @@ class Loss:
             self, f"{self.target}: {gone or 'nothing'} lost, {what} within {share:.2g}, {len(self.changes)} changes"
         )
 
+    def __str__(self) -> str:
+        """Everything that is lost or changed, a line each; the loss report among the files has the forces too."""
+        lines = [f"{Kind.NOT_HELD}: {what}" for what in self.not_held] + [str(one) for one in self.lost]
+        return "\n".join([repr(self), *lines, *(f"changed: {words}" for words in self.changes)])
+
     @property
     def worst(self) -> Array:
         """(6,) of the forces, as in `Apart`."""

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Datum
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError
+from coeflab.core.missed import was_method
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
 from coeflab.core.types import Array, in_angles, locked, locking
 from coeflab.law.rigid_body import ideal_quadratics
@@ -239,17 +240,19 @@ class AddedMass:
         values = np.stack([self.matrix, *(w.matrix for w in reversed(known))])
         return np.asarray(PchipInterpolator(at, values, axis=0)(min(distance**-3, at[-1])))
 
+    @property
     def derivatives(self) -> dict[str, float]:
         """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""
-        return {
+        every = {
             f"{force}{motion}dot": -float(self.matrix[i, j])
             for i, force in enumerate(COMPONENTS)
             for j, motion in enumerate(MOTIONS)
         }
+        return was_method("derivatives", every)
 
     def primed(self, symbol: str, scaling: Scaling, density: float) -> float:
         """One acceleration derivative, primed: Yvdot' by 1/2 rho L^3, Nrdot' by 1/2 rho L^5 (SNAME 1950)."""
-        return self.derivatives()[symbol] / scaling.unit(symbol, density)
+        return self.derivatives[symbol] / scaling.unit(symbol, density)
 
 
 def potential_part(symbol: str, added_mass: AddedMass, scaling: Scaling, density: float) -> float | None:

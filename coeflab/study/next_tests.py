@@ -74,7 +74,7 @@ class ProposedTest:
     symbols : tuple of str
         Coefficients of the wanted figure that it gives, primed.
     share : float
-        Of the variance of the wanted figure: what it could take off at most.
+        Of the variance of the wanted figure: what it could take off at most, over `NextTests.overlap`.
     settings : (n,) array
         Of the proposed runs, as the variable's prime: sine of an angle, rad of a control, r'.
     u95 : tuple of (now, then)
@@ -130,6 +130,9 @@ class NextTests:
         Whether coefficients have a covariance, which U95 and shares then take into account.
     of_rows : mapping of component to float
         Scatter of one reading, primed, that rows of the component show and runs of another sweep of it are taken to have.
+    overlap : float
+        What the tests would take off the variance one by one, in all; above 1 where they tell of each other's coefficients, and
+        every share is then divided by it.
     """
 
     wanted: str
@@ -142,6 +145,7 @@ class NextTests:
     given: Finding | None = None
     correlated: bool = False
     of_rows: Mapping[str, float] = field(default_factory=dict)
+    overlap: float = 1.0
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -152,6 +156,8 @@ class NextTests:
             out += [
                 Finding.of("design.correlated" if self.correlated else "design.independent", self.wanted, Severity.NOTE)
             ]
+        if self.overlap > 1.0 + SEEN:
+            out += [Finding.of("design.overlap", self.wanted, Severity.NOTE, statistic=self.overlap)]
         out += [
             Finding.of("design.fixed", symbol, Severity.WARN, statistic=share, threshold=0.5)
             for t in self.tests for symbol, share in zip(t.symbols, t.fixed) if share > 0.5
@@ -197,7 +203,7 @@ class Wanted:
     """A figure, and how its variance divides among coefficients: symbol without prime to (share, U95 now).
 
     Where errors of coefficients go together (``correlated``), a test's share is what knowing all its coefficients takes off, and
-    shares that overlap are scaled to the whole.
+    shares that overlap are divided by their sum, ``overlap``.
     """
 
     name: str
@@ -205,6 +211,7 @@ class Wanted:
     u95: float
     shares: Mapping[str, tuple[float, float]]
     correlated: bool = False
+    overlap: float = 1.0
 
 
 def of_symbol(coefficient: Coefficient) -> Wanted:
@@ -254,13 +261,13 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
     slope, lever, rate, damping = (np.array(v) for v in values)
     value = float(stability_index(slope, lever, rate, damping, *mass))
     apart = bool(np.any(covariance - np.diag(np.diag(covariance))))
-    return Wanted(name, value, variance**0.5, _divided(known, by_test, parameters), apart)
+    return Wanted(name, value, variance**0.5, *_divided(known, by_test, parameters, apart))
 
 
 def _divided(
-    known: Mapping[str, float], by_test: Mapping[str, float], parameters: ParameterFile
-) -> dict[str, tuple[float, float]]:
-    """Shares and U95 by symbol: each test's share divided as its symbols' own, and all scaled where they overlap."""
+    known: Mapping[str, float], by_test: Mapping[str, float], parameters: ParameterFile, apart: bool
+) -> tuple[dict[str, tuple[float, float]], bool, float]:
+    """Shares and U95 by symbol, each test's share divided as its symbols' own and over their sum where they overlap; that sum."""
     out: dict[str, tuple[float, float]] = {}
     for test, symbols in tests_of(tuple(known)).items():
         total = sum(known[s] for s in symbols)
@@ -269,7 +276,7 @@ def _divided(
             if c is not None and c.u95 and total > 0.0:
                 out[s.removesuffix("'")] = (known[s] / total * by_test.get(test, total), c.u95)
     most = max(1.0, sum(share for share, _ in out.values()))
-    return {s: (share / most, u95) for s, (share, u95) in out.items()}
+    return {s: (share / most, u95) for s, (share, u95) in out.items()}, apart, most
 
 
 def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wanted:
@@ -297,8 +304,8 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
     known = {s: v for s, v in importance.known if parameters.coefficient(s) is not None}
     apart = np.array(carried.varied.covariance)
     np.fill_diagonal(apart, 0.0)
-    shares = _divided(known, dict(importance.tests) if apart.any() else {}, parameters)
-    return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, shares, bool(apart.any()))
+    shares = _divided(known, dict(importance.tests) if apart.any() else {}, parameters, bool(apart.any()))
+    return Wanted(found.figure.name, found.figure.value, (found.high - found.low) / 2.0, *shares)
 
 
 def next_tests(
@@ -387,7 +394,7 @@ def next_tests(
     ranked = tuple(sorted(out, key=lambda t: (t.wanted_then, -t.share)))
     return NextTests(
         wanted.name, wanted.value, wanted.u95, ranked, target, (noise or NOISE) if assumed else None, tuple(assumed), given,
-        wanted.correlated, of_rows,
+        wanted.correlated, of_rows, wanted.overlap,
     )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -41,6 +42,16 @@ SIGNS = ("axes.alpha", "axes.beta")
 READINGS = {1: ("FRD", "FLU"), -1: ("CFD", ["aft", "port", "down"]), 0: ("FRD", "FLU")}
 
 
+class Basis(Enum):
+    """What the default of a question rests on."""
+
+    ELSEWHERE = auto()  # words, a name, what numbers show
+    COLUMN = auto()  # the median of a column
+    CANCELS = auto()  # nothing: no number hangs on it
+    ZEROS = auto()  # nothing: an angle of zeros has any sign
+    UNSTATED = auto()  # nothing: a word for what nobody stated
+
+
 @dataclass(frozen=True, slots=True)
 class Question:
     """A key of campaign.toml, with what it probably is.
@@ -66,6 +77,8 @@ class Question:
         Axes, signs, points, inertia: a wrong one makes wrong slopes that look right.
     assumed : bool
         Neither words nor numbers of the file give the default: once accepted, what hangs on it says so.
+    basis : Basis
+        What the default rests on, as `why` has it in words.
     """
 
     key: str
@@ -78,6 +91,7 @@ class Question:
     harmless: bool = False
     grave: bool = False
     assumed: bool = False
+    basis: Basis = Basis.ELSEWHERE
 
     @property
     def open(self) -> bool:
@@ -141,7 +155,7 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
         yield _of_basis(raw, settings, primes)
     if any(f"L={OPEN}" in text for text in texts):
         length = settings.get("scaling.length")
-        yield _asked(LENGTH_OF, "" if length is None else str(length.value))
+        yield replace(_asked(LENGTH_OF, "" if length is None else str(length.value)), basis=Basis.UNSTATED)
     if any(map(without_unit, offers)):
         both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
         yield _asked(UNITS_OF, both="".join(f"{each}; " for each in both))
@@ -200,7 +214,14 @@ def _of_axes(
         found = follows.get(f"axes.{name}")
         if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
             yield Question(
-                f"axes.{name}", ANY_SIGN, "", next(iter(ANGLE_SIGNS[name])), ANY_SIGN, ANY_SIGN, harmless=True
+                f"axes.{name}",
+                ANY_SIGN,
+                "",
+                next(iter(ANGLE_SIGNS[name])),
+                ANY_SIGN,
+                ANY_SIGN,
+                harmless=True,
+                basis=Basis.ZEROS,
             )
             continue
         both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []
@@ -311,7 +332,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
     asked = _asked("scaling.length", f"{length!r}" if length else "", beyond=beyond)
     yield replace(asked, assumed=bool(length))
-    yield _asked("scaling.length_name", "L")
+    yield replace(_asked("scaling.length_name", "L"), basis=Basis.UNSTATED)
     median = {role: _median(columns, role) for role in ("speed", "density")}
     if (
         not median["speed"]
@@ -327,6 +348,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
         yield replace(
             _asked(f"conditions.{role}", found or cancels), why=why, short=why.partition(":")[0] or ONCE * follows,
             shown="median of its column" * follows, harmless=bool(found),
+            basis=Basis.COLUMN if found else Basis.CANCELS if cancels else Basis.ELSEWHERE,
         )  # fmt: skip
 
 
@@ -414,7 +436,12 @@ def _is_computed(raw: RawTable) -> bool:
 def _of_source(raw: RawTable) -> Iterator[Question]:
     kind = "cfd" if _is_computed(raw) else "unstated"
     why = "files of a solver" if kind == "cfd" else "not stated"
-    yield replace(_asked("source.kind", kind, kinds=", ".join(TABLE_KINDS)), why=why, short=why)
+    yield replace(
+        _asked("source.kind", kind, kinds=", ".join(TABLE_KINDS)),
+        why=why,
+        short=why,
+        basis=Basis.UNSTATED if kind == "unstated" else Basis.ELSEWHERE,
+    )
     yield _asked("source.citation", raw.path.resolve().name)
 
 
@@ -425,7 +452,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         given is not None and isinstance(given.value, tuple)
     ):
         return q
-    if given is not None and given.contradicted and not q.why.startswith("median"):
+    if given is not None and given.contradicted and q.basis is not Basis.COLUMN:
         choices = f"{given.contradicted}; {q.choices}".rstrip("; ")
         return replace(
             q,
@@ -435,14 +462,16 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
             why=given.contradicted,
             asks=f"{q.asks}. {given.contradicted}",
             harmless=False,
+            basis=Basis.ELSEWHERE,
         )
     if given is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(given.value).casefold() in q.default.casefold():
             return replace(q, assumed=False)  # numbers and words agree
         against = f"{given.place}, but {q.default}: {q.why}"
         return replace(
-            q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against
-        )
+            q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against,
+            basis=Basis.ELSEWHERE,
+        )  # fmt: skip
     if (
         given is None
         or not given.offered
@@ -453,11 +482,11 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         )
     ):
         return q
-    if q.harmless and q.default and q.why.startswith("median"):
+    if q.harmless and q.default and q.basis is Basis.COLUMN:
         return q
     value = f"{given.value:.12g}" if isinstance(given.value, float) else str(given.value)
     value = value.casefold() if isinstance(given.value, bool) else value
-    return replace(q, default=value, why=given.place, short=given.place, shown="", assumed=False)
+    return replace(q, default=value, why=given.place, short=given.place, shown="", assumed=False, basis=Basis.ELSEWHERE)
 
 
 def _point(value: Any) -> str:

@@ -14,7 +14,7 @@ from coeflab.tables.form import Line, argument, column_lines, is_shown, question
 from coeflab.tables.interpretation import Interpretation, interpreted
 from coeflab.tables.mapping import known_as
 from coeflab.tables.parts import ALONE, SPLIT, Part, own
-from coeflab.tables.questions import ANY_SIGN, Question
+from coeflab.tables.questions import Basis, Question
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, Settings, read_in
 from coeflab.tables.settings_in_files import against_words
@@ -94,11 +94,11 @@ def questions_together(
     out: list[tuple[str, Question]] = []
     for key in dict.fromkeys(q.key for found in founds for q in found.questions):
         have = [(p, q) for p, f in zip(parts, founds, strict=True) for q in f.questions if q.key == key]
-        strong = [(p, q) for p, q in have if not q.why.startswith(("median", "it cancels", ANY_SIGN))] or have
-        if len({q.why.startswith("it cancels") for _, q in have}) > 1 and not key.startswith(ALONE):
+        strong = [(p, q) for p, q in have if q.basis not in (Basis.COLUMN, Basis.CANCELS, Basis.ZEROS)] or have
+        if len({q.basis is Basis.CANCELS for _, q in have}) > 1 and not key.startswith(ALONE):
             have = strong
         values = {q.default for _, q in strong if q.default}
-        named = [q for _, q in strong if q.default and q.short not in ("not stated", "not stated: LOA, LBP ...")]
+        named = [q for _, q in strong if q.default and q.basis is not Basis.UNSTATED]
         if key == "source.citation" and whole:
             out.append((key, replace(strong[0][1], default=whole)))
         elif len(values) > 1 and strong[0][1].harmless and len({q.default for q in named}) == 1:

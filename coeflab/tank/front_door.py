@@ -125,5 +125,10 @@ def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solv
         place = located(body, "geometry")
     else:
         raise InputError(f"a {type(body).__name__}", "a body, a path, or the name of a shipped body", column="body")
+    if isinstance(matrix, str) and "\n" in matrix:
+        raise InputError(
+            "the text of a matrix", "the file that holds it", column="matrix",
+            advice='Path("next.toml").write_text(text), and matrix="next.toml".',
+        )  # fmt: skip
     file = None if matrix is None else typed(matrix)
     return Tow(*tank_room.read(place, file, solver, runner), file)

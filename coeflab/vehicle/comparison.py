@@ -14,6 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.machine import one_thread
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
@@ -207,9 +208,9 @@ def _obstacle(first: ParameterModel, second: ParameterModel, a: ParameterFile, b
         return "no area stated, and other lengths"
     if _moment(first.response) or set(first.names) & set(ANGULAR):
         here, there = a.reference_point, b.reference_point
-        if here.origin != there.origin:
+        if here.origin != there.origin and ANYWHERE not in (here.origin, there.origin):
             return "the reference points are measured from other datums"
-        if not np.allclose(here.point, there.point, rtol=0.0, atol=SAME):
+        if here.origin == there.origin and not np.allclose(here.point, there.point, rtol=0.0, atol=SAME):
             return "about other reference points: moments and rates of a table are not transferred"
     return ""
 
@@ -357,7 +358,7 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     """Hold the second file against the first.
 
     The second is primed by the first one's length and moved to its reference point where both are measured from one
-    datum, or by the centre of gravity that both state. Differences of other bodies are shown, with a statement that they are of other bodies.
+    datum, or by the centre of gravity that both state; what holds about every point, of the datum ``anywhere``, holds about this one. Differences of other bodies are shown, with a statement that they are of other bodies.
 
     Parameters
     ----------
@@ -378,7 +379,8 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
         words.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
     if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:
         words.append(f"{name_b} converted from {theirs.scaling} to {ours.scaling}")
-    theirs = theirs.to_length(ours.scaling)
+    theirs = theirs.to_length(ours.scaling).counted_from(ours.datum, ours.reference_point)
+    ours = ours.counted_from(theirs.datum, theirs.reference_point)
     moved = theirs
     same_datum = ours.datum == theirs.datum
     if not same_datum:

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coeflab.core.axes import ANYWHERE
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
@@ -27,9 +28,11 @@ ONE_MASS = 0.01  # of two vehicles that are taken as one: then so are their cent
 def on_one_datum(a: ParameterFile, b: ParameterFile) -> tuple[ParameterFile, Finding | None]:
     """The second file with its reference point from the datum of the first, by the centre of gravity that both state, and what says so.
 
-    As it is where the datums are one already, or where a mass is not stated or another.
+    As it is where the datums are one already or one is anywhere, or where a mass is not stated or another.
     """
-    if a.reference_point.origin == b.reference_point.origin or a.mass is None or b.mass is None:
+    if a.reference_point.origin in (b.reference_point.origin, ANYWHERE) or b.reference_point.origin == ANYWHERE:
+        return b, None
+    if a.mass is None or b.mass is None:
         return b, None
     if abs(b.mass.mass / a.mass.mass - 1.0) > ONE_MASS:
         return b, None

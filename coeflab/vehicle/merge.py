@@ -19,7 +19,8 @@ from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, moved_together
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
-from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.force_law import force_at_edges, full_force, points_of, spoken
+from coeflab.vehicle.law_at_points import caps, held_ranges, law_at_points
 from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
@@ -111,8 +112,10 @@ def merged(
     theirs = theirs.counted_from(ours.datum, ours.reference_point)
     if ours.datum != theirs.datum:
         raise ScalingMismatchError(
-            f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
-            "give the body.toml of the shape the datum of the tables, and the vehicle again."
+            f"the vehicle {base.name} counts places from {shown(ours.datum.id)}, the coefficients of {other.name} from "
+            f"{shown(theirs.datum.id)}. Where the file of the coefficients is all there is, write in its reference_point where its point lies "
+            f'from {shown(ours.datum.id)}: {{"datum": {shown(ours.datum.id)}, "point": [x, y, z]}}, m, FRD. Of tables of your own, give the body.toml '
+            "of the shape their datum, and the vehicle again. A file that is a whole vehicle needs no shape: take it as it is, by its own name."
         )
     theirs, first = by_plain_names(theirs.to_length(ours.scaling))
     resting = {c.symbol for c in ours.coefficients if c.law == "rest"}  # no other spelling of a slope
@@ -161,6 +164,7 @@ def merged(
         entries = [e for e in entries if e[0].symbol != symbol]
         replaced.append(Replaced(primed(symbol), ours[symbol], None))
         result = _joined(base, other, covariance, many, entries, replaced, name)
+    result = _held(result)
     lengths = _lengths(base, other, own or other.scaling)
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
     scaled = _scaled(base, other, own or other.scaling)
@@ -264,9 +268,9 @@ def _joined(
 
 
 def _against_points(made: ParameterFile) -> tuple[str, ...]:
-    """Estimated terms of second or higher degree that take the law away from measured points, component by component."""
+    """Estimated terms of second or higher degree that take the law away from measured points, all of a table, component by component."""
     out: list[str] = []
-    now = {(p.component, p.table): p.rms for p in points_of(made)}
+    now = _rms(made)
     for table in made.measured:
         moves = {m.name for m in table.motion}
         for component in dict.fromkeys(f.component for f in table.forces):
@@ -277,10 +281,25 @@ def _against_points(made: ParameterFile) -> tuple[str, ...]:
             if not mine or (component, table.table) not in now:
                 continue
             without = made.model_copy(update={"coefficients": tuple(c for c in made.coefficients if c not in mine)})
-            then = {(p.component, p.table): p.rms for p in points_of(without)}
+            then = _rms(without)
             if then[component, table.table] < now[component, table.table]:
                 out += [c.symbol.removesuffix("'") for c in mine]
     return tuple(dict.fromkeys(out))
+
+
+def _held(made: ParameterFile) -> ParameterFile:
+    """The file with the ranges in which its law, which is neither file's, meets its points."""
+    if not made.law_holds:
+        return made
+    length = made.scaling.length
+    cap = caps(made.measured, full_force(made), length, spoken(made).beyond_slopes)
+    return made.model_copy(update={"law_holds": held_ranges(made.measured, cap, length)})
+
+
+def _rms(made: ParameterFile) -> dict[tuple[str, str], float]:
+    """Of what the law misses at every point, also where it is not said to hold, by component and table."""
+    found = law_at_points(made.measured, (), force_at_edges(made), made.scaling.length)
+    return {(p.component, p.table): p.rms for p in found}
 
 
 def _place(symbol: str) -> tuple[str, frozenset[str]] | None:

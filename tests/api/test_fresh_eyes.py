@@ -9,7 +9,10 @@ import pytest
 
 import coeflab as cf
 from coeflab.core.errors import InputError
+from coeflab.core.options import described
+from coeflab.fits import FITS
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.stability import stability
 
 
 @pytest.fixture(scope="module")
@@ -92,3 +95,48 @@ def test_short_reprs() -> None:
         assert "=<" not in text
     assert "lossless" in repr(export)
     assert not any("propulsion is not" in line for line in export.loss.changes)  # type: ignore[union-attr]
+
+
+def test_an_angle_of_a_fit_has_its_unit_or_is_in_degrees() -> None:
+    text, bare = (cf.fit("suboff_roddy_2", largest_angle=a)["Yv'"] for a in ("6 deg", 6.0))
+    assert (text.value, text.u95) == (bare.value, bare.u95)
+    assert text.value != cf.fit("suboff_roddy_2")["Yv'"].value
+    with pytest.raises(InputError, match="from 1 to 90"):
+        cf.fit("suboff_roddy_2", largest_angle="2 rad")
+
+
+def test_plugins_and_their_options_are_listed() -> None:
+    assert [r[1] for r in cf.plugins("fits").rows] == list(FITS.names())
+    assert {"validation", "simulator", "fit"} <= {r[0] for r in cf.plugins().rows}
+    assert [r[0] for r in cf.plugins("surface").rows] == [o.name for o in described(FITS.load("surface").Options)]
+    with pytest.raises(InputError, match="Did you mean slope_at_origin"):
+        cf.plugins("slope_at_orign")
+    with pytest.raises(KeyError, match=r"simulators among campaigns.*coeflab\.plugins"):
+        cf.shipped_names()["simulators"]
+
+
+def test_stability_is_a_frame_with_its_interval() -> None:
+    auv = cf.vehicle("remus100", mass=30.5)
+    found, (first, *_) = auv.stability(), stability(auv.file)
+    assert found.loc["G_h", "value"] == first.value
+    assert tuple(found.loc["G_h", ["low", "high"]]) == first.interval
+    assert found.loc["G_h", "low"] < first.value < found.loc["G_h", "high"]
+    with pytest.raises(KeyError, match=r"\.stability\(\)"):
+        auv["G_h"]
+    with pytest.raises(InputError, match="remus100 without Yv', Nv', Yr', Nr'"):
+        cf.read_vehicle("remus100").stability()
+
+
+def test_a_loss_and_a_check_print_what_they_hold() -> None:
+    loss = cf.export("remus100", "gazebo").loss
+    lines = str(loss).splitlines()
+    assert len(lines) == 1 + len(loss.not_held) + len(loss.lost) + len(loss.changes) > 2
+    assert all(any(words in line for line in lines) for words in (*loss.not_held, *loss.changes))
+    check = next(c for c in cf.read_vehicle("remus100").checks if c.comment)
+    assert check.statistic in str(check)
+    assert check.comment in str(check)
+
+
+def test_the_text_of_a_matrix_is_no_path() -> None:
+    with pytest.raises(InputError, match=r"write_text\(text\)"):
+        cf.tow("suboff_bare_hull", "[matrix]\nyaw = [0.1]\n")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
+import pickle
 import re
 import runpy
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +51,44 @@ def test_an_old_name_works_and_says_the_new_one() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert "read_parameter_file" not in dir(cf)
+
+
+ACTS = {
+    "frame", "summary", "plot", "figure_table", "other_table", "to_json", "keys", "values", "items", "copy",
+    "at_one_density", "on_one_grid", "without_studies", "with_uncertain_cells", "refuse", "check", "require_shape", "spoken",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        n
+        for n in cf.__all__
+        if inspect.isclass(getattr(cf, n)) and not issubclass(getattr(cf, n), Exception | cf.ParameterFile)
+    ],
+)
+def test_what_a_noun_holds_is_an_attribute(name: str) -> None:
+    noun = getattr(cf, name)
+    methods = [(n, m) for n in dir(noun) if n[0] != "_" and inspect.isfunction(m := inspect.getattr_static(noun, n))]
+    assert {n for n, m in methods if len(inspect.signature(m).parameters) == 1} - ACTS == set()
+
+
+@pytest.mark.parametrize(
+    ("noun", "name"),
+    [
+        (lambda: cf.fit("suboff_roddy_2"), "checks"),
+        (lambda: cf.read_vehicle("remus100"), "checks"),
+        (lambda: cf.read_body("remus100").added_mass("ellipsoid"), "derivatives"),
+        (lambda: cf.next_tests("suboff_bare_hull", "Yr'", runs=5), "matrix"),
+    ],
+)
+def test_what_was_a_method_may_be_called_until_0_4(noun: Callable[[], Any], name: str) -> None:
+    found = getattr(noun(), name)
+    assert len(found) > 0
+    with pytest.warns(DeprecationWarning, match=rf"{name} is an attribute.*0\.4") as warned:
+        assert found() == found
+    assert warned[0].filename == __file__
+    assert pickle.loads(pickle.dumps(found)) == found
 
 
 @pytest.mark.slow

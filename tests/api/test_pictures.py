@@ -14,6 +14,7 @@ import pytest
 
 import coeflab as cf
 from coeflab.api import studies
+from coeflab.core.errors import InputError
 from coeflab.fits import tied_law
 from coeflab.report.document import AnswerRow
 from coeflab.report.figures import estimator, first_page, laws, model, motion, nouns, sweep, three_views
@@ -152,6 +153,51 @@ def test_a_law_along_a_motion_is_drawn_once(monkeypatch: pytest.MonkeyPatch) -> 
     made = captured(monkeypatch, model)
     model.along_figure(law, "m")
     assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[model.along(law).index("v")], "x")
+
+
+TERMS = ["Yv", "Yr", "Yv|r|", "Nv", "Nr", "Nvvr"]
+
+
+def crossed(apart: float = 0.0) -> cf.Table:
+    """Rows of a law with Yv|r|' and Nvvr' on a grid of drift and yaw rate, or on rates that are all apart."""
+    v, r = (x.ravel() for x in np.meshgrid(-np.sin(np.radians([-8, -4, 0, 4, 8])), [-0.3, -0.15, 0.0, 0.15, 0.3]))
+    r = r + apart * np.arange(len(r))
+    columns = {
+        "v' [1]": v,
+        "r' [1]": r,
+        "Y' [1]": -0.03 * v + 0.01 * r - 0.2 * v * np.abs(r),
+        "N' [1]": -0.012 * v - 0.006 * r - 0.03 * v**2 * r,
+    }
+    return cf.read_table(
+        columns,
+        frame="FRD",
+        length=2.0,
+        density=1000,
+        speed=2.0,
+        about="cg",
+        datum="cg",
+        contains_inertia=False,
+        accept=True,
+    )
+
+
+def test_a_cross_term_is_drawn_in_slices_as_the_report_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = cf.fit(crossed(), "manoeuvring_model", terms=TERMS)
+    law = next(m for m in result.fits[0].models if m.response == "Y")
+    made = captured(monkeypatch, model)
+    model.slices_figure(law, "m")
+    ours = result.plot("Yv|r|'", ax=new_axes())
+    assert_one_drawing(ours, made[0], "x")
+    levels = [t.get_text() for t in ours.get_legend().get_texts()]
+    assert levels == ["r' = −0.3", "r' = −0.15", "r' = 0.15", "r' = 0.3"]
+    slopes = [np.polyfit(*one.get_xydata().T, 1)[0] for one in ours.get_lines() if one.get_linestyle() != "None"]
+    assert slopes == pytest.approx([-0.03 - 0.2 * abs(r) for r in (-0.3, -0.15, 0.15, 0.3)], rel=1e-6)
+
+
+def test_a_cross_term_without_a_grid_says_what_has_its_law() -> None:
+    result = cf.fit(crossed(0.001), "manoeuvring_model", terms=TERMS)
+    with pytest.raises(InputError, match=r'v and r together.*laws\["N"\]\.evaluate\(v=\.\.\., r=\.\.\.\)'):
+        result.plot("Nvvr'", ax=new_axes())
 
 
 def test_coefficients_with_their_intervals_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import coeflab as cf
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
 from coeflab.bodies.panel_solver import solve as kernel
@@ -96,3 +99,24 @@ def test_what_does_not_converge_says_so(monkeypatch: pytest.MonkeyPatch) -> None
 def test_memory_is_stated() -> None:
     assert memory_needed(8_000) == 4 * 8_000**2 + 400 * 2**20
     assert memory_needed(32_000) < 8 * 2**30
+
+
+def test_a_body_asked_for_again_with_another_mass_in_other_water_is_not_solved_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    first = cf.vehicle("remus100", mass=30.5)
+    assert first.file.added_mass is not None
+    assert first.file.added_mass.method == "panel"
+
+    def solved(*_: object) -> None:
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(kernel, "_solved", solved)
+    again = cf.vehicle("remus100", mass=33.0, density=1025.0, centre_of_gravity=(-0.6, 0.0, 0.02))
+    assert again.file.added_mass is not None
+    assert again.file.added_mass.matrix[1, 1] == pytest.approx(
+        first.file.added_mass.matrix[1, 1] * 1025.0 / first.file.conditions.density, rel=1e-9
+    )
+    longer = replace(cf.read_body("remus100").shape, x=1.01 * cf.read_body("remus100").shape.x)
+    with pytest.raises(AssertionError, match="solved again"):
+        cf.vehicle(replace(cf.read_body("remus100"), shape=longer))

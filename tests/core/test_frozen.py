@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -147,3 +149,36 @@ def test_the_last_results_are_remembered_by_the_bytes_of_arrays() -> None:
     assert total(x) == 7.0
     assert total(np.array([1.0, 2.0]), 1.0) == 3.0
     assert len(calls) == 5
+
+
+def test_nouns_of_arrays_are_remembered_by_their_content() -> None:
+    calls: list[str] = []
+
+    @dataclass(frozen=True, eq=False)
+    class Hull:
+        radius: NDArray[np.float64]
+        name: str
+        again: object = None
+
+    @remembered(8)
+    def largest(hull: Hull, over: tuple[NDArray[np.float64], ...] = ()) -> float:
+        calls.append(hull.name)
+        return float(hull.radius.max()) + sum(float(x.max()) for x in over)
+
+    def remade(share: float) -> None:
+        raise AssertionError(share)
+
+    one = np.array([1.0, 2.0])
+    assert largest(Hull(one, "a")) == largest(Hull(one.copy(), "a")) == 2.0
+    assert calls == ["a"]
+    assert largest(Hull(one, "a", partial(remade, 0.5))) == largest(Hull(one, "a", partial(remade, 0.5)))
+    assert calls == ["a", "a"]
+    others = [
+        Hull(one, "b"),
+        Hull(2.0 * one, "a"),
+        Hull(one, "a", partial(remade, 0.6)),
+        Hull(one, "a", partial(remade, share=0.5)),
+    ]
+    assert [largest(h) for h in others] == [2.0, 4.0, 2.0, 2.0]
+    assert largest(Hull(one, "a"), (one,)) == largest(Hull(one, "a"), over=(one,)) == 4.0
+    assert len(calls) == 2 + 4 + 2

@@ -10,6 +10,7 @@ import pytest
 
 import coeflab as cf
 from coeflab.core.errors import InputError
+from coeflab.core.texts import remark
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.motion.uncertainty.tests import Kind, kind_of
 from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
@@ -77,6 +78,9 @@ def test_u95_of_g_h_is_that_of_its_covariance_and_a_test_takes_what_its_coeffici
         shares.append(sum(found.shares[s][0] for s in pair))
     assert sum(gone) > 1.9  # either test tells of the other's coefficients: both together take no more than all
     assert shares == pytest.approx([g / sum(gone) for g in gone], abs=0.005)
+    assert (found.overlap, of_index(apart(file), "G_h").overlap) == (pytest.approx(sum(gone), abs=0.005), 1.0)
+    (overlaps,) = [f for f in cf.next_tests(file, "G_h", runs=3).findings if f.code == "design.overlap"]
+    assert f"{sum(gone):.0%}" in remark(overlaps)
 
 
 def test_u95_of_a_figure_is_that_of_uncertainty(file: ParameterFile) -> None:
@@ -165,7 +169,7 @@ def test_what_no_run_of_the_sweep_narrows_stays_and_is_found() -> None:
 def test_runs_as_a_matrix_for_the_tank_and_a_frame() -> None:
     found = cf.next_tests("suboff_bare_hull", "Yr'", runs=4)
     settings = found.tests[0].settings
-    assert found.matrix() == (
+    assert found.matrix == (
         f"[matrix]\ndrift = []\nattack = []\nyaw = [{', '.join(f'{x:.4g}' for x in dict.fromkeys(settings))}]\npitch = []\n"
     )
     np.testing.assert_array_equal(found.frame()["setting"], settings)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import coeflab as cf
+from coeflab.core.errors import ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
 from coeflab.motion.behaviour import behaviour
 from coeflab.vehicle.comparison import compare
@@ -136,3 +140,34 @@ def test_zeros_of_a_matrix_are_numbers_that_a_move_needs() -> None:
     rows = {r.symbol: r for r in compare(typed_file("one", ["Yv'=-0.05", *stated], **about), there).rows}
     for symbol in diagonal:
         assert rows[f"{symbol}'"].difference == pytest.approx(0.0, abs=1e-12), symbol
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_holds_about_every_point_is_held_against_a_vehicle_of_any_datum(turned: bool) -> None:
+    whole = cf.read_vehicle("remus100").file
+    forces = tuple(replace(c, value=1.2 * c.value) for c in whole.coefficients if c.symbol in ("Yuv'", "Xu|u|'"))
+    point = ParameterPoint(point=(0.3, 0.0, 0.1), datum="anywhere", axes="FRD")
+    none = type(whole.covariance)(symbols=(), matrix=())
+    free = whole.model_copy(
+        update={
+            "coefficients": forces,
+            "reference_point": point,
+            "covariance": none,
+            "added_mass": None,
+            "name": "free",
+        }
+    )
+    found = compare(free, whole) if turned else compare(whole, free)
+    ratios = {r.symbol: r.b / r.a for r in found.rows if r.a and r.b}
+    assert ratios == pytest.approx(dict.fromkeys(("Yv'", "X0'"), 1 / 1.2 if turned else 1.2))
+    assert not [s for s in found.statements if "datum" in s or "moved" in s or "placed" in s]
+
+
+def test_coefficients_of_another_datum_go_in_once_their_file_states_the_point_from_this_one(tmp_path: Path) -> None:
+    with pytest.raises(ScalingMismatchError, match=r'"datum": "nose", "point": \[x, y, z\]'):
+        cf.vehicle("remus100", coefficients="remus100")
+    content = json.loads(cf.read_vehicle("remus100").file.to_json())
+    content["reference_point"].update(datum="nose", point=[-0.611, 0.0, 0.0])
+    (tmp_path / "from_nose.parameters.json").write_text(json.dumps(content), encoding="utf-8")
+    auv = cf.vehicle("remus100", coefficients=tmp_path / "from_nose.parameters.json")
+    assert auv["Nv'"].value == pytest.approx(cf.read_vehicle("remus100")["Nuv'"].value, rel=1e-9)

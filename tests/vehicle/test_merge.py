@@ -8,11 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+import coeflab as cf
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from coeflab.vehicle.comparison import coefficient_set, compare
+from coeflab.vehicle.force_law import full_force, points_of
+from coeflab.vehicle.law_at_points import law_at_points
 from coeflab.vehicle.matching import by_plain_names
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import imported_file, own_number, own_numbers, typed_file
@@ -185,3 +188,27 @@ def test_a_slope_under_two_names_is_not_typed() -> None:
     with pytest.raises(InputError, match="Yuv' and Yv', which are one slope"):
         own_numbers(["Yuv=-65 N/(m/s)^2", "Nr'=-0.01", "Yv=-130 N/(m/s)"])
     assert len(own_numbers(["Yuv=-65 N/(m/s)^2", "Yvv=-130 N/(m/s)^2"])) == 2
+
+
+def test_an_estimate_stays_where_it_brings_the_law_to_points_beyond_the_slope_and_the_range_grows() -> None:
+    """A cubic to 12 deg: near zero the slope alone is nearer, at 12 deg Yv|v|' of the estimates halves the miss."""
+    base = cf.vehicle("remus100", mass=30.5)
+    bend = base["Yv|v|'"].value
+    v = np.sin(np.radians(np.arange(-12.0, 13.0, 2.0)))
+    force = 0.3 * bend * v + bend / 0.19 * v**3
+    columns = {"v' [1]": v, "Y' [1]": force, "N' [1]": 0.3 * bend * v}
+    drift = cf.read_table(
+        columns, name="drift", frame="FRD", length=1.33, density=1000, speed=2.0, about="nose, 0.611 m aft", accept=True
+    )
+    slopes = cf.fit(drift)
+    done = cf.vehicle("remus100", mass=30.5, coefficients=slopes)
+    assert done["Yv|v|'"].value == bend
+    alone = done.file.model_copy(
+        update={"coefficients": tuple(c for c in done.file.coefficients if c.symbol != "Yv|v|'")}
+    )
+    (now,), (then,) = ([p for p in points_of(f) if p.component == "Y"] for f in (done.file, alone))
+    assert now.worst_beyond < 0.5 * then.worst_beyond or not now.beyond
+    high = next(h.high for h in done.file.law_holds if h.component == "Y")
+    assert np.degrees(high) >= 8.0
+    held = law_at_points(done.file.measured, done.file.law_holds, full_force(done.file), done.file.scaling.length)
+    assert not [p.missed for p in held if p.component == "Y" and p.missed]

@@ -181,4 +181,4 @@ def test_what_cannot_be_moved_is_named_and_fails(shift: float) -> None:
     assert (lost["symbols"], lost["stays"]) == (("Nr'",), ("Nr'",))
     assert set(lost["needs"]) == {"Yr'", "Nv'", "Yv'"}
     assert lost.statistic == pytest.approx(shift)
-    assert [c for c in auv.checks() if str(c.severity) == "fail" and c.subject == "own"]
+    assert [c for c in auv.checks if str(c.severity) == "fail" and c.subject == "own"]

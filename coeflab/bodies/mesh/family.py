@@ -18,7 +18,7 @@ from coeflab.bodies.panel_solver import influence
 from coeflab.bodies.shape import Shape
 from coeflab.core.errors import InputError
 from coeflab.core.machine import stage
-from coeflab.core.types import Array
+from coeflab.core.types import Array, locked, remembered
 
 RATIO = 4  # of panels from rung to rung: panels half as long
 OWN = 1.4  # panels asked for over the facets of a mesh, up to which these serve as they are
@@ -27,8 +27,10 @@ LEAST, HIGHEST = 0.6, 1.1
 PRICE = 0.1  # of fewer panels at the top, in units of a ratio that is off by one e-fold
 MOST_UNFIT, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
 MOST_THIN, KEPT = 0.02, 0.6  # of the area, from which panels are graded; of the panels, before that
+REMEMBERED = 4  # families; 0.6 MB each of 6,000 panels
 
 
+@remembered(REMEMBERED)
 def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
     """Corners of one to three meshes, the finest first, each with about a quarter of the panels of the one before.
 
@@ -53,10 +55,10 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
         The shape cannot be meshed.
     """
     if isinstance(shape, TriangleMesh) and shape.remade is None:
-        return _of_mesh(shape, panels, most)
+        return tuple(map(locked, _of_mesh(shape, panels, most)))
     finest = meshed(shape, panels)
     if most == 1:
-        return (_corners(finest),)
+        return (locked(_corners(finest)),)
     ladder = {len(finest.faces): finest}
     for count in np.geomspace(max(panels / 1.5 / RATIO**2, FEWEST), panels, RUNGS).astype(int):
         try:
@@ -64,7 +66,7 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
         except InputError:
             continue
         ladder[len(rung.faces)] = rung
-    return tuple(_corners(ladder[n]) for n in _best(sorted(ladder, reverse=True), panels))
+    return tuple(locked(_corners(ladder[n])) for n in _best(sorted(ladder, reverse=True), panels))
 
 
 def _corners(mesh: TriangleMesh) -> Array:

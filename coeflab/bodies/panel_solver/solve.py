@@ -17,17 +17,19 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.panel_solver.influence import Panels, gradients, panels_of, seen_by
 from coeflab.bodies.panel_solver.wall import Wall
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, brief, locking, remembered
 from coeflab.law.transforms import moved
 
 Multiply = Callable[[Array], Array]
 TOLERANCE = 5e-7
 MOST_STEPS = 200
 WORKSPACE = 400 * 2**20
+REMEMBERED = 32  # solutions, 6 x 6 each: a body asked for again, with another mass or in other water, has the same
 
 
 @brief
 @dataclass(frozen=True, slots=True)
+@locking("matrix")
 class PanelSolution:
     """One body on one set of panels.
 
@@ -59,6 +61,7 @@ def memory_needed(count: int) -> int:
     return 4 * count**2 + WORKSPACE
 
 
+@remembered(REMEMBERED)
 def panel_added_mass(
     corners: Array, point: Array, compiled: bool, sheets: Array | None = None, wall: Wall | None = None
 ) -> PanelSolution:

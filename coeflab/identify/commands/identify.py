@@ -99,7 +99,7 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     if out is not None:
         result = with_curves(read_parameters(params), found)
         content[f"{file_stem(result.name)}.parameters.json"] = result.to_json()
-        checks = Vehicle(result).checks()
+        checks = Vehicle(result).checks
     written = [] if out is None else [out / name for name in content]
     if out is not None:
         write_all(out, content)

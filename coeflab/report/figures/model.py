@@ -89,11 +89,11 @@ def along_figure(model: FittedModel, anchor: str) -> Figure:
     return Figure(anchor, svg, title, _caption(model, names), description, tuple(panels))
 
 
-def _alone(model: FittedModel, columns: Mapping[str, Array], variable: str) -> NDArray[np.bool_]:
+def _alone(model: FittedModel, columns: Mapping[str, Array], *variables: str) -> NDArray[np.bool_]:
     """Rows in which the other variables of the terms are at rest, to a thousandth of their range."""
-    rows = np.ones(len(columns[variable]), dtype=bool)
+    rows = np.ones(len(columns[variables[0]]), dtype=bool)
     for other in moving(model):
-        if other != variable:
+        if other not in variables:
             rows &= np.abs(columns[other]) <= AT_REST * float(np.max(np.abs(model.x[other])))
     return rows
 
@@ -266,16 +266,72 @@ FEWEST_SLICES = 4
 SAME_SLICE = 1e-4
 
 
-def slices_of(model: FittedModel) -> tuple[float, ...]:
-    """Up to four values of the second variable at which a grid of data has points enough, evenly among all of them."""
-    x, second = (model.x[v] for v in moving(model)[:2])
-    reach = SAME_SLICE * float(np.ptp(second))
-    steps = np.round(second / reach) * reach
+def slices_of(model: FittedModel, names: Sequence[str] = ()) -> tuple[float, ...]:
+    """Up to four values of the second variable at which a grid of data has points enough, evenly among all of them.
+
+    Parameters
+    ----------
+    model : FittedModel
+    names : sequence of str
+        Two variables, the others at rest; the first two that move unless given.
+    """
+    first, second = names or moving(model)[:2]
+    rows = _alone(model, model.x, first, second)
+    x, levels = model.x[first][rows], model.x[second][rows]
+    reach = SAME_SLICE * float(np.ptp(model.x[second]))
+    steps = np.round(levels / reach) * reach
     found = [float(s) for s in np.unique(steps) if len(np.unique(np.round(x[steps == s], 6))) >= FEWEST_SLICES]
     if len(found) < 2:
         return ()
     chosen = np.unique(np.round(np.linspace(0, len(found) - 1, len(STYLES))).astype(int))
     return tuple(found[i] for i in chosen)
+
+
+def draw_slices(
+    axes: Axes, model: FittedModel, names: Sequence[str], factor: float = 1.0, palette: Mapping[str, str] = COLOURS
+) -> tuple[list[Any], list[Series]]:
+    """Curves and points over one variable at the values of `slices_of` of another one; marks for a legend, and the numbers.
+
+    Parameters
+    ----------
+    axes : Axes
+    model : FittedModel
+    names : sequence of str
+        The two variables.
+    factor : float
+        Of the response.
+    palette : mapping of str to str
+        A colour for each name of `COLOURS`.
+    """
+    first, second = names
+    near = SAME_SLICE * float(np.ptp(model.x[second]))
+    alone = _alone(model, model.x, first, second)
+    handles: list[Any] = []
+    words: list[Series] = []
+    for i, (level, style) in enumerate(zip(slices_of(model, names), STYLES, strict=False)):
+        mine, colour = alone & (np.abs(model.x[second] - level) <= near), palette["abcd"[i]]
+        fine = np.linspace(model.x[first].min(), model.x[first].max(), SLICE_FINE)
+        columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
+        values, _, inside = model.evaluate(columns | {first: fine, second: np.full_like(fine, level)})
+        look: dict[str, Any] = {"color": colour, "linewidth": 1.3, "linestyle": style.line}
+        mark: dict[str, Any] = {
+            "marker": style.marker,
+            "markersize": 3.6,
+            "markerfacecolor": "none",
+            "markeredgewidth": 0.9,
+        }
+        seen_at, curved = shown_values(first, model.x[first][mine]), np.where(inside, values, np.nan)
+        tagged(axes.plot(shown_values(first, fine), curved * factor, zorder=2.5, **look), f"slice{i}")
+        markers = axes.plot(
+            seen_at, model.y[mine] * factor, zorder=4, **(mark | {"linestyle": "none", "markeredgecolor": colour})
+        )
+        tagged(markers, f"slice{i}")
+        label = f"{symbol_of(second, model)} = {_spoken(model, second, level)}"
+        handles += tagged([Line2D([], [], label=label, markeredgecolor=colour, **mark, **look)], f"slice{i}")
+        labels = [f"point {model.labels[j]}" for j in np.flatnonzero(mine)]
+        words.append(points(f"slice{i}", label, seen_at, model.y[mine], labels))
+        words.append(curve(f"slice{i}", f"{label}, fit", shown_values(first, fine), curved))
+    return handles, words
 
 
 def slices_figure(model: FittedModel, anchor: str) -> Figure:
@@ -292,8 +348,7 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
     levels = slices_of(model)
     title = f"{name}, {model.campaign}: slices at values of {symbol_of(second, model)}"
     near = SAME_SLICE * float(np.ptp(model.x[second]))
-    rows = [np.abs(model.x[second] - level) <= near for level in levels]
-    seen = np.concatenate([model.y[r] for r in rows])
+    seen = np.concatenate([model.y[np.abs(model.x[second] - level) <= near] for level in levels])
     description = _slices_description(model, levels)
     with settings():
         figure = drawing(BOTTOM + SLICE_FIELD + 8.0 + SLICE_LEGEND)
@@ -302,31 +357,7 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
             up=limits(seen * factor, 0.06) or (-1.0, 1.0), name_up=f"{name}{power}  [{response_unit(model)}]",
             name_across=axis_name(first, model),
         )  # fmt: skip
-        handles: list[Any] = []
-        words: list[Series] = []
-        for i, (level, mine, style) in enumerate(zip(levels, rows, STYLES, strict=False)):
-            fine = np.linspace(model.x[first].min(), model.x[first].max(), SLICE_FINE)
-            columns = {v: np.zeros_like(fine) for v in model.domain.variables}
-            values, _, inside = model.evaluate(columns | {first: fine, second: np.full_like(fine, level)})
-            look: dict[str, Any] = {"color": style.colour, "linewidth": 1.3, "linestyle": style.line}
-            mark: dict[str, Any] = {
-                "marker": style.marker,
-                "markersize": 3.6,
-                "markerfacecolor": "none",
-                "markeredgewidth": 0.9,
-            }
-            seen_at, curved = shown_values(first, model.x[first][mine]), np.where(inside, values, np.nan)
-            tagged(axes.plot(shown_values(first, fine), curved * factor, zorder=2.5, **look), f"slice{i}")
-            markers = axes.plot(
-                seen_at, model.y[mine] * factor, zorder=4,
-                **(mark | {"linestyle": "none", "markeredgecolor": style.colour}),
-            )  # fmt: skip
-            tagged(markers, f"slice{i}")
-            label = f"{symbol_of(second, model)} = {_spoken(model, second, level)}"
-            handles += tagged([Line2D([], [], label=label, markeredgecolor=style.colour, **mark, **look)], f"slice{i}")
-            labels = [f"point {model.labels[j]}" for j in np.flatnonzero(mine)]
-            words.append(points(f"slice{i}", label, seen_at, model.y[mine], labels))
-            words.append(curve(f"slice{i}", f"{label}, fit", shown_values(first, fine), curved))
+        handles, words = draw_slices(axes, model, (first, second), factor)
         legend(figure, handles, BOTTOM + SLICE_FIELD)
         shown = numbers(axes, words, axis_name(first, model), f"{name}  [{response_unit(model)}]", factor)
         svg = svg_text(figure, anchor, title, description)

@@ -254,7 +254,7 @@ def _rounding(result: AddedMass) -> float:
 
 
 def _settled(result: AddedMass, symbol: str) -> float:
-    value = result.derivatives()[symbol]
+    value = result.derivatives[symbol]
     return value if abs(value) > _rounding(result) else 0.0
 
 
